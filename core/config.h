@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stipple {
+
+/// Settings from a TOML file with `key=value` overrides laid over it. A module asks for each key
+/// it knows by its dotted name; what nobody asked for is an error, so a misspelt key never passes.
+class Config {
+  public:
+    /// Reads `file` and applies `overrides` ("read_noise_e=5", "adc.bit_depth=10"; values in TOML
+    /// syntax, a bare word is a string).
+    /// \throws InputError naming file, line and column, or the override.
+    Config(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+    ~Config();
+    Config(Config&&) noexcept;
+    Config& operator=(Config&&) noexcept;
+
+    /// The value of `key`, or `fallback` if absent. \throws InputError naming file, line and key
+    /// if the type is wrong or the value lies outside [least, most].
+    [[nodiscard]] double number(std::string_view key, double fallback, double least, double most);
+    [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback,
+                                       std::int64_t least, std::int64_t most);
+    [[nodiscard]] bool boolean(std::string_view key, bool fallback);
+    [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
+    /// One of `choices`. \throws InputError listing them.
+    [[nodiscard]] std::string choice(std::string_view key, std::string_view fallback,
+                                     const std::vector<std::string>& choices);
+    [[nodiscard]] std::vector<int> integers(std::string_view key, std::vector<int> fallback,
+                                            int least, int most);
+
+    /// \throws InputError for a key that was given but never asked for, with the nearest known
+    /// key as a suggestion.
+    void reject_unknown_keys() const;
+
+    /// "file:line: key" (or "--set key") for messages.
+    [[nodiscard]] std::string place(std::string_view key) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Finds `name` as a file, or as `<config folder>/<kind>/<name>.toml` (kind: "sensors",
+/// "schedules", "decoders"). \throws InputError listing the names there are.
+[[nodiscard]] std::filesystem::path find_config(std::string_view kind, std::string_view name);
+
+}  // namespace stipple

@@ -1,0 +1,168 @@
+#include "core/exposure_schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/philox.h"
+
+namespace stipple {
+namespace {
+
+constexpr char kPlace[] = "exposure schedule";
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+}  // namespace
+
+ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slots,
+                                   std::vector<std::uint32_t> first,
+                                   std::vector<Exposure> exposures)
+    : tile_rows_(tile_rows),
+      tile_cols_(tile_cols),
+      period_slots_(period_slots),
+      first_(std::move(first)),
+      exposures_(std::move(exposures)) {
+    if (tile_rows < 1 || tile_cols < 1 || tile_rows > 65535 || tile_cols > 65535)
+        throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..65535 rows and columns",
+                                             tile_rows, tile_cols));
+    if (period_slots < 1 || period_slots > 65535)
+        throw InputError(kPlace, fmt::format("period {} is outside 1..65535 slots", period_slots));
+    if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
+        first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
+        throw InputError(kPlace, "the list of exposures does not match the tile");
+    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel);
+    list_due_pixels();
+}
+
+void ExposureSchedule::check_pixel(int pixel) {
+    const auto fail = [&](std::uint32_t slot, std::string_view problem) {
+        throw InputError(kPlace, fmt::format("pixel ({}, {}) slot {}: {}", pixel / tile_cols_,
+                                             pixel % tile_cols_, slot, problem));
+    };
+    const auto begin = exposures_.begin() + first_[index(pixel)];
+    const auto end = exposures_.begin() + first_[index(pixel) + 1];
+    std::sort(begin, end,
+              [](const Exposure& a, const Exposure& b) { return a.first_slot < b.first_slot; });
+    const auto period = static_cast<std::uint32_t>(period_slots_);
+    std::vector<bool> open(period, false);
+    std::uint32_t covered_slots = 0;
+    for (auto e = begin; e != end; ++e) {
+        if (e->first_slot >= period) fail(e->first_slot, "an exposure begins beyond the period");
+        if ((e->open_slots & 1U) == 0)
+            fail(e->first_slot, "an exposure is closed in its first slot");
+        if (e->span_slots() > period_slots_) fail(e->first_slot, "an exposure exceeds the period");
+        for (std::uint64_t rest = e->open_slots; rest != 0; rest &= rest - 1) {
+            const auto slot =
+                (e->first_slot + static_cast<std::uint32_t>(std::countr_zero(rest))) % period;
+            if (open[slot]) fail(slot, "two exposures share this slot");
+            open[slot] = true;
+        }
+        covered_slots += static_cast<std::uint32_t>(e->span_slots());
+        const auto next_begin = e + 1 == end ? begin->first_slot + period : (e + 1)->first_slot;
+        if (e->first_slot + static_cast<std::uint32_t>(e->span_slots()) > next_begin)
+            interleaved_ = true;
+    }
+    if (covered_slots > period) interleaved_ = true;
+}
+
+void ExposureSchedule::list_due_pixels() {
+    const auto period = static_cast<std::uint32_t>(period_slots_);
+    const auto list_of = [&](const Exposure& e, int tile_row) {
+        const auto last = e.first_slot + static_cast<std::uint32_t>(e.span_slots()) - 1;
+        return index(static_cast<int>(last % period) * tile_rows_ + tile_row);
+    };
+    first_due_.assign(index(period_slots_) * index(tile_rows_) + 1, 0);
+    for (int row = 0; row < tile_rows_; ++row)
+        for (int col = 0; col < tile_cols_; ++col)
+            for (const Exposure& e : exposures(row, col)) ++first_due_[list_of(e, row) + 1];
+    std::partial_sum(first_due_.begin(), first_due_.end(), first_due_.begin());
+    due_.resize(exposures_.size());
+    std::vector<std::uint32_t> next(first_due_.begin(), first_due_.end() - 1);
+    for (int row = 0; row < tile_rows_; ++row)
+        for (int col = 0; col < tile_cols_; ++col)
+            for (const Exposure& e : exposures(row, col))
+                due_[next[list_of(e, row)]++] = {static_cast<std::uint16_t>(col),
+                                                 static_cast<std::uint16_t>(e.span_slots())};
+}
+
+std::span<const Exposure> ExposureSchedule::exposures(int tile_row, int tile_col) const {
+    const auto pixel = index(tile_row) * index(tile_cols_) + index(tile_col);
+    return std::span(exposures_).subspan(first_[pixel], first_[pixel + 1] - first_[pixel]);
+}
+
+std::span<const DuePixel> ExposureSchedule::due(int phase, int tile_row) const {
+    const auto list = index(phase) * index(tile_rows_) + index(tile_row);
+    return std::span(due_).subspan(first_due_[list], first_due_[list + 1] - first_due_[list]);
+}
+
+double ExposureSchedule::samples_per_pixel_slot() const {
+    const double pixel_slots = 1.0 * tile_rows_ * tile_cols_ * period_slots_;
+    return static_cast<double>(exposures_.size()) / pixel_slots;
+}
+
+double ExposureSchedule::light_throughput() const {
+    const double pixel_slots = 1.0 * tile_rows_ * tile_cols_ * period_slots_;
+    double light_slots = 0;
+    for (const Exposure& e : exposures_) light_slots += e.light_slots();
+    return light_slots / pixel_slots;
+}
+
+bool ExposureSchedule::gapless() const {
+    return light_throughput() == 1.0;
+}
+
+bool ExposureSchedule::operator==(const ExposureSchedule& other) const {
+    return tile_rows_ == other.tile_rows_ && tile_cols_ == other.tile_cols_ &&
+           period_slots_ == other.period_slots_ && first_ == other.first_ &&
+           exposures_ == other.exposures_;
+}
+
+std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int first_row, int rows,
+                      int cols) {
+    std::size_t count = 0;
+    for (int row = first_row; row < first_row + rows; ++row)
+        visit_due(schedule, slot, row, cols, [&](int, int) { ++count; });
+    return count;
+}
+
+ExposureSchedule random_schedule(int rows, int cols, std::span<const int> exposure_slots,
+                                 std::uint64_t seed) {
+    int period_slots = 0;
+    for (const int length : exposure_slots) {
+        if (length < 1 || length > 64)
+            throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
+        period_slots += length;
+    }
+    const auto pixels = static_cast<std::uint32_t>(rows) * static_cast<std::uint32_t>(cols);
+    const auto count = exposure_slots.size();
+    std::vector<std::uint32_t> first(pixels + 1);
+    std::vector<Exposure> exposures;
+    exposures.reserve(pixels * count);
+    std::vector<int> order(count);
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        // Fisher-Yates; draw i uses word 0 of its own block, scaled to its range by a high product.
+        const auto draw = [&](std::uint32_t i, std::size_t range) {
+            const auto word =
+                philox4x32(random_address(pixel, i, RandomPurpose::kSchedule), seed)[0];
+            return static_cast<std::uint32_t>((std::uint64_t{word} * range) >> 32U);
+        };
+        std::copy(exposure_slots.begin(), exposure_slots.end(), order.begin());
+        for (std::size_t i = count - 1; i > 0; --i)
+            std::swap(order[i], order[draw(static_cast<std::uint32_t>(i), i + 1)]);
+        auto slot = draw(0, index(period_slots));
+        for (const int length : order) {
+            const auto mask = ~std::uint64_t{0} >> static_cast<unsigned>(64 - length);
+            exposures.push_back({slot % static_cast<std::uint32_t>(period_slots), mask});
+            slot += static_cast<std::uint32_t>(length);
+        }
+        first[pixel + 1] = static_cast<std::uint32_t>(exposures.size());
+    }
+    return {rows, cols, period_slots, std::move(first), std::move(exposures)};
+}
+
+}  // namespace stipple

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+/// One exposure of one pixel: the slots in which its shutter is open. Bit i of `open_slots` is
+/// slot `first_slot + i`; bit 0 is set. It is read out at the end of its last open slot.
+struct Exposure {
+    std::uint32_t first_slot = 0;  ///< 0 <= first_slot < period
+    std::uint64_t open_slots = 1;
+
+    /// Slots from the first to the last open one.
+    [[nodiscard]] int span_slots() const { return static_cast<int>(std::bit_width(open_slots)); }
+    /// Slots that collect light.
+    [[nodiscard]] int light_slots() const { return std::popcount(open_slots); }
+    bool operator==(const Exposure&) const = default;
+};
+
+/// A pixel that is due for readout, in a row of the tile.
+struct DuePixel {
+    std::uint16_t col = 0;         ///< column in the tile
+    std::uint16_t span_slots = 0;  ///< slots since the exposure began, this one included
+};
+
+/// Which pixel exposes when: a tile of rows x cols pixels, repeated over the array, whose
+/// exposures repeat every `period_slots`. No two exposures of a pixel share a slot, so each
+/// (pixel, slot) belongs to at most one exposure and the sampling operator has A A^T diagonal.
+class ExposureSchedule {
+  public:
+    /// `exposures[first[p] .. first[p + 1])` belong to tile pixel p = row * tile_cols + col.
+    /// \throws InputError naming the pixel and the slot of the first rule broken: an empty tile or
+    /// period, an exposure outside 0 <= first_slot < period or longer than the period, bit 0
+    /// clear, or two exposures of a pixel open in one slot.
+    ExposureSchedule(int tile_rows, int tile_cols, int period_slots,
+                     std::vector<std::uint32_t> first, std::vector<Exposure> exposures);
+
+    [[nodiscard]] int tile_rows() const { return tile_rows_; }
+    [[nodiscard]] int tile_cols() const { return tile_cols_; }
+    [[nodiscard]] int period_slots() const { return period_slots_; }
+
+    /// Exposures of a tile pixel, by first slot.
+    [[nodiscard]] std::span<const Exposure> exposures(int tile_row, int tile_col) const;
+
+    /// Pixels of a tile row read out at the end of slot `phase` (0 .. period - 1), by column.
+    [[nodiscard]] std::span<const DuePixel> due(int phase, int tile_row) const;
+
+    /// Samples per pixel and slot, on average; its inverse is the compression ratio.
+    [[nodiscard]] double samples_per_pixel_slot() const;
+    /// Fraction of all (pixel, slot) pairs that collect light.
+    [[nodiscard]] double light_throughput() const;
+    /// True if every pixel collects light in every slot.
+    [[nodiscard]] bool gapless() const;
+    /// True if some pixel begins an exposure before an earlier one has ended (two-bucket pixels).
+    [[nodiscard]] bool interleaved() const { return interleaved_; }
+
+    bool operator==(const ExposureSchedule&) const;
+
+  private:
+    void check_pixel(int pixel);
+    void list_due_pixels();
+
+    int tile_rows_;
+    int tile_cols_;
+    int period_slots_;
+    bool interleaved_ = false;
+    std::vector<std::uint32_t> first_;
+    std::vector<Exposure> exposures_;
+    std::vector<std::uint32_t> first_due_;  ///< by phase * tile_rows + tile_row
+    std::vector<DuePixel> due_;
+};
+
+/// Calls `visit(col, span_slots)` for each pixel of array row `row` that is read out at the end of
+/// `slot`, in scan order. The array is reset before slot 0, so an exposure that would have begun
+/// earlier is not read. The one definition of which samples a slot holds, shared by the chip, the
+/// stream and the decoder. Precondition: slot >= 0, row >= 0.
+template <typename Visit>
+void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
+               Visit&& visit) {
+    const auto phase = static_cast<int>(slot % schedule.period_slots());
+    const auto due = schedule.due(phase, row % schedule.tile_rows());
+    for (int tile_col = 0; tile_col < cols; tile_col += schedule.tile_cols())
+        for (const DuePixel& pixel : due) {
+            const int col = tile_col + pixel.col;
+            if (col >= cols) break;
+            if (pixel.span_slots <= slot + 1) visit(col, static_cast<int>(pixel.span_slots));
+        }
+}
+
+/// Number of pixels that `visit_due` visits in rows [first_row, first_row + rows).
+[[nodiscard]] std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot,
+                                    int first_row, int rows, int cols);
+
+/// Exposure lengths of the paper, in slots.
+inline constexpr int kPaperExposureSlots[] = {1, 2, 4, 8};
+
+/// The paper's schedule: every pixel of a rows x cols array repeats its own random permutation
+/// of `exposure_slots` without gaps, from a random offset. The stream format defines its bits
+/// (docs/stream_format.md), so a header needs only the lengths and the seed.
+/// \throws InputError if a length is outside 1..64, or the sum of lengths exceeds 65535.
+[[nodiscard]] ExposureSchedule random_schedule(int rows, int cols,
+                                               std::span<const int> exposure_slots,
+                                               std::uint64_t seed);
+
+}  // namespace stipple

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// How the numbers of a footage file map to light.
+enum class Transfer {
+    kLinear,   ///< proportional to light
+    kGamma22,  ///< light = value^2.2
+    kSrgb,     ///< IEC 61966-2-1
+};
+
+struct FootageOptions {
+    Transfer transfer = Transfer::kLinear;
+    bool luminance = false;           ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
+    std::optional<double> max_value;  ///< clip light to this value
+};
+
+/// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
+/// divided by 255 / 65535, floating-point files are taken as they are.
+/// Sources: a folder or a printf pattern of PNG, TIFF or EXR files (in numeric order of names), a
+/// video file, or a .npy of shape (T,H,W) or (T,H,W,3) with dtype u1, u2, f2, f4 or f8.
+class FootageReader {
+  public:
+    /// Opens the source and reads its first frame's shape.
+    /// \throws InputError if it is missing, unreadable, empty or of a wrong shape.
+    explicit FootageReader(const std::filesystem::path& source, FootageOptions options = {});
+    ~FootageReader();
+    FootageReader(FootageReader&&) noexcept;
+    FootageReader& operator=(FootageReader&&) noexcept;
+
+    [[nodiscard]] FrameShape shape() const;
+    /// Number of frames where the source tells; a video file may not.
+    [[nodiscard]] std::optional<int> slots() const;
+
+    /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
+    /// Returns false at the end. \throws InputError naming the file (and for a value the row,
+    /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
+    /// infinite or negative light.
+    bool read(std::span<float> frame);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

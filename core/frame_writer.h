@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+struct FrameWriterOptions {
+    double frames_per_second = 30;  ///< playback rate of .mp4 / .mkv
+    bool force = false;             ///< replace an existing output
+};
+
+/// Writes a video frame by frame. The name chooses the format: a folder of
+/// `frame_%04d.exr` (float, linear), `.npy` (float32, (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv`
+/// (tone-mapped, 8 bit). Everything is written beside the final name and moved there by `finish`,
+/// so that the final name never holds a partial video; without `finish` nothing is left behind.
+class FrameWriter {
+  public:
+    /// \throws InputError if the output exists (and not force) or its folder does not, or the
+    /// format is unknown. \throws DeviceError if it cannot be created.
+    FrameWriter(std::filesystem::path output, FrameShape shape, FrameWriterOptions options = {});
+    ~FrameWriter();
+    FrameWriter(const FrameWriter&) = delete;
+    FrameWriter& operator=(const FrameWriter&) = delete;
+
+    /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError (full
+    /// disk).
+    void write(std::span<const float> frame);
+    /// Completes the file, however many frames were written. \throws DeviceError.
+    void finish();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace stipple {
+
+/// While it lives, at most `threads` threads work in `parallel_for`. 0 means all cores.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int threads);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Threads that `parallel_for` uses now.
+[[nodiscard]] int thread_count();
+
+/// Calls `body(i)` once for each i in [begin, end), spread over the threads in no fixed order.
+/// Bodies must write to disjoint memory and must not add up across indices, which makes every
+/// result independent of the number of threads. The first exception thrown by a body is rethrown.
+void parallel_for(int begin, int end, const std::function<void(int)>& body);
+
+}  // namespace stipple
