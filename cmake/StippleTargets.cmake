@@ -2,6 +2,10 @@
 
 # Same bits everywhere: no contraction to FMA, no reassociation (docs/style.md, "Numbers").
 add_compile_options(-ffp-contract=off)
+if(STIPPLE_FUZZ)
+    # libFuzzer is guided by the branches that the modules take, so they report them.
+    add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 
 # stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...])
 # One library per module, built from the folder of the same name. Headers are listed so that
@@ -19,6 +23,32 @@ function(stipple_test module)
     add_executable(${module}_test ${ARGN})
     target_link_libraries(${module}_test PRIVATE stipple_test_support GTest::gtest_main)
     gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()
+
+# stipple_fuzz(NAME file.cpp LIBS lib ... [SECONDS n]): `file.cpp` defines LLVMFuzzerTestOneInput,
+# tests/fuzz/corpus/NAME holds its inputs. With STIPPLE_FUZZ a libFuzzer program that a test runs
+# for n seconds (default 20); without, the corpus alone is replayed, with any compiler.
+function(stipple_fuzz name source)
+    cmake_parse_arguments(arg "" "SECONDS" "LIBS" ${ARGN})
+    if(NOT arg_SECONDS)
+        set(arg_SECONDS 20)
+    endif()
+    set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
+    add_executable(fuzz_${name} ${source})
+    target_link_libraries(fuzz_${name} PRIVATE stipple_test_support ${arg_LIBS})
+    if(STIPPLE_FUZZ)
+        target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+        set(found ${CMAKE_BINARY_DIR}/fuzz/${name})  # new inputs stay out of the source tree
+        file(MAKE_DIRECTORY ${found})
+        add_test(NAME fuzz_${name}_finds_nothing
+                 COMMAND fuzz_${name} -max_total_time=${arg_SECONDS} -timeout=10 -rss_limit_mb=2048
+                         -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
+        set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz)
+    else()
+        target_sources(fuzz_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_corpus.cpp)
+        add_test(NAME fuzz_${name}_replays_its_corpus COMMAND fuzz_${name} ${corpus})
+        set_tests_properties(fuzz_${name}_replays_its_corpus PROPERTIES LABELS fuzz TIMEOUT 120)
+    endif()
 endfunction()
 
 # stipple_bench(NAME file.cpp LIBS lib ...): a Google Benchmark program, run once by the tests.

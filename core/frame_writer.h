@@ -21,7 +21,8 @@ class FrameWriter {
   public:
     /// \throws InputError if the output exists (and not force) or its folder does not, or the
     /// format is unknown. \throws DeviceError if it cannot be created.
-    FrameWriter(std::filesystem::path output, FrameShape shape, FrameWriterOptions options = {});
+    FrameWriter(const std::filesystem::path& output, FrameShape shape,
+                FrameWriterOptions options = {});
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;

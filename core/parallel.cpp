@@ -7,14 +7,15 @@
 namespace stipple {
 
 struct ThreadLimit::Impl {
+    explicit Impl(std::size_t limit)
+        : control(tbb::global_control::max_allowed_parallelism, limit) {}
     tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
     const auto limit =
         static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency());
-    impl_ = std::make_unique<Impl>(
-        Impl{tbb::global_control(tbb::global_control::max_allowed_parallelism, limit)});
+    impl_ = std::make_unique<Impl>(limit);
 }
 
 ThreadLimit::~ThreadLimit() = default;

@@ -4,25 +4,38 @@
 
 namespace stipple {
 
+enum class OutputKind { kFile, kFolder };
+
 /// An output that appears under its final name only when it is complete. Write to `partial()`,
 /// then `commit()`; if it is destroyed without, the partial file or folder is removed.
 class PendingOutput {
   public:
+    /// Creates the folder `partial()` if `kind` is a folder.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
-    /// missing.
-    PendingOutput(std::filesystem::path final_path, bool force);
+    /// missing. With `force` a regular file gives way to a file, and a folder that holds nothing
+    /// but our frames (frame_0000.exr ...) to a folder; anything else is an InputError, because
+    /// it may be somebody's work. \throws DeviceError if the folder cannot be created.
+    PendingOutput(const std::filesystem::path& final_path, bool force,
+                  OutputKind kind = OutputKind::kFile);
     ~PendingOutput();
     PendingOutput(const PendingOutput&) = delete;
     PendingOutput& operator=(const PendingOutput&) = delete;
 
-    /// Path to write to, in the same folder and with the same extension.
+    [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
+    /// Path to write to: in the same folder, hidden, with the same extension and, so that two
+    /// programs never write to the same one, the process number.
     [[nodiscard]] const std::filesystem::path& partial() const { return partial_; }
     /// Moves the partial output to its final name. \throws DeviceError.
     void commit();
 
   private:
+    void check_replaceable() const;
+    void remove_replaced_folder() const;
+
     std::filesystem::path final_;
     std::filesystem::path partial_;
+    bool force_;
+    OutputKind kind_;
     bool committed_ = false;
 };
 

@@ -1,0 +1,237 @@
+#include "core/config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <list>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+#include "core/input_file.h"
+#include "core/joined.h"
+
+namespace stipple {
+namespace {
+
+/// A value and where it was given.
+struct Entry {
+    const toml::node* value = nullptr;
+    std::string place;  ///< "file:line" or "--set"
+    bool known = false;
+};
+using Entries = std::map<std::string, Entry, std::less<>>;
+
+/// Adds all values of `table` under their dotted names. Empty tables count as values, so that a
+/// misspelt section is noticed.
+void flatten(const toml::table& table, const std::string& prefix, const std::string& file,
+             Entries& entries) {
+    for (const auto& [key, value] : table) {
+        const std::string name = fmt::format("{}{}", prefix, key.str());
+        const auto* inner = value.as_table();
+        if (inner != nullptr && !inner->empty()) {
+            flatten(*inner, fmt::format("{}.", name), file, entries);
+            continue;
+        }
+        const std::string place = fmt::format("{}:{}", file, key.source().begin.line);
+        if (!entries.try_emplace(name, Entry{&value, place, false}).second)
+            throw InputError(fmt::format("{}: {}", place, name), "is given twice");
+    }
+}
+
+/// "value = <text>", or the text as a string if it is not TOML.
+toml::table parse_value(std::string_view text) {
+    try {
+        toml::table table = toml::parse(fmt::format("value = {}", text));
+        if (table.size() == 1) return table;
+    } catch (const toml::parse_error&) {
+        // A bare word.
+    }
+    toml::table table;
+    table.insert("value", std::string(text));
+    return table;
+}
+
+std::string_view type_name(const toml::node& value) {
+    switch (value.type()) {
+        case toml::node_type::table:
+            return "a section";
+        case toml::node_type::array:
+            return "a list";
+        case toml::node_type::string:
+            return "text";
+        case toml::node_type::integer:
+            return "an integer";
+        case toml::node_type::floating_point:
+            return "a number";
+        case toml::node_type::boolean:
+            return "true or false";
+        default:
+            return "a date or time";
+    }
+}
+
+/// Edits (insert, delete, replace a character) that turn `a` into `b` (Levenshtein).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+struct Config::Impl {
+    std::string file;
+    std::list<toml::table> tables;  ///< what the entries point into
+    Entries entries;
+    std::set<std::string, std::less<>> asked;
+
+    void set(const std::string& assignment);
+    /// The value of a key, or null; from now on the key is known.
+    const toml::node* find(std::string_view key);
+    [[nodiscard]] std::string place(std::string_view key) const;
+
+    template <typename Value>
+    [[noreturn]] void fail_range(std::string_view key, Value value, Value least, Value most) const {
+        throw InputError(place(key), fmt::format("{} is outside {}..{}", value, least, most));
+    }
+    [[noreturn]] void fail_type(std::string_view key, const toml::node& value,
+                                std::string_view wanted) const {
+        throw InputError(place(key), fmt::format("needs {}, but is {}", wanted, type_name(value)));
+    }
+};
+
+void Config::Impl::set(const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
+        throw InputError(fmt::format("--set {}", assignment), "write key=value");
+    const std::string key = assignment.substr(0, equals);
+    tables.push_back(parse_value(std::string_view(assignment).substr(equals + 1)));
+    entries[key] = Entry{tables.back().get("value"), "--set", false};
+}
+
+const toml::node* Config::Impl::find(std::string_view key) {
+    asked.emplace(key);
+    const auto found = entries.find(key);
+    if (found == entries.end()) return nullptr;
+    found->second.known = true;
+    return found->second.value;
+}
+
+std::string Config::Impl::place(std::string_view key) const {
+    const auto found = entries.find(key);
+    if (found == entries.end()) return fmt::format("{}: {}", file, key);
+    if (found->second.place == "--set") return fmt::format("--set {}", key);
+    return fmt::format("{}: {}", found->second.place, key);
+}
+
+Config::Config(const std::filesystem::path& file, const std::vector<std::string>& overrides)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->file = file.string();
+    const auto bytes = read_file(file);
+    const std::string text(bytes.begin(), bytes.end());
+    try {
+        impl_->tables.push_back(toml::parse(text, impl_->file));
+    } catch (const toml::parse_error& e) {
+        throw InputError(
+            fmt::format("{}:{}:{}", impl_->file, e.source().begin.line, e.source().begin.column),
+            e.description());
+    }
+    flatten(impl_->tables.back(), "", impl_->file, impl_->entries);
+    for (const std::string& assignment : overrides) impl_->set(assignment);
+}
+
+Config::~Config() = default;
+Config::Config(Config&&) noexcept = default;
+Config& Config::operator=(Config&&) noexcept = default;
+
+double Config::number(std::string_view key, double fallback, double least, double most) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return fallback;
+    if (!node->is_number()) impl_->fail_type(key, *node, "a number");
+    const double value = *node->value<double>();
+    if (!(value >= least && value <= most)) impl_->fail_range(key, value, least, most);
+    return value;
+}
+
+std::int64_t Config::integer(std::string_view key, std::int64_t fallback, std::int64_t least,
+                             std::int64_t most) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return fallback;
+    if (!node->is_integer()) impl_->fail_type(key, *node, "an integer");
+    const std::int64_t value = *node->value<std::int64_t>();
+    if (value < least || value > most) impl_->fail_range(key, value, least, most);
+    return value;
+}
+
+bool Config::boolean(std::string_view key, bool fallback) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return fallback;
+    if (!node->is_boolean()) impl_->fail_type(key, *node, "true or false");
+    return *node->value<bool>();
+}
+
+std::string Config::text(std::string_view key, std::string_view fallback) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return std::string(fallback);
+    if (!node->is_string()) impl_->fail_type(key, *node, "text");
+    return *node->value<std::string>();
+}
+
+std::string Config::choice(std::string_view key, std::string_view fallback,
+                           const std::vector<std::string>& choices) {
+    std::string value = text(key, fallback);
+    if (std::find(choices.begin(), choices.end(), value) == choices.end())
+        throw InputError(place(key),
+                         fmt::format("\"{}\" is not one of {}", value, joined(choices)));
+    return value;
+}
+
+std::vector<int> Config::integers(std::string_view key, std::vector<int> fallback, int least,
+                                  int most) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return fallback;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) impl_->fail_type(key, *node, "a list of integers");
+    std::vector<int> values;
+    for (const toml::node& item : *list) {
+        if (!item.is_integer()) impl_->fail_type(key, item, "a list of integers");
+        const std::int64_t value = *item.value<std::int64_t>();
+        if (value < least || value > most) impl_->fail_range<std::int64_t>(key, value, least, most);
+        values.push_back(static_cast<int>(value));
+    }
+    return values;
+}
+
+void Config::reject_unknown_keys() const {
+    const auto& asked = impl_->asked;
+    for (const auto& [key, entry] : impl_->entries) {
+        if (entry.known) continue;
+        const std::string_view name = key;
+        const auto farther = [&](const std::string& a, const std::string& b) {
+            return edit_distance(name, a) < edit_distance(name, b);
+        };
+        const auto nearest = std::min_element(asked.begin(), asked.end(), farther);
+        throw InputError(place(key),
+                         nearest == asked.end()
+                             ? "is unknown"
+                             : fmt::format("is unknown; did you mean \"{}\"?", *nearest));
+    }
+}
+
+std::string Config::place(std::string_view key) const {
+    return impl_->place(key);
+}
+
+}  // namespace stipple

@@ -1,0 +1,121 @@
+#include "core/exr_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstddef>
+#include <exception>
+#include <vector>
+
+#include "core/error.h"
+#include "core/joined.h"
+#include "core/light.h"
+#include "core/output_file.h"
+
+namespace stipple {
+namespace {
+
+/// Names of the channels that make up the picture, one a plane.
+std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
+                                          const std::string& place) {
+    const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+    std::vector<std::string> names;
+    if (has("R") && has("G") && has("B")) {
+        names = {"R", "G", "B"};
+    } else if (has("Y") && !has("RY") && !has("BY")) {
+        names = {"Y"};
+    } else {
+        for (auto c = channels.begin(); c != channels.end(); ++c)
+            if (std::string_view(c.name()) != "A") names.emplace_back(c.name());
+        if (names.size() != 1)
+            throw InputError(place, fmt::format("holds the channels {}; give R, G, B or Y alone",
+                                                joined(names)));
+    }
+    for (const auto& name : names) {
+        const Imf::Channel& channel = channels[name.c_str()];
+        if (channel.xSampling != 1 || channel.ySampling != 1)
+            throw InputError(place, fmt::format("channel {} is subsampled", name));
+    }
+    return names;
+}
+
+/// A plane as OpenEXR wants it: the address that pixel (0, 0) would have.
+Imf::Slice plane_slice(float* plane, const Imath::Box2i& window, FrameShape shape) {
+    return Imf::Slice::Make(Imf::FLOAT, plane, window, sizeof(float),
+                            sizeof(float) * static_cast<std::size_t>(shape.cols));
+}
+
+const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& place) {
+    const Imath::Box2i& window = header.dataWindow();
+    if (window != header.displayWindow())
+        throw InputError(place,
+                         "its data window differs from its display window; "
+                         "crop or pad the picture to its display window");
+    return window;
+}
+
+std::uint64_t side(int low, int high) {
+    return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
+}
+
+void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {
+    const Imath::Box2i window = checked_window(input.header(), place);
+    const auto names = picture_channels(input.header().channels(), place);
+    picture.resize(checked_shape(side(window.min.y, window.max.y), side(window.min.x, window.max.x),
+                                 names.size(), place));
+    Imf::FrameBuffer planes;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        planes.insert(names[i], plane_slice(picture.values.data() + i * picture.shape.pixels(),
+                                            window, picture.shape));
+    input.setFrameBuffer(planes);
+    input.readPixels(window.min.y, window.max.y);
+}
+
+}  // namespace
+
+void read_exr(const std::filesystem::path& file, Picture& picture) {
+    constexpr int kThreads = 0;
+    try {
+        Imf::InputFile input(file.c_str(), kThreads);
+        read_planes(input, file.string(), picture);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw InputError(file.string(), fmt::format("cannot be read as OpenEXR: {}", e.what()));
+    }
+}
+
+void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+               std::span<const float> frame) {
+    assert(frame.size() == shape.sites());
+    constexpr int kThreads = 0;
+    Imf::Header header(shape.cols, shape.rows);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer planes;
+    std::vector<float> values(frame.begin(), frame.end());  // OpenEXR wants a mutable pointer
+    for (int p = 0; p < shape.planes; ++p) {
+        const char* name = shape.planes == 1 ? "Y" : &"R\0G\0B\0"[2 * p];
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        float* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
+        planes.insert(name, plane_slice(plane, header.dataWindow(), shape));
+    }
+    // Written to memory first: OpenEXR swallows errors that occur when a file is closed.
+    Imf::StdOSStream stream;
+    {
+        Imf::OutputFile output(stream, header, kThreads);
+        output.setFrameBuffer(planes);
+        output.writePixels(shape.rows);
+    }
+    const std::string bytes = stream.str();
+    OutputFile output(file, std::string(place));
+    output.write(std::as_bytes(std::span(bytes)));
+    output.close();
+}
+
+}  // namespace stipple

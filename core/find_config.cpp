@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "core/joined.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// Folders that hold sensors/, schedules/ and decoders/, the first one that has a name wins.
+std::vector<fs::path> config_folders() {
+    std::vector<fs::path> folders;
+    if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+    if (!program.empty()) {
+        folders.push_back((program / "../../config").lexically_normal());  // build/release/stipple
+        folders.push_back((program / "../share/stipple/config").lexically_normal());
+    }
+    folders.emplace_back(STIPPLE_CONFIG_DIR);
+    return folders;
+}
+
+std::set<std::string> names_in(const std::vector<fs::path>& folders, std::string_view kind) {
+    std::set<std::string> names;
+    for (const fs::path& folder : folders) {
+        std::error_code error;
+        for (const auto& entry : fs::directory_iterator(folder / kind, error))
+            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    }
+    return names;
+}
+
+}  // namespace
+
+fs::path find_config(std::string_view kind, std::string_view name) {
+    std::error_code error;
+    fs::path path(name);
+    if (fs::is_regular_file(path, error)) return path;
+    if (name.find('/') != std::string_view::npos || path.extension() == ".toml")
+        throw InputError(name, "there is no such file");
+    const auto folders = config_folders();
+    for (const fs::path& folder : folders) {
+        fs::path file = folder / kind / fmt::format("{}.toml", name);
+        if (fs::is_regular_file(file, error)) return file;
+    }
+    const auto names = names_in(folders, kind);
+    throw InputError(
+        fmt::format("\"{}\"", name),
+        names.empty()
+            ? fmt::format("there is no {}/ in any configuration folder", kind)
+            : fmt::format("is neither a file nor one of the {}: {}", kind, joined(names)));
+}
+
+}  // namespace stipple

@@ -1,0 +1,40 @@
+#include "core/input_file.h"
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> read_file(const std::filesystem::path& file) {
+    const auto fail = [&] {
+        throw InputError(file.string(),
+                         "cannot be read: " + std::generic_category().message(errno));
+    };
+    const std::unique_ptr<std::FILE, Closer> stream(std::fopen(file.c_str(), "rb"));
+    if (!stream) fail();
+    constexpr std::size_t kStep = std::size_t{1} << 20U;
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t filled = 0;;) {
+        bytes.resize(filled + kStep);
+        const std::size_t got = std::fread(bytes.data() + filled, 1, kStep, stream.get());
+        filled += got;
+        if (got == kStep) continue;
+        if (std::ferror(stream.get()) != 0) fail();
+        bytes.resize(filled);
+        return bytes;
+    }
+}
+
+}  // namespace stipple

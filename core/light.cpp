@@ -1,0 +1,73 @@
+#include "core/light.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+bool is_light(float value) {
+    return value >= 0.0F && value <= std::numeric_limits<float>::max();
+}
+
+/// Electro-optical transfer function of IEC 61966-2-1.
+float srgb_to_light(float value) {
+    if (value <= 0.04045F) return value / 12.92F;
+    return std::pow((value + 0.055F) / 1.055F, 2.4F);
+}
+
+}  // namespace
+
+FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
+                         std::string_view place) {
+    if (planes != 1 && planes != 3)
+        throw InputError(place, fmt::format("has {} planes; give mono (1) or RGB (3)", planes));
+    if (rows < 1 || rows > kMaxFrameSide || cols < 1 || cols > kMaxFrameSide ||
+        rows * cols * planes > kMaxFrameSites)
+        throw InputError(place, fmt::format("a frame of {} rows and {} columns is outside 1..{} "
+                                            "a side and {} values in all",
+                                            rows, cols, kMaxFrameSide, kMaxFrameSites));
+    return {static_cast<int>(rows), static_cast<int>(cols), static_cast<int>(planes)};
+}
+
+void linearise(std::span<float> values, Transfer transfer) {
+    if (transfer == Transfer::kGamma22)
+        for (float& value : values) value = value > 0.0F ? std::pow(value, 2.2F) : value;
+    if (transfer == Transfer::kSrgb)
+        for (float& value : values) value = srgb_to_light(value);
+}
+
+void check_light(std::span<const float> light, FrameShape shape, std::string_view place) {
+    bool good = true;
+    for (const float value : light) good &= is_light(value);
+    if (good) return;
+    std::size_t site = 0;
+    while (is_light(light[site])) ++site;
+    const auto width = static_cast<std::size_t>(shape.cols);
+    const std::size_t pixel = site % shape.pixels();
+    const char* problem = std::isnan(light[site])   ? "light is not a number"
+                          : std::isinf(light[site]) ? "light is infinite"
+                                                    : "light is negative";
+    throw InputError(
+        place,
+        fmt::format("row {}, column {}, plane {}: {} ({}); repair or clip the footage first",
+                    pixel / width, pixel % width, site / shape.pixels(), problem, light[site]));
+}
+
+void reduce_to_luminance(std::span<const float> rgb, std::span<float> luminance) {
+    const std::size_t pixels = luminance.size();
+    assert(rgb.size() == 3 * pixels);
+    const float* red = rgb.data();
+    const float* green = red + pixels;
+    const float* blue = green + pixels;
+    for (std::size_t i = 0; i < pixels; ++i)
+        luminance[i] = 0.2126F * red[i] + 0.7152F * green[i] + 0.0722F * blue[i];
+}
+
+}  // namespace stipple

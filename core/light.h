@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/footage_reader.h"
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// Largest frame that the sample stream can carry (docs/stream_format.md).
+inline constexpr std::uint64_t kMaxFrameSide = 65535;
+inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
+
+/// The shape of rows x cols x planes. \throws InputError at `place` unless 1 <= rows,
+/// cols <= 65535, planes is 1 or 3 and there are at most 2^28 sites.
+[[nodiscard]] FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
+                                       std::string_view place);
+
+/// Turns encoded values into light, in place. Values below 0 stay as they are.
+void linearise(std::span<float> values, Transfer transfer);
+
+/// \throws InputError naming place, row, column and plane of the first value that is NaN,
+/// infinite or negative.
+void check_light(std::span<const float> light, FrameShape shape, std::string_view place);
+
+/// Rec. 709 luminance .2126 R + .7152 G + .0722 B of `rgb` (order (plane, row, col)).
+/// Precondition: rgb.size() == 3 * luminance.size().
+void reduce_to_luminance(std::span<const float> rgb, std::span<float> luminance);
+
+}  // namespace stipple

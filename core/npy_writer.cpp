@@ -1,0 +1,38 @@
+#include "core/npy_writer.h"
+
+#include <bit>
+#include <cstddef>
+#include <string>
+
+#include "core/npy_header.h"
+
+namespace stipple {
+
+static_assert(std::endian::native == std::endian::little, ".npy data are written as they lie");
+
+NpyWriter::NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape)
+    : file_(file, std::string(place)), shape_(shape), pixels_(shape.sites()) {
+    write_header();
+}
+
+void NpyWriter::write_header() {
+    const std::string header = format_npy_header(slots_, shape_);
+    file_.write(std::as_bytes(std::span(header)));
+}
+
+void NpyWriter::write(std::span<const float> frame) {
+    const auto planes = static_cast<std::size_t>(shape_.planes);
+    for (std::size_t plane = 0; plane < planes; ++plane)
+        for (std::size_t i = 0; i < shape_.pixels(); ++i)
+            pixels_[i * planes + plane] = frame[plane * shape_.pixels() + i];
+    file_.write(std::as_bytes(std::span(pixels_)));
+    ++slots_;
+}
+
+void NpyWriter::finish() {
+    file_.seek(0);
+    write_header();
+    file_.close();
+}
+
+}  // namespace stipple

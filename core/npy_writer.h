@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/output_file.h"
+
+namespace stipple {
+
+/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame.
+class NpyWriter {
+  public:
+    /// Creates `file`; messages say `place`. \throws DeviceError.
+    NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape);
+
+    /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
+    void write(std::span<const float> frame);
+    /// Fills in the number of frames and closes the file. \throws DeviceError.
+    void finish();
+
+  private:
+    void write_header();
+
+    OutputFile file_;
+    FrameShape shape_;
+    int slots_ = 0;
+    std::vector<float> pixels_;
+};
+
+}  // namespace stipple

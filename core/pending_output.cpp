@@ -1,0 +1,112 @@
+#include "core/pending_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// The output's path without "." parts and a trailing slash.
+fs::path tidy(const fs::path& path) {
+    fs::path result = path.lexically_normal();
+    if (!result.has_filename()) result = result.parent_path();
+    const auto name = result.filename();
+    if (name.empty() || name == "." || name == "..")
+        throw InputError(fmt::format("output \"{}\"", path.string()),
+                         "names no new file or folder; give it a name");
+    return result;
+}
+
+bool is_frame_name(std::string_view name) {
+    constexpr std::string_view kPrefix = "frame_";
+    constexpr std::string_view kSuffix = ".exr";
+    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) return false;
+    if (name.size() < kPrefix.size() + 4 + kSuffix.size()) return false;
+    name.remove_prefix(kPrefix.size());
+    name.remove_suffix(kSuffix.size());
+    return std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// An entry of `folder` that is not a frame of ours, or an empty path.
+fs::path foreign_entry(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (!is_frame_name(entry.path().filename().string()) ||
+            !fs::is_regular_file(entry.symlink_status()))
+            return entry.path();
+    return {};
+}
+
+}  // namespace
+
+PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind)
+    : final_(tidy(final_path)), force_(force), kind_(kind) {
+    const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(parent, error))
+        throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
+                                                      parent.string()));
+    if (fs::exists(fs::symlink_status(final_, error))) check_replaceable();
+    partial_ = parent / fmt::format(".{}.{}.partial{}", final_.stem().string(), getpid(),
+                                    final_.extension().string());
+    fs::remove_all(partial_, error);  // left by an earlier process of the same number
+    if (kind == OutputKind::kFolder && !fs::create_directory(partial_, error))
+        throw DeviceError(final_.string(), "cannot be created: " + error.message());
+}
+
+void PendingOutput::check_replaceable() const {
+    const auto refuse = [&](const std::string& problem) {
+        throw InputError(final_.string(), problem);
+    };
+    if (!force_) refuse("exists already; give another name, or --force to replace it");
+    std::error_code error;
+    const auto status = fs::status(final_, error);
+    if (kind_ == OutputKind::kFile) {
+        if (!fs::is_regular_file(status)) refuse("is not a regular file; give another name");
+        return;
+    }
+    if (!fs::is_directory(fs::symlink_status(final_, error)))
+        refuse("is not a folder; give another name");
+    try {
+        const fs::path foreign = foreign_entry(final_);
+        if (!foreign.empty())
+            refuse(
+                fmt::format("holds \"{}\", which is not a frame written by Stipple, so the "
+                            "folder is not replaced; give another name",
+                            foreign.filename().string()));
+    } catch (const fs::filesystem_error& e) {
+        refuse("cannot be listed: " + e.code().message());
+    }
+}
+
+PendingOutput::~PendingOutput() {
+    std::error_code error;
+    if (!committed_) fs::remove_all(partial_, error);
+}
+
+void PendingOutput::remove_replaced_folder() const {
+    for (const auto& entry : fs::directory_iterator(final_))
+        if (is_frame_name(entry.path().filename().string())) fs::remove(entry.path());
+    fs::remove(final_);  // fails, and keeps them, if other files have come in since
+}
+
+void PendingOutput::commit() {
+    try {
+        const auto status = fs::symlink_status(final_);
+        if (fs::exists(status) && !force_)
+            throw DeviceError(final_.string(), "was created by another program meanwhile");
+        if (kind_ == OutputKind::kFolder && fs::is_directory(status)) remove_replaced_folder();
+        fs::rename(partial_, final_);
+    } catch (const fs::filesystem_error& e) {
+        throw DeviceError(final_.string(), "cannot be put in place: " + e.code().message());
+    }
+    committed_ = true;
+}
+
+}  // namespace stipple

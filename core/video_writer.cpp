@@ -1,0 +1,89 @@
+#include "core/video_writer.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "core/opencv_quiet.h"
+#include "core/tone_map.h"
+
+namespace stipple {
+
+struct VideoWriter::Impl {
+    std::string file;
+    std::string place;
+    FrameShape shape;
+    cv::VideoWriter video;
+    cv::Mat pixels;  ///< as tone-mapped
+    cv::Mat colour;  ///< as encoded: BGR, even size
+    int frames = 0;
+
+    [[nodiscard]] cv::Size even_size() const {
+        return {shape.cols + shape.cols % 2, shape.rows + shape.rows % 2};
+    }
+    bool open(const char (&fourcc)[5], double frames_per_second) {
+        return video.open(file, cv::CAP_FFMPEG,
+                          cv::VideoWriter::fourcc(fourcc[0], fourcc[1], fourcc[2], fourcc[3]),
+                          frames_per_second, even_size());
+    }
+    /// Frames that can be decoded from the file.
+    [[nodiscard]] int readable_frames() const {
+        cv::VideoCapture capture(file, cv::CAP_FFMPEG);
+        int count = 0;
+        while (capture.isOpened() && capture.grab()) ++count;
+        return count;
+    }
+};
+
+VideoWriter::VideoWriter(const std::filesystem::path& file, std::string_view place,
+                         FrameShape shape, double frames_per_second)
+    : impl_(std::make_unique<Impl>()) {
+    silence_opencv();
+    impl_->file = file.string();
+    impl_->place = place;
+    impl_->shape = shape;
+    impl_->pixels.create(shape.rows, shape.cols, shape.planes == 1 ? CV_8UC1 : CV_8UC3);
+    try {
+        if (impl_->open("avc1", frames_per_second) || impl_->open("mp4v", frames_per_second))
+            return;
+    } catch (const cv::Exception&) {
+        // Reported below: OpenCV's own text names no cause that a user could act on.
+    }
+    throw DeviceError(place, fmt::format("no video of {} x {} pixels at {} frames per second can "
+                                         "be created here",
+                                         shape.cols, shape.rows, frames_per_second));
+}
+
+VideoWriter::~VideoWriter() = default;
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+
+void VideoWriter::write(std::span<const float> frame) {
+    const FrameShape shape = impl_->shape;
+    tone_map_frame(frame, shape, {impl_->pixels.data, shape.sites()});
+    try {
+        cv::Mat colour = impl_->pixels;
+        if (shape.planes == 1) cv::cvtColor(impl_->pixels, colour, cv::COLOR_GRAY2BGR);
+        cv::copyMakeBorder(colour, impl_->colour, 0, shape.rows % 2, 0, shape.cols % 2,
+                           cv::BORDER_REPLICATE);
+        impl_->video.write(impl_->colour);
+    } catch (const cv::Exception& e) {
+        throw DeviceError(impl_->place, fmt::format("cannot be written: {}", e.err));
+    }
+    ++impl_->frames;
+}
+
+void VideoWriter::finish() {
+    impl_->video.release();
+    const int readable = impl_->readable_frames();
+    if (readable != impl_->frames)
+        throw DeviceError(impl_->place,
+                          fmt::format("only {} of {} frames could be written; is the disk full?",
+                                      readable, impl_->frames));
+}
+
+}  // namespace stipple

@@ -1,0 +1,164 @@
+#include "core/config.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+class ConfigTest : public testing::Test {
+  protected:
+    Config parse(std::string_view text, const Texts& overrides = {}) {
+        write_text(folder_ / "sensor.toml", text);
+        return {folder_ / "sensor.toml", overrides};
+    }
+    std::string parse_error(std::string_view text, const Texts& overrides = {}) {
+        return message_of<InputError>([&] { parse(text, overrides); });
+    }
+    static double number(Config& config) { return config.number("gain", 1, 0, 100); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(ConfigTest, ReadsEveryKindOfValueByItsDottedName) {
+    Config config = parse(
+        "gain = 2.5\nname = \"paper\"\n[adc]\nbit_depth = 10\ndither = true\n"
+        "lengths = [1, 2, 4]\nmode.kind = \"fast\"\n");
+    EXPECT_EQ(config.number("gain", 0, 0, 10), 2.5);
+    EXPECT_EQ(config.text("name", ""), "paper");
+    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 10);
+    EXPECT_TRUE(config.boolean("adc.dither", false));
+    EXPECT_EQ(config.integers("adc.lengths", {}, 1, 64), (std::vector<int>{1, 2, 4}));
+    EXPECT_EQ(config.choice("adc.mode.kind", "best", {"fast", "best"}), "fast");
+    EXPECT_NO_THROW(config.reject_unknown_keys());
+}
+
+TEST_F(ConfigTest, FallsBackForAbsentKeys) {
+    Config config = parse("");
+    EXPECT_EQ(config.number("a", 0.1, 0, 1), 0.1);
+    EXPECT_EQ(config.integer("b", 7, 0, 9), 7);
+    EXPECT_FALSE(config.boolean("c", false));
+    EXPECT_EQ(config.text("d", "text"), "text");
+    EXPECT_EQ(config.choice("e", "x", {"x", "y"}), "x");
+    EXPECT_EQ(config.integers("f", {3}, 0, 9), std::vector<int>{3});
+}
+
+TEST_F(ConfigTest, TakesAnIntegerWhereANumberIsNeeded) {
+    Config config = parse("gain = 3");
+    EXPECT_EQ(number(config), 3.0);
+}
+
+TEST_F(ConfigTest, OverridesLieOverTheFile) {
+    Config config = parse("gain = 1\n[adc]\nbit_depth = 8\n",
+                          {"gain=2.5", "adc.bit_depth=10", "adc.lengths=[1,2]", "name=paper",
+                           "quoted=\"a b\"", "on=true", "gain=7"});
+    EXPECT_EQ(number(config), 7.0);
+    EXPECT_EQ(config.integer("adc.bit_depth", 0, 1, 16), 10);
+    EXPECT_EQ(config.integers("adc.lengths", {}, 1, 64), (std::vector<int>{1, 2}));
+    EXPECT_EQ(config.text("name", ""), "paper");
+    EXPECT_EQ(config.text("quoted", ""), "a b");
+    EXPECT_TRUE(config.boolean("on", false));
+    EXPECT_NO_THROW(config.reject_unknown_keys());
+}
+
+TEST_F(ConfigTest, AnOverrideCannotSmuggleInOtherKeys) {
+    Config config = parse("", {"name=1\ngain=5"});
+    EXPECT_EQ(number(config), 1.0);
+    EXPECT_EQ(config.text("name", ""), "1\ngain=5");
+}
+
+TEST_F(ConfigTest, NamesTheLineOfASyntaxError) {
+    expect_parts(parse_error("gain = 1\nname = \n"), {"sensor.toml:2:"});
+    expect_parts(parse_error("gain = 1\ngain = 2\n"), {"sensor.toml:2:"});
+}
+
+TEST_F(ConfigTest, RefusesAFileThatIsMissingAFolderOrNoText) {
+    expect_parts(message_of<InputError>([&] { Config(folder_ / "no.toml", {}); }),
+                 {"no.toml: cannot be read", "No such file"});
+    expect_parts(message_of<InputError>([&] { Config(folder_.path(), {}); }), {"cannot be read"});
+    expect_parts(parse_error(std::string_view("\x89STP\0\xff", 6)), {"sensor.toml:1:"});
+    expect_parts(parse_error(std::string(100000, '[')), {"sensor.toml:1:"});
+}
+
+TEST_F(ConfigTest, RefusesAnOverrideWithoutKeyOrValue) {
+    for (const char* text : {"gain", "=5", "gain=", ""})
+        expect_parts(parse_error("", {text}), {std::string("--set ") + text, "key=value"});
+}
+
+TEST_F(ConfigTest, NamesPlaceAndKeyOfAWrongType) {
+    Config config = parse("\ngain = \"high\"\nbits = 8.0\nlist = [1, 2.5]\n[on]\nx = 1\n", {"t=5"});
+    const auto expect = [](const std::string& message, const char* place, const char* problem) {
+        expect_parts(message, {place, problem});
+    };
+    expect(message_of<InputError>([&] { return number(config); }),
+           "sensor.toml:2: gain: ", "needs a number, but is text");
+    expect(message_of<InputError>([&] { return config.integer("bits", 8, 1, 16); }),
+           "sensor.toml:3: bits: ", "needs an integer, but is a number");
+    expect(message_of<InputError>([&] { return config.integers("list", {}, 1, 16); }),
+           "sensor.toml:4: list: ", "needs a list of integers");
+    expect(message_of<InputError>([&] { return config.boolean("on.x", true); }),
+           "sensor.toml:6: on.x: ", "needs true or false, but is an integer");
+    expect(message_of<InputError>([&] { return config.text("t", ""); }), "--set t: ", "needs text");
+}
+
+TEST_F(ConfigTest, RefusesValuesOutOfRangeAndTakesTheEnds) {
+    for (const char* text : {"0", "100", "1e2"}) {
+        Config config = parse("", {std::string("gain=") + text});
+        EXPECT_NO_THROW(number(config));
+    }
+    for (const char* text : {"-1e-9", "100.5", "nan", "inf", "-inf"}) {
+        Config config = parse("", {std::string("gain=") + text});
+        expect_parts(message_of<InputError>([&] { return number(config); }),
+                     {"--set gain: ", "is outside 0..100"});
+    }
+    Config config = parse("bits = 17\nlist = [1, -1]\nbig = 9223372036854775807\n");
+    expect_parts(message_of<InputError>([&] { return config.integer("bits", 8, 1, 16); }),
+                 {"sensor.toml:1: bits: 17 is outside 1..16"});
+    expect_parts(message_of<InputError>([&] { return config.integers("list", {}, 0, 9); }),
+                 {"sensor.toml:2: list: -1 is outside 0..9"});
+    expect_parts(message_of<InputError>([&] { return config.integers("big", {}, 0, 9); }),
+                 {"needs a"});
+    EXPECT_EQ(config.integer("big", 0, 0, std::numeric_limits<std::int64_t>::max()),
+              std::numeric_limits<std::int64_t>::max());
+}
+
+TEST_F(ConfigTest, ListsTheChoices) {
+    Config config = parse("mode = \"papr\"");
+    expect_parts(message_of<InputError>([&] {
+                     return config.choice("mode", "x", {"paper", "physical"});
+                 }),
+                 {"sensor.toml:1: mode: \"papr\" is not one of paper, physical"});
+}
+
+TEST_F(ConfigTest, SuggestsTheNearestKnownKeyForAnUnknownOne) {
+    Config config = parse("gain = 1\n[adc]\nbit_deptj = 10\n");
+    number(config);
+    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 8);
+    expect_parts(message_of<InputError>([&] { config.reject_unknown_keys(); }),
+                 {"sensor.toml:3: adc.bit_deptj: is unknown", "\"adc.bit_depth\""});
+}
+
+TEST_F(ConfigTest, NoticesUnknownOverridesSectionsAndTablesInLists) {
+    const auto unknown = [&](std::string_view text, const Texts& overrides) {
+        Config config = parse(text, overrides);
+        number(config);
+        return message_of<InputError>([&] { config.reject_unknown_keys(); });
+    };
+    expect_parts(unknown("", {"gian=2"}), {"--set gian: is unknown", "\"gain\""});
+    expect_parts(unknown("[empty]\n", {}), {"sensor.toml:1: empty: is unknown"});
+    expect_parts(unknown("[[row]]\nx = 1\n", {}), {"sensor.toml:1: row: is unknown"});
+    expect_parts(unknown("[gain]\nx = 1\n", {}), {"sensor.toml:2: gain.x: is unknown"});
+}
+
+TEST_F(ConfigTest, RefusesAQuotedKeyThatRepeatsADottedOne) {
+    expect_parts(parse_error("\"adc.bits\" = 8\n[adc]\nbits = 10\n"), {"adc.bits: is given twice"});
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FindConfigTest : public testing::Test {
+  protected:
+    FindConfigTest() {
+        fs::create_directories(folder_ / "sensors");
+        write_text(folder_ / "sensors/tiny.toml", "");
+        write_text(folder_ / "sensors/notes.txt", "");
+        setenv("STIPPLE_CONFIG_DIR", folder_.path().c_str(), 1);
+    }
+    ~FindConfigTest() override { unsetenv("STIPPLE_CONFIG_DIR"); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(FindConfigTest, FindsANameInTheFolderOfItsKind) {
+    EXPECT_EQ(find_config("sensors", "tiny"), folder_ / "sensors/tiny.toml");
+}
+
+TEST_F(FindConfigTest, TakesAPathAsItIs) {
+    const auto path = (folder_ / "sensors/tiny.toml").string();
+    EXPECT_EQ(find_config("schedules", path), path);
+}
+
+TEST_F(FindConfigTest, RefusesAMissingPath) {
+    for (const char* name : {"no.toml", "no/tiny", "/no/tiny.toml"})
+        expect_parts(message_of<InputError>([&] { return find_config("sensors", name); }),
+                     {std::string(name) + ": there is no such file"});
+}
+
+TEST_F(FindConfigTest, ListsTheKnownNames) {
+    const auto message = message_of<InputError>([] { return find_config("sensors", "tinny"); });
+    expect_parts(message, {"\"tinny\": is neither a file nor one of the sensors: ", "tiny"});
+    EXPECT_EQ(message.find("notes"), std::string::npos);
+}
+
+TEST_F(FindConfigTest, SaysSoIfAKindHasNoFolder) {
+    expect_parts(message_of<InputError>([] { return find_config("moods", "tiny"); }),
+                 {"there is no moods/ in any configuration folder"});
+}
+
+}  // namespace
+}  // namespace stipple

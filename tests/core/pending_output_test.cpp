@@ -1,0 +1,131 @@
+#include "core/pending_output.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+TEST(PendingOutputTest, AppearsUnderItsNameOnlyWhenCommitted) {
+    const TemporaryFolder folder;
+    PendingOutput output(folder / "clip.mp4", false);
+    EXPECT_EQ(output.partial().parent_path(), folder.path());
+    EXPECT_EQ(output.partial().extension(), ".mp4");
+    write_text(output.partial(), "video");
+    EXPECT_FALSE(fs::exists(folder / "clip.mp4"));
+    output.commit();
+    EXPECT_EQ(folder.names(), Names{"clip.mp4"});
+    EXPECT_EQ(read_text(folder / "clip.mp4"), "video");
+}
+
+TEST(PendingOutputTest, LeavesNothingBehindWithoutCommit) {
+    const TemporaryFolder folder;
+    {
+        const PendingOutput file(folder / "clip.npy", false);
+        write_text(file.partial(), "half");
+        const PendingOutput frames(folder / "out", false, OutputKind::kFolder);
+        write_text(frames.partial() / "frame_0000.exr", "half");
+        EXPECT_EQ(folder.names().size(), 2U);
+    }
+    EXPECT_EQ(folder.names(), Names{});
+}
+
+TEST(PendingOutputTest, RefusesAnExistingOutputWithoutForce) {
+    const TemporaryFolder folder;
+    write_text(folder / "clip.npy", "old");
+    const auto message = message_of<InputError>([&] { PendingOutput(folder / "clip.npy", false); });
+    expect_parts(message, {"clip.npy: exists already", "--force"});
+    EXPECT_EQ(read_text(folder / "clip.npy"), "old");
+}
+
+TEST(PendingOutputTest, ForceReplacesAFileOnlyWhenCommitted) {
+    const TemporaryFolder folder;
+    write_text(folder / "clip.npy", "old");
+    { const PendingOutput abandoned(folder / "clip.npy", true); }
+    EXPECT_EQ(read_text(folder / "clip.npy"), "old");
+    PendingOutput output(folder / "clip.npy", true);
+    write_text(output.partial(), "new");
+    output.commit();
+    EXPECT_EQ(read_text(folder / "clip.npy"), "new");
+}
+
+TEST(PendingOutputTest, ForceReplacesAFolderOfOurFrames) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    write_text(folder / "out/frame_0000.exr", "old");
+    write_text(folder / "out/frame_0001.exr", "old");
+    PendingOutput output(folder / "out/", true, OutputKind::kFolder);
+    write_text(output.partial() / "frame_0000.exr", "new");
+    output.commit();
+    EXPECT_EQ(folder.names(), Names{"out"});
+    EXPECT_EQ(read_text(folder / "out/frame_0000.exr"), "new");
+    EXPECT_FALSE(fs::exists(folder / "out/frame_0001.exr"));
+}
+
+TEST(PendingOutputTest, NeverReplacesAFolderThatHoldsSomethingElse) {
+    for (const char* name : {"notes.txt", "frame_0000.png", "frame_1.exr", "frame_00a0.exr",
+                             "frame_0000.exr.bak", ".hidden"}) {
+        const TemporaryFolder folder;
+        fs::create_directory(folder / "out");
+        write_text(folder / "out/frame_0001.exr", "ours");
+        write_text(folder / "out" / name, "theirs");
+        const auto message = message_of<InputError>(
+            [&] { PendingOutput(folder / "out", true, OutputKind::kFolder); });
+        expect_parts(message, {"out: holds \"", name});
+        EXPECT_EQ(read_text(folder / "out" / name), "theirs");
+    }
+}
+
+TEST(PendingOutputTest, KeepsAFileThatComesIntoTheFolderMeanwhile) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    PendingOutput output(folder / "out", true, OutputKind::kFolder);
+    write_text(folder / "out/notes.txt", "theirs");
+    expect_parts(message_of<DeviceError>([&] { output.commit(); }),
+                 {"out: cannot be put in place"});
+    EXPECT_EQ(read_text(folder / "out/notes.txt"), "theirs");
+}
+
+TEST(PendingOutputTest, KeepsAFileThatTookTheNameMeanwhile) {
+    const TemporaryFolder folder;
+    PendingOutput output(folder / "clip.npy", false);
+    write_text(output.partial(), "ours");
+    write_text(folder / "clip.npy", "theirs");
+    expect_parts(message_of<DeviceError>([&] { output.commit(); }), {"clip.npy", "meanwhile"});
+    EXPECT_EQ(read_text(folder / "clip.npy"), "theirs");
+}
+
+TEST(PendingOutputTest, FileAndFolderDoNotReplaceEachOther) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "frames");
+    write_text(folder / "clip", "file");
+    fs::create_symlink("frames", folder / "link");
+    EXPECT_THROW(PendingOutput(folder / "frames", true), InputError);
+    EXPECT_THROW(PendingOutput(folder / "clip", true, OutputKind::kFolder), InputError);
+    EXPECT_THROW(PendingOutput(folder / "link", true, OutputKind::kFolder), InputError);
+    EXPECT_EQ(folder.names(), (Names{"clip", "frames", "link"}));
+}
+
+TEST(PendingOutputTest, NeverReplacesADevice) {
+    const auto message = message_of<InputError>([] { PendingOutput("/dev/null", true); });
+    expect_parts(message, {"/dev/null: is not a regular file"});
+}
+
+TEST(PendingOutputTest, RefusesAMissingParentFolderAndANamelessOutput) {
+    const TemporaryFolder folder;
+    expect_parts(message_of<InputError>([&] { PendingOutput(folder / "no/clip.npy", false); }),
+                 {"clip.npy: there is no folder", "/no\""});
+    write_text(folder / "file", "");
+    EXPECT_THROW(PendingOutput(folder / "file/clip.npy", false), InputError);
+    for (const char* name : {"", ".", "..", "/", "a/.."})
+        expect_parts(message_of<InputError>([&] { PendingOutput(name, true); }),
+                     {"give it a name"});
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,62 @@
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+/// A file in memory that is read through a path.
+class MemoryFile {
+  public:
+    explicit MemoryFile(const std::string& content) : descriptor_(memfd_create("config", 0)) {
+        if (write(descriptor_, content.data(), content.size()) < 0) descriptor_ = -1;
+    }
+    ~MemoryFile() { close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    [[nodiscard]] std::string path() const {
+        return "/proc/self/fd/" + std::to_string(descriptor_);
+    }
+
+  private:
+    int descriptor_;
+};
+
+void read_all_keys(Config& config) {
+    static_cast<void>(config.number("gain", 1, 0, 100));
+    static_cast<void>(config.integer("adc.bit_depth", 8, 1, 16));
+    static_cast<void>(config.boolean("adc.dither", false));
+    static_cast<void>(config.choice("mode", "paper", {"paper", "physical"}));
+    static_cast<void>(config.integers("exposure_slots", {1}, 1, 64));
+    static_cast<void>(config.text("name", ""));
+    config.reject_unknown_keys();
+}
+
+}  // namespace
+}  // namespace stipple
+
+/// Input: a TOML file; after a zero byte an override, and so on.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    std::vector<std::string> parts(1);
+    for (std::size_t i = 0; i < size; ++i)
+        if (data[i] == 0)
+            parts.emplace_back();
+        else
+            parts.back() += static_cast<char>(data[i]);
+    const stipple::MemoryFile file(parts.front());
+    parts.erase(parts.begin());
+    try {
+        stipple::Config config(file.path(), parts);
+        stipple::read_all_keys(config);
+    } catch (const stipple::InputError&) {
+    }
+    return 0;
+}
