@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "sensor_model/sample_words.h"
+#include "sensor_model/sensor_params.h"
+
+namespace stipple {
+
+/// Eq. 1 from light to charge in the numbers of the kernel.
+struct PixelLaw {
+    float electrons_per_unit;  ///< r
+    float full_well_e;         ///< w
+    float read_noise_e;        ///< sigma
+    bool shot_noise;
+};
+
+/// Charge of one sample with the given random words: the slow, obvious form.
+/// Precondition: light >= 0, not NaN.
+[[nodiscard]] float expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
+                               std::uint32_t read_word) noexcept;
+
+/// Light to charge, the inside of the paper's Eq. 1 for a list of samples:
+///
+///     electrons = min(Z, w) + V,   Z ~ Poisson(r x),   V ~ N(0, sigma^2)
+///
+/// x is the sum of flux over the exposure's slots, added in slot order (a sum of Poisson variables
+/// is Poisson, so one draw serves the exposure). The random words depend on seed, slot, plane and
+/// pixel only, never on the list's order or on what else is in it. Can be negative.
+///
+/// Not modelled: see SensorParams. Conversion to DN is the reader's part.
+class PixelArray {
+  public:
+    /// \throws InputError as `validate`.
+    PixelArray(const SensorParams& params, std::uint64_t seed);
+
+    /// `electrons[i]` of pixel `pixel[i]` (row * cols + col) that has collected `light[i]`, in
+    /// units of flux x slots. `slot` is the last slot of the exposure.
+    /// Precondition: equal lengths; light >= 0, not NaN; plane < 2^24.
+    void expose(std::span<const float> light, std::span<const std::uint32_t> pixel,
+                std::uint32_t slot, std::uint32_t plane, std::span<float> electrons) const noexcept;
+
+  private:
+    PixelLaw law_;
+    std::uint64_t seed_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/config.h"
+#include "sensor_model/sensor_params.h"
+
+namespace stipple {
+
+/// The sensor that a file of config/sensors describes; an absent key keeps its default. Other
+/// keys are left for the caller's `reject_unknown_keys`.
+/// \throws InputError naming file, line and key for a wrong type, a value outside its range, or a
+/// mode other than "paper".
+[[nodiscard]] SensorParams read_sensor(Config& config);
+
+}  // namespace stipple

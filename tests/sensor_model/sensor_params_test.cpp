@@ -1,0 +1,51 @@
+#include "sensor_model/sensor_params.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+std::string message_of(const SensorParams& params) {
+    try {
+        validate(params);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+// Section 5 of the paper: r = 1000, s = 2000, w = 20000, sigma = 10, 8 bits, 200 frames/s.
+TEST(SensorParamsTest, DefaultsAreThePapers) {
+    const SensorParams params;
+    EXPECT_EQ(params.photons_per_unit, 1000);
+    EXPECT_EQ(params.full_scale_e, 2000);
+    EXPECT_EQ(params.full_well_e, 20000);
+    EXPECT_EQ(params.read_noise_e, 10);
+    EXPECT_EQ(params.bit_depth, 8);
+    EXPECT_EQ(params.slot_us, 1e6 / 200);
+    EXPECT_EQ(message_of(params), "accepted");
+}
+
+TEST(SensorParamsTest, NamesTheParameterAndItsRange) {
+    EXPECT_EQ(message_of({.name = "mine", .bit_depth = 17}),
+              "sensor 'mine': bit_depth: 17 is outside 1 .. 16");
+    EXPECT_EQ(message_of({.read_noise_e = -1}),
+              "sensor 'paper': read_noise_e: -1 is outside 0 .. 100000");
+}
+
+TEST(SensorParamsTest, RefusesWhatIsNotAPositiveFiniteNumber) {
+    for (const double bad : {0.0, -1.0, HUGE_VAL, std::nan("")}) {
+        EXPECT_THROW(validate({.photons_per_unit = bad}), InputError) << bad;
+        EXPECT_THROW(validate({.full_scale_e = bad}), InputError) << bad;
+        EXPECT_THROW(validate({.full_well_e = bad}), InputError) << bad;
+        EXPECT_THROW(validate({.slot_us = bad}), InputError) << bad;
+    }
+    EXPECT_NO_THROW(validate({.read_noise_e = 0}));
+}
+
+}  // namespace
+}  // namespace stipple
