@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// The embedded scenes; docs/scenes.md shows what is in each of them.
+enum class SceneName {
+    kPan,      ///< a street at dusk passing by: large camera motion over depth
+    kRoll,     ///< discs with fine texture rolling on a textured ground
+    kPencils,  ///< many thin coloured things, each moving its own way
+    kDice,     ///< fast, complex rotation: cubes tumbling over a board
+    kStill,    ///< small motion; a bright window and deep shadow
+};
+
+/// `pan`, `roll`, `pencils`, `dice`, `still`. \throws InputError listing these names.
+[[nodiscard]] SceneName scene_from_name(std::string_view name);
+
+struct SceneOptions {
+    int slots = 48;                                           ///< 1..1 000 000
+    FrameShape shape{.rows = 240, .cols = 320, .planes = 3};  ///< 8..4096 each way; 1 or 3 planes
+    std::uint64_t seed = 1;    ///< textures, colours and arrangement; the motion stays alike
+    double slot_duration = 1;  ///< in 1/200 s, for which the speeds are made; 0.01..8
+    int time_samples = 8;      ///< per 1/200 s and 240 rows, 1..64; 8 keeps steps below a pixel
+};
+
+/// A synthetic HDR scene in linear light, 1.0 = the sensor's `photons_per_unit`. A frame is the
+/// integral over its whole slot and over the whole area of each pixel, by stratified samples.
+/// At least 14 stops between the darkest 0.1 % and the brightest site; mean 0.2..0.4.
+/// The first slots of a longer scene are a shorter one. One plane means Rec. 709 luminance.
+class Scene {
+  public:
+    /// \throws InputError naming the option that is out of range.
+    explicit Scene(SceneName name, const SceneOptions& options = {});
+    ~Scene();
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+
+    [[nodiscard]] const SceneOptions& options() const;
+
+    /// Writes the light of one slot, order (plane, row, col), into `frame` (shape.sites() floats).
+    /// The same bits for any thread count, in any order of slots, with any compiler.
+    /// Precondition: 0 <= slot < options().slots.
+    void render(int slot, std::span<float> frame) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple
