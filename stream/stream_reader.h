@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ class StreamReader {
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
+    /// Slots in the file, where a good index at its end tells.
+    [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the
     /// file is still being written, a later call may succeed. \throws InputError (kStrict only).

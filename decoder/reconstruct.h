@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "stream/stream_reader.h"
+
+namespace stipple {
+
+enum class DecodeMethod {
+    kNaive,  ///< each pixel holds its nearest samples; no model of the scene
+    kFast,   ///< motion-compensated total variation
+};
+
+/// `naive` or `fast`. \throws InputError listing these names.
+[[nodiscard]] DecodeMethod decode_method_from_name(std::string_view name);
+
+/// Takes the frames of a decoded video in slot order; order (plane, row, col), units of
+/// FluxVideo. Returns false to stop decoding.
+using FrameSink = std::function<bool(std::int64_t slot, std::span<const float> frame)>;
+
+struct DecodeReport {
+    std::int64_t slots = 0;          ///< frames delivered
+    std::uint64_t voxels = 0;        ///< slots x planes x rows x cols
+    double seconds = 0;              ///< wall time, the sink's included
+    std::uint64_t working_bytes = 0;  ///< most memory held for voxels of a block at a time
+};
+
+/// Decodes a stream from where its reader stands (its beginning), block by block: memory does not
+/// grow with the length of the stream. The same bits for any thread count. Samples that are
+/// missing or damaged count as unobserved; `reader.report()` says which.
+/// \throws InputError as StreamReader::next, or if the method cannot decode the schedule.
+DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink);
+
+}  // namespace stipple

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/exposure_schedule.h"
+#include "core/geometry.h"
+#include "sensor_model/sensor_params.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// What the emulated chip has done so far.
+struct ReadoutStats {
+    std::int64_t slots = 0;
+    std::uint64_t samples = 0;
+    std::uint64_t saturated_samples = 0;  ///< DN at full scale
+};
+
+/// What the stream says of a sensor: Eq. 1 as gain, noise and full well.
+[[nodiscard]] Calibration calibration_of(const SensorParams& params);
+
+/// The emulated chip: collects light slot by slot and reads, at the end of each slot, the pixels
+/// that are due, in scan order.
+class CodedSensor {
+  public:
+    /// `schedule` must outlive the sensor. \throws InputError as `validate`, or if the shape is
+    /// empty.
+    CodedSensor(const SensorParams& params, FrameShape shape, const ExposureSchedule& schedule,
+                std::uint64_t seed);
+    ~CodedSensor();
+    CodedSensor(CodedSensor&&) noexcept;
+    CodedSensor& operator=(CodedSensor&&) noexcept;
+
+    /// Exposes the next slot to `frame` (order (plane, row, col), units of FluxVideo) and fills
+    /// `packet` with the samples that are due at its end. The same bits for any thread count.
+    /// Precondition: frame.size() == shape.sites(), light >= 0 and not NaN.
+    void expose(std::span<const float> frame, SamplePacket& packet);
+
+    [[nodiscard]] const ReadoutStats& stats() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple
