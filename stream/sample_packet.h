@@ -16,6 +16,8 @@ struct SamplePacket {
     int rows = 0;
     std::uint8_t flags = 0;
     std::vector<std::uint16_t> dn;
+
+    bool operator==(const SamplePacket&) const = default;
 };
 
 }  // namespace stipple

@@ -44,6 +44,8 @@ struct StreamHeader {
     ScheduleSource schedule_source;
     std::string schedule_name;  ///< for people, at most 64 bytes of UTF-8
     std::string provenance;     ///< TOML text: emulator parameters, seed, footage; may be empty
+
+    bool operator==(const StreamHeader&) const = default;
 };
 
 }  // namespace stipple

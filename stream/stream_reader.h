@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -25,12 +26,18 @@ struct StreamDamage {
 };
 
 struct StreamReport {
+    static constexpr std::size_t kMaxListedDamage = 1000;
+
     std::uint64_t packets = 0;
     std::uint64_t samples = 0;
     std::uint64_t payload_bits = 0;
-    std::int64_t slots = 0;          ///< 1 + the largest slot number seen
-    std::int64_t missing_slots = 0;  ///< slots below `slots` with rows in no good packet
+    /// 1 + the slot of the last packet, or the number in the index once it was read. Up to 2^53 in
+    /// a crafted file: no measure for memory or time.
+    std::int64_t slots = 0;
+    std::int64_t missing_slots = 0;  ///< with rows that are missing before the last packet read
+    std::uint64_t tail_bytes = 0;    ///< of a packet that the file ends in the midst of
     std::vector<StreamDamage> damage;
+    std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };
 
 /// Reads a sample stream packet by packet (docs/stream_format.md). Memory: one packet.
@@ -45,11 +52,14 @@ class StreamReader {
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
-    /// Slots in the file, where a good index at its end tells.
+    /// Number of slots in the recording, known at once if a good index at the end of the file says
+    /// so (then below the bytes of the file / 36, since each slot takes a packet); nothing if the
+    /// recording was interrupted, goes on, or comes through a pipe.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the
-    /// file is still being written, a later call may succeed. \throws InputError (kStrict only).
+    /// file is still being written, a later call may succeed. \throws InputError (kStrict only;
+    /// and if the file cannot be read).
     bool next(SamplePacket& packet);
 
     /// What has been read so far.

@@ -1,27 +1,34 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
 
-/// Writes a sample stream, append-only: every prefix is a valid stream up to its last whole packet.
+/// Writes a sample stream, append-only: every prefix is a valid stream up to its last whole packet,
+/// and each packet can be read as soon as `write` returns.
 class StreamWriter {
   public:
-    /// Creates the file and writes the header. \throws InputError if a header field is outside its
-    /// limits, DeviceError if the file cannot be written.
-    StreamWriter(const std::filesystem::path& file, const StreamHeader& header);
+    /// Creates the file and writes the header. Messages call the output `place` (default: the
+    /// path), for a file that is renamed when it is complete. \throws InputError if a header field
+    /// is outside its limits, DeviceError if the file cannot be written.
+    StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
+                 std::string place = {});
     ~StreamWriter();
     StreamWriter(const StreamWriter&) = delete;
     StreamWriter& operator=(const StreamWriter&) = delete;
 
-    /// Appends a packet. Precondition: `dn` holds what the schedule predicts for its slot and rows
-    /// (or nothing, if dropped), each below 2^bit_depth. \throws DeviceError (full disk).
+    /// Appends a packet. Precondition: packets come by slot from 0 on and by row, without gaps;
+    /// `dn` holds what the schedule predicts for its slot and rows (or nothing, if dropped), each
+    /// below 2^bit_depth. \throws DeviceError (full disk).
     void write(const SamplePacket& packet);
-    /// Writes the index and closes. \throws DeviceError.
+    /// Drops the rows that the last slot still misses, writes the index and closes; nothing may be
+    /// written after. \throws DeviceError.
     void finish();
 
     [[nodiscard]] std::uint64_t bytes_written() const;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace stipple {
+
+/// A new file that grows at its end; each block of bytes is visible to readers at once.
+class AppendFile {
+  public:
+    /// Creates `file`, or empties it. Messages say `place`.
+    /// All members \throws DeviceError naming `place` (a full disk, say).
+    AppendFile(const std::filesystem::path& file, std::string place);
+    ~AppendFile();
+    AppendFile(const AppendFile&) = delete;
+    AppendFile& operator=(const AppendFile&) = delete;
+
+    void append(std::span<const std::uint8_t> bytes);
+    void close();
+
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+
+  private:
+    [[noreturn]] void fail() const;
+
+    std::string place_;
+    int descriptor_;
+    std::uint64_t bytes_ = 0;
+};
+
+}  // namespace stipple

@@ -1,0 +1,85 @@
+#include "stream/file_window.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kStepBytes = std::size_t{1} << 18U;
+
+}  // namespace
+
+FileWindow::FileWindow(const std::filesystem::path& file)
+    : place_(file.string()), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) fail();
+}
+
+FileWindow::~FileWindow() {
+    ::close(descriptor_);
+}
+
+std::span<const std::uint8_t> FileWindow::peek(std::size_t bytes) {
+    while (end_ - begin_ < bytes) {
+        // No more than doubles what is there: a length is only a claim until the bytes come.
+        const std::size_t missing = bytes - (end_ - begin_);
+        make_room(std::max(kStepBytes, std::min(missing, end_ - begin_)));
+        const auto got = ::read(descriptor_, buffer_.data() + end_, buffer_.size() - end_);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) fail();
+        if (got == 0) break;
+        end_ += static_cast<std::size_t>(got);
+    }
+    return std::span(buffer_).subspan(begin_, std::min(bytes, end_ - begin_));
+}
+
+void FileWindow::make_room(std::size_t bytes) {
+    if (buffer_.size() - end_ >= bytes) return;
+    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
+              buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
+    end_ -= begin_;
+    begin_ = 0;
+    if (buffer_.size() - end_ < bytes) buffer_.resize(end_ + bytes);
+}
+
+void FileWindow::skip(std::size_t bytes) {
+    assert(bytes <= end_ - begin_);
+    begin_ += bytes;
+    offset_ += bytes;
+}
+
+std::optional<std::uint64_t> FileWindow::file_bytes() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    return static_cast<std::uint64_t>(status.st_size);
+}
+
+std::optional<std::vector<std::uint8_t>> FileWindow::read_at(std::uint64_t offset,
+                                                             std::size_t bytes) const {
+    const auto length = file_bytes();
+    if (!length || offset > *length || *length - offset < bytes) return std::nullopt;
+    std::vector<std::uint8_t> result(bytes);
+    for (std::size_t done = 0; done < bytes;) {
+        const auto got = ::pread(descriptor_, result.data() + done, bytes - done,
+                                 static_cast<off_t>(offset + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) fail();
+        if (got == 0) return std::nullopt;
+        done += static_cast<std::size_t>(got);
+    }
+    return result;
+}
+
+void FileWindow::fail() const {
+    throw InputError(place_, "cannot be read: " + std::generic_category().message(errno));
+}
+
+}  // namespace stipple

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+/// A file, or a pipe, read from front to back through a window of memory. It is read rather than
+/// mapped, so that a file that another program cuts short, or a failing disk, is an error or an
+/// end and not a SIGBUS.
+class FileWindow {
+  public:
+    /// \throws InputError naming the file if it cannot be opened.
+    explicit FileWindow(const std::filesystem::path& file);
+    ~FileWindow();
+    FileWindow(const FileWindow&) = delete;
+    FileWindow& operator=(const FileWindow&) = delete;
+
+    /// Offset in the file of the first byte of the window.
+    [[nodiscard]] std::uint64_t offset() const { return offset_; }
+    /// The next `bytes` bytes, or fewer at the end of the file; there may be more later. They are
+    /// valid until the next call. Memory is taken only for bytes that the file really has.
+    /// \throws InputError if the file cannot be read.
+    [[nodiscard]] std::span<const std::uint8_t> peek(std::size_t bytes);
+    /// Moves on. Precondition: `bytes` bytes have been peeked at.
+    void skip(std::size_t bytes);
+
+    /// Length of the file; nothing if it is a pipe.
+    [[nodiscard]] std::optional<std::uint64_t> file_bytes() const;
+    /// `bytes` bytes at `offset`, or nothing if the file does not have them. The window stays.
+    [[nodiscard]] std::optional<std::vector<std::uint8_t>> read_at(std::uint64_t offset,
+                                                                   std::size_t bytes) const;
+
+  private:
+    [[noreturn]] void fail() const;
+    void make_room(std::size_t bytes);
+
+    std::string place_;
+    int descriptor_;
+    std::uint64_t offset_ = 0;
+    std::vector<std::uint8_t> buffer_;
+    std::size_t begin_ = 0;  ///< the window is buffer_[begin_ .. end_)
+    std::size_t end_ = 0;
+};
+
+}  // namespace stipple

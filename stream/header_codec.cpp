@@ -1,0 +1,250 @@
+#include "stream/header_codec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "core/error.h"
+#include "stream/crc32c.h"
+#include "stream/little_endian.h"
+#include "stream/plain_text.h"
+#include "stream/schedule_codec.h"
+
+namespace stipple {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'P', 'L', '\r', '\n', 0x1A};
+constexpr std::uint16_t kVersion = 1;
+constexpr std::size_t kFixedBytes = 92;
+constexpr std::size_t kCrcBytes = 4;
+constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxProvenanceBytes = std::size_t{1} << 20U;
+constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
+constexpr std::size_t kMaxHeaderBytes =
+    kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes + kMaxScheduleBytes + kCrcBytes;
+
+[[noreturn]] void fail_at(std::string_view place, std::size_t offset, std::string_view problem) {
+    throw InputError(fmt::format("{}: byte {}", place, offset), problem);
+}
+
+/// A number of the header and the values it may have.
+struct Field {
+    std::size_t offset;
+    const char* name;
+    double least;
+    double most;
+};
+
+constexpr Field kHeaderLength{12, "header bytes", kFixedBytes + kCrcBytes, kMaxHeaderBytes};
+constexpr Field kRows{16, "rows", 1, 65535};
+constexpr Field kCols{18, "columns", 1, 65535};
+constexpr Field kPlanes{20, "planes", 1, 4};
+constexpr Field kSites{16, "rows x columns x planes", 1, 1U << 28U};
+constexpr Field kColourFilter{21, "colour filter array", 0, 0};
+constexpr Field kBitDepth{22, "bit depth", 1, 16};
+constexpr Field kRounding{23, "rounding", 0, 1};
+constexpr Field kSlotDuration{24, "slot duration in us", 1e-12, 1e12};
+constexpr Field kBlackLevel{32, "black level in DN", 0, 65535};
+constexpr Field kGain{40, "gain in electrons per DN", 1e-12, 1e12};
+constexpr Field kReadNoise{48, "read noise in electrons", 0, 1e12};
+constexpr Field kFullWell{56, "full well in electrons", 1e-12, 1e12};
+constexpr Field kElectronsPerUnit{64, "electrons of flux 1.0 in a slot", 1e-12, 1e12};
+constexpr Field kNameBytes{72, "bytes of the schedule name", 0, kMaxNameBytes};
+constexpr Field kProvenanceBytes{76, "bytes of the provenance text", 0, kMaxProvenanceBytes};
+constexpr Field kScheduleBytes{80, "bytes of the schedule section", 1, kMaxScheduleBytes};
+constexpr Field kScheduleKind{84, "schedule kind", 0, 1};
+constexpr std::size_t kScheduleCrc = 88;
+
+/// Bytes that must be zero.
+constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {85, 3}};
+
+void check(const Field& field, double value, std::string_view place) {
+    if (value >= field.least && value <= field.most) return;  // false for NaN
+    fail_at(place, field.offset,
+            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.least,
+                        field.most));
+}
+
+/// The part of a header that is numbers.
+struct Numbers {
+    FrameShape shape;
+    double slot_us = 0;
+    Calibration calibration;
+};
+
+void check(const Numbers& numbers, std::string_view place) {
+    const auto& [shape, slot_us, calibration] = numbers;
+    check(kRows, shape.rows, place);
+    check(kCols, shape.cols, place);
+    check(kPlanes, shape.planes, place);
+    check(kSites, static_cast<double>(shape.sites()), place);
+    check(kBitDepth, calibration.bit_depth, place);
+    check(kRounding, static_cast<int>(calibration.rounding), place);
+    check(kSlotDuration, slot_us, place);
+    check(kBlackLevel, calibration.black_level_dn, place);
+    check(kGain, calibration.gain_e_per_dn, place);
+    check(kReadNoise, calibration.read_noise_e, place);
+    check(kFullWell, calibration.full_well_e, place);
+    check(kElectronsPerUnit, calibration.electrons_per_unit, place);
+}
+
+void check_texts(std::string_view name, std::string_view provenance, std::string_view place) {
+    check(kNameBytes, static_cast<double>(name.size()), place);
+    check(kProvenanceBytes, static_cast<double>(provenance.size()), place);
+    if (!is_plain_text(name, false))
+        fail_at(place, kFixedBytes, "schedule name is not UTF-8 without control characters");
+    if (!is_plain_text(provenance, true))
+        fail_at(place, kFixedBytes + name.size(),
+                "provenance text is not UTF-8 without control characters");
+}
+
+template <Stored T>
+T load_at(Bytes header, const Field& field) {
+    return load<T>(&header[field.offset]);
+}
+
+Numbers load_numbers(Bytes header) {
+    Numbers numbers;
+    numbers.shape = {load_at<std::uint16_t>(header, kRows), load_at<std::uint16_t>(header, kCols),
+                     load_at<std::uint8_t>(header, kPlanes)};
+    numbers.slot_us = load_at<double>(header, kSlotDuration);
+    Calibration& calibration = numbers.calibration;
+    calibration.bit_depth = load_at<std::uint8_t>(header, kBitDepth);
+    calibration.rounding = static_cast<Rounding>(load_at<std::uint8_t>(header, kRounding));
+    calibration.black_level_dn = load_at<double>(header, kBlackLevel);
+    calibration.gain_e_per_dn = load_at<double>(header, kGain);
+    calibration.read_noise_e = load_at<double>(header, kReadNoise);
+    calibration.full_well_e = load_at<double>(header, kFullWell);
+    calibration.electrons_per_unit = load_at<double>(header, kElectronsPerUnit);
+    return numbers;
+}
+
+/// Appends bytes 16..71.
+void append_numbers(std::vector<std::uint8_t>& bytes, const Numbers& numbers) {
+    const auto& [shape, slot_us, calibration] = numbers;
+    append(bytes, static_cast<std::uint16_t>(shape.rows));
+    append(bytes, static_cast<std::uint16_t>(shape.cols));
+    append(bytes, static_cast<std::uint8_t>(shape.planes));
+    append(bytes, std::uint8_t{0});
+    append(bytes, static_cast<std::uint8_t>(calibration.bit_depth));
+    append(bytes, static_cast<std::uint8_t>(calibration.rounding));
+    for (const double value :
+         {slot_us, calibration.black_level_dn, calibration.gain_e_per_dn, calibration.read_noise_e,
+          calibration.full_well_e, calibration.electrons_per_unit})
+        append(bytes, value);
+}
+
+void check_reserved(Bytes header, std::string_view place) {
+    check(kColourFilter, load_at<std::uint8_t>(header, kColourFilter), place);
+    for (const auto& [offset, bytes] : kReserved)
+        for (std::size_t at = offset; at < offset + bytes; ++at)
+            if (header[at] != 0) fail_at(place, at, "reserved byte is not zero");
+}
+
+/// The three parts after the fixed one.
+struct Parts {
+    std::string_view name;
+    std::string_view provenance;
+    Bytes schedule;
+};
+
+Parts split(Bytes header, std::string_view place) {
+    std::size_t at = kFixedBytes;
+    const auto part = [&](const Field& length) {
+        const auto bytes = load_at<std::uint32_t>(header, length);
+        check(length, bytes, place);
+        if (bytes > header.size() - kCrcBytes - at)
+            fail_at(place, length.offset,
+                    fmt::format("{} {} exceeds the header", length.name, bytes));
+        at += bytes;
+        return header.subspan(at - bytes, bytes);
+    };
+    const auto text = [](Bytes bytes) {
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    const std::string_view name = text(part(kNameBytes));
+    const std::string_view provenance = text(part(kProvenanceBytes));
+    const Bytes schedule = part(kScheduleBytes);
+    if (at != header.size() - kCrcBytes)
+        fail_at(place, kHeaderLength.offset, "header bytes are not the sum of its parts");
+    return {name, provenance, schedule};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view place) {
+    const Numbers numbers{header.shape, header.slot_us, header.calibration};
+    check(numbers, place);
+    check_texts(header.schedule_name, header.provenance, place);
+    const auto schedule = encode_schedule(header, place);
+    check(kScheduleBytes, static_cast<double>(schedule.size()), place);
+
+    std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
+    append(bytes, kVersion);
+    append(bytes, std::uint16_t{0});
+    append(bytes,
+           static_cast<std::uint32_t>(kFixedBytes + header.schedule_name.size() +
+                                      header.provenance.size() + schedule.size() + kCrcBytes));
+    append_numbers(bytes, numbers);
+    append(bytes, static_cast<std::uint32_t>(header.schedule_name.size()));
+    append(bytes, static_cast<std::uint32_t>(header.provenance.size()));
+    append(bytes, static_cast<std::uint32_t>(schedule.size()));
+    append(bytes, static_cast<std::uint32_t>(header.schedule_source.kind));  // and 3 reserved
+    append(bytes, schedule_crc(header.schedule));
+    bytes.insert(bytes.end(), header.schedule_name.begin(), header.schedule_name.end());
+    bytes.insert(bytes.end(), header.provenance.begin(), header.provenance.end());
+    bytes.insert(bytes.end(), schedule.begin(), schedule.end());
+    append(bytes, crc32c(bytes));
+    return bytes;
+}
+
+std::size_t header_bytes(Bytes start, std::string_view place) {
+    const auto magic = start.first(std::min(start.size(), kMagic.size()));
+    if (start.empty()) fail_at(place, 0, "the file is empty");
+    if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) {
+        const bool ours = start.size() > 4 && std::equal(&kMagic[1], &kMagic[5], &start[1]);
+        fail_at(place, 0,
+                ours ? "this sample stream was changed by a text-mode transfer; copy it as binary"
+                     : "this is not a sample stream (.stipple)");
+    }
+    if (start.size() < kHeaderStartBytes)
+        fail_at(place, start.size(), "the file ends within its header");
+    const auto version = load<std::uint16_t>(&start[8]);
+    if (version != kVersion)
+        fail_at(place, 8,
+                fmt::format("version {} of the sample stream; this program reads version {}",
+                            version, kVersion));
+    const auto bytes = load_at<std::uint32_t>(start, kHeaderLength);
+    check(kHeaderLength, bytes, place);
+    return bytes;
+}
+
+StreamHeader decode_header(Bytes header, std::string_view place) {
+    const std::size_t crc_offset = header.size() - kCrcBytes;
+    if (crc32c(header.first(crc_offset)) != load<std::uint32_t>(&header[crc_offset]))
+        fail_at(place, crc_offset, "the header is damaged (CRC mismatch); get another copy");
+    check_reserved(header, place);
+    const Numbers numbers = load_numbers(header);
+    check(numbers, place);
+    const auto kind = load_at<std::uint8_t>(header, kScheduleKind);
+    check(kScheduleKind, kind, place);
+    const Parts parts = split(header, place);
+    check_texts(parts.name, parts.provenance, place);
+    auto stored = decode_schedule(ScheduleSource::Kind{kind}, parts.schedule, numbers.shape,
+                                  crc_offset - parts.schedule.size(), place);
+    if (schedule_crc(stored.schedule) != load<std::uint32_t>(&header[kScheduleCrc]))
+        fail_at(place, kScheduleCrc, "the schedule is not the one that was recorded");
+    return {numbers.shape,
+            numbers.slot_us,
+            numbers.calibration,
+            std::move(stored.schedule),
+            std::move(stored.source),
+            std::string(parts.name),
+            std::string(parts.provenance)};
+}
+
+}  // namespace stipple

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// Bytes of a file that tell how long its header is.
+inline constexpr std::size_t kHeaderStartBytes = 16;
+
+/// The bytes of a header. \throws InputError at `place` if a field is outside its limits.
+[[nodiscard]] std::vector<std::uint8_t> encode_header(const StreamHeader& header,
+                                                      std::string_view place);
+
+/// Length of a header, by the first `kHeaderStartBytes` bytes of a file, or all if it has fewer.
+/// \throws InputError naming file and offset if it is no sample stream or of an unknown version.
+[[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view place);
+
+/// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
+/// \throws InputError naming file and offset.
+[[nodiscard]] StreamHeader decode_header(std::span<const std::uint8_t> header,
+                                         std::string_view place);
+
+}  // namespace stipple

@@ -1,0 +1,99 @@
+#include "stream/packet_codec.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "stream/crc32c.h"
+#include "stream/little_endian.h"
+
+namespace stipple {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+using SyncWord = std::array<std::uint8_t, 4>;
+
+constexpr SyncWord kPacketSync{0xC5, 'S', 'P', 'K'};
+constexpr SyncWord kEndSync{0xC5, 'E', 'N', 'D'};
+
+/// True if `bytes` begin like `sync`, as far as they go.
+bool begins_like(Bytes bytes, const SyncWord& sync) {
+    const auto common = static_cast<std::ptrdiff_t>(std::min(bytes.size(), sync.size()));
+    return std::equal(sync.begin(), sync.begin() + common, bytes.begin());
+}
+
+/// True if the last four of `size` bytes are the CRC of those before.
+bool crc_is_good(Bytes bytes, std::size_t size) {
+    return crc32c(bytes.first(size - 4)) == load<std::uint32_t>(&bytes[size - 4]);
+}
+
+}  // namespace
+
+void frame_packet(PacketHeader header, std::span<std::uint8_t> packet) {
+    const auto payload = packet.subspan(kPacketHeaderBytes);
+    std::copy(kPacketSync.begin(), kPacketSync.end(), packet.begin());
+    packet[4] = static_cast<std::uint8_t>(header.kind);
+    packet[5] = header.flags;
+    store(&packet[6], header.reserved);
+    store(&packet[8], header.slot);
+    store(&packet[16], header.first_row);
+    store(&packet[18], header.rows);
+    store(&packet[20], header.samples);
+    store(&packet[24], static_cast<std::uint32_t>(payload.size()));
+    store(&packet[28], crc32c(payload));
+    store(&packet[32], crc32c(packet.first(32)));
+}
+
+PacketHeader decode_packet_header(Bytes bytes) {
+    PacketHeader header;
+    header.kind = PacketKind{bytes[4]};
+    header.flags = bytes[5];
+    header.reserved = load<std::uint16_t>(&bytes[6]);
+    header.slot = load<std::uint64_t>(&bytes[8]);
+    header.first_row = load<std::uint16_t>(&bytes[16]);
+    header.rows = load<std::uint16_t>(&bytes[18]);
+    header.samples = load<std::uint32_t>(&bytes[20]);
+    header.payload_bytes = load<std::uint32_t>(&bytes[24]);
+    header.payload_crc = load<std::uint32_t>(&bytes[28]);
+    return header;
+}
+
+std::array<std::uint8_t, kEndMarkerBytes> encode_end_marker(std::uint64_t index_offset) {
+    std::array<std::uint8_t, kEndMarkerBytes> marker{};
+    std::copy(kEndSync.begin(), kEndSync.end(), marker.begin());
+    store(&marker[4], index_offset);
+    store(&marker[12], crc32c(std::span(marker).first(12)));
+    return marker;
+}
+
+std::uint64_t decode_end_marker(Bytes bytes) {
+    return load<std::uint64_t>(&bytes[4]);
+}
+
+Start start_of(Bytes bytes) {
+    if (begins_like(bytes, kPacketSync)) {
+        if (bytes.size() < kPacketHeaderBytes) return Start::kCut;
+        if (!crc_is_good(bytes, kPacketHeaderBytes)) return Start::kBadCrc;
+        const bool too_large = decode_packet_header(bytes).payload_bytes > kMaxPayloadBytes;
+        return too_large ? Start::kTooLarge : Start::kPacket;
+    }
+    if (begins_like(bytes, kEndSync)) {
+        if (bytes.size() < kEndMarkerBytes) return Start::kCut;
+        return crc_is_good(bytes, kEndMarkerBytes) ? Start::kEnd : Start::kBadCrc;
+    }
+    return Start::kNoSync;
+}
+
+std::size_t find_start(Bytes bytes) {
+    std::size_t at = 0;
+    while (at < bytes.size()) {
+        const void* found = std::memchr(&bytes[at], kPacketSync[0], bytes.size() - at);
+        if (found == nullptr) break;
+        at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+        const Start start = start_of(bytes.subspan(at));
+        if (start == Start::kPacket || start == Start::kEnd) return at;
+        ++at;
+    }
+    return bytes.size();
+}
+
+}  // namespace stipple

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stipple {
+
+// The frames around payloads, as bytes (docs/stream_format.md, "Packet" and "End marker").
+
+inline constexpr std::size_t kPacketHeaderBytes = 36;
+inline constexpr std::size_t kEndMarkerBytes = 16;
+inline constexpr std::uint32_t kMaxPayloadBytes = 1U << 29U;
+inline constexpr std::uint64_t kMaxSlot = (std::uint64_t{1} << 53U) - 1;
+
+enum class PacketKind : std::uint8_t { kSamples = 1, kAddressed = 2, kIndex = 3 };
+
+/// The numbers of a packet header, unchecked.
+struct PacketHeader {
+    PacketKind kind = PacketKind::kSamples;
+    std::uint8_t flags = 0;
+    std::uint16_t reserved = 0;
+    std::uint64_t slot = 0;
+    std::uint16_t first_row = 0;
+    std::uint16_t rows = 0;
+    std::uint32_t samples = 0;
+    std::uint32_t payload_bytes = 0;
+    std::uint32_t payload_crc = 0;
+};
+
+/// Fills the first kPacketHeaderBytes of `packet`, whose payload is in place: its length and CRC
+/// are set here.
+void frame_packet(PacketHeader header, std::span<std::uint8_t> packet);
+/// Precondition: `start` of these bytes is kPacket.
+[[nodiscard]] PacketHeader decode_packet_header(std::span<const std::uint8_t> bytes);
+
+[[nodiscard]] std::array<std::uint8_t, kEndMarkerBytes> encode_end_marker(
+    std::uint64_t index_offset);
+/// Precondition: `start` of these bytes is kEnd.
+[[nodiscard]] std::uint64_t decode_end_marker(std::span<const std::uint8_t> bytes);
+
+/// What a stretch of a file begins with.
+enum class Start {
+    kPacket,    ///< a packet header with a good CRC, whose payload is not too long
+    kEnd,       ///< an end marker with a good CRC
+    kCut,       ///< one of the two, but the bytes end within it
+    kNoSync,    ///< neither
+    kBadCrc,    ///< a sync word with a wrong CRC
+    kTooLarge,  ///< a packet header with a payload beyond its limit
+};
+[[nodiscard]] Start start_of(std::span<const std::uint8_t> bytes);
+
+/// Position of the first whole packet header or end marker with a good CRC; bytes.size() if none.
+[[nodiscard]] std::size_t find_start(std::span<const std::uint8_t> bytes);
+
+}  // namespace stipple

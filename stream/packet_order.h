@@ -1,0 +1,41 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+
+namespace stipple {
+
+/// A row of a slot. Sample packets come by slot, then by row.
+struct StreamPosition {
+    std::int64_t slot = 0;
+    int row = 0;
+    auto operator<=>(const StreamPosition&) const = default;
+};
+
+/// Follows the sample packets of a stream and notices what is missing between them.
+class PacketOrder {
+  public:
+    explicit PacketOrder(int array_rows) : array_rows_(array_rows) {}
+
+    /// Where the next packet begins if nothing is missing.
+    [[nodiscard]] StreamPosition expected() const { return expected_; }
+    /// Goes to `next`, and counts slots with rows that were skipped over.
+    /// Precondition: next >= expected().
+    void skip_to(StreamPosition next);
+    /// Goes on by `rows` rows of a slot. Precondition: there are as many.
+    void advance(int rows);
+
+    /// Slots of which rows were skipped over.
+    [[nodiscard]] std::int64_t missing_slots() const { return missing_slots_; }
+    /// "slot 3 from row 4 to slot 5 row 7 is missing": what `skip_to(next)` would skip over.
+    [[nodiscard]] std::string missing_before(StreamPosition next) const;
+
+  private:
+    int array_rows_;
+    StreamPosition expected_;
+    std::int64_t missing_slots_ = 0;
+    std::int64_t counted_ = 0;  ///< slots below are counted if they miss rows
+};
+
+}  // namespace stipple

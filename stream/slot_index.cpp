@@ -1,0 +1,34 @@
+#include "stream/slot_index.h"
+
+#include <algorithm>
+
+#include "stream/little_endian.h"
+
+namespace stipple {
+
+void SlotIndex::add(IndexEntry entry) {
+    if (entry.slot % stride_ != 0) return;
+    if (entries_.size() == most_) {
+        stride_ *= 2;
+        std::erase_if(entries_, [&](const IndexEntry& old) { return old.slot % stride_ != 0; });
+        if (entry.slot % stride_ != 0) return;
+    }
+    entries_.push_back(entry);
+}
+
+void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> payload) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        store(&payload[i * kIndexEntryBytes], entries[i].slot);
+        store(&payload[i * kIndexEntryBytes + 8], entries[i].offset);
+    }
+}
+
+std::vector<IndexEntry> load_index(std::span<const std::uint8_t> payload) {
+    std::vector<IndexEntry> entries(payload.size() / kIndexEntryBytes);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        entries[i] = {load<std::uint64_t>(&payload[i * kIndexEntryBytes]),
+                      load<std::uint64_t>(&payload[i * kIndexEntryBytes + 8])};
+    return entries;
+}
+
+}  // namespace stipple

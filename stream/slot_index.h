@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stipple {
+
+/// Where a slot begins in the file.
+struct IndexEntry {
+    std::uint64_t slot = 0;
+    std::uint64_t offset = 0;
+};
+
+inline constexpr std::size_t kIndexEntryBytes = 16;
+
+/// Remembers where slots begin in a file of any length: beyond `most` entries it keeps every
+/// second one only, then every fourth ...
+class SlotIndex {
+  public:
+    explicit SlotIndex(std::size_t most = std::size_t{1} << 20U) : most_(most) {}
+
+    /// Precondition: slots rise.
+    void add(IndexEntry entry);
+    [[nodiscard]] std::span<const IndexEntry> entries() const { return entries_; }
+
+  private:
+    std::size_t most_;
+    std::uint64_t stride_ = 1;
+    std::vector<IndexEntry> entries_;
+};
+
+void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> payload);
+/// Precondition: a multiple of kIndexEntryBytes.
+[[nodiscard]] std::vector<IndexEntry> load_index(std::span<const std::uint8_t> payload);
+
+}  // namespace stipple

@@ -1,0 +1,297 @@
+#include "stream/stream_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "stream/bit_packing.h"
+#include "stream/crc32c.h"
+#include "stream/file_window.h"
+#include "stream/header_codec.h"
+#include "stream/packet_check.h"
+#include "stream/packet_codec.h"
+#include "stream/packet_order.h"
+#include "stream/trailing_index.h"
+
+namespace stipple {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::size_t kSearchBytes = std::size_t{1} << 16U;
+constexpr std::uint64_t kMaxVainBytes = std::uint64_t{1} << 32U;
+
+StreamHeader read_header(FileWindow& window, const std::string& place) {
+    const std::size_t bytes = header_bytes(window.peek(kHeaderStartBytes), place);
+    const Bytes header = window.peek(bytes);
+    if (header.size() < bytes)
+        throw InputError(fmt::format("{}: byte {}", place, header.size()),
+                         fmt::format("the file ends within its header of {} bytes", bytes));
+    StreamHeader result = decode_header(header, place);
+    window.skip(bytes);
+    return result;
+}
+
+std::string_view cause_of(Start start) {
+    switch (start) {
+        case Start::kBadCrc:
+            return "a packet header is damaged (CRC mismatch)";
+        case Start::kTooLarge:
+            return "a payload is beyond 2^29 bytes";
+        default:
+            return "no packet begins here";
+    }
+}
+
+}  // namespace
+
+struct StreamReader::Impl {
+    Impl(const std::filesystem::path& file, ReadPolicy read_policy)
+        : place(file.string()),
+          strict(read_policy == ReadPolicy::kStrict),
+          window(file),
+          header(read_header(window, place)),
+          slots(slots_by_index(window)),
+          order(header.shape.rows) {}
+
+    enum class Step { kDelivered, kGoOn, kStop };
+
+    /// One step over the file: a packet, an end marker, or the begin of a search.
+    Step step(SamplePacket& packet);
+    Step take_packet(const PacketHeader& found, SamplePacket& packet);
+    void deliver(const PacketHeader& found, Bytes payload, SamplePacket& packet);
+    void take_index(const PacketHeader& found);
+    void take_end_marker(std::uint64_t index_at);
+    /// The file ends within the packet that begins here; `tail` is there.
+    Step wait_for_rest(Bytes tail);
+    /// Moves to the next good start. False if there is none yet.
+    bool search();
+    void count_bytes_after_end();
+    [[nodiscard]] std::optional<std::string> fault_of(const PacketHeader& found,
+                                                      Bytes payload) const;
+
+    /// Strict: throws. Tolerant: reports it.
+    void note(std::uint64_t bytes, std::string_view cause);
+    void begin_search(std::string_view cause);
+    void limit_vain_work(std::size_t payload_bytes);
+    void extend_damage(std::uint64_t begin, std::uint64_t end);
+    void skip_to(StreamPosition position);
+
+    std::string place;
+    bool strict;
+    FileWindow window;
+    StreamHeader header;
+    std::optional<std::int64_t> slots;
+    PacketOrder order;
+    StreamReport report;
+    std::optional<std::uint64_t> search_begin;  ///< set while searching
+    std::uint64_t searched_to = 0;  ///< end of the tail that `wait_for_rest` has searched
+    std::uint64_t vain_bytes = 0;   ///< of payloads whose CRC was wrong
+    std::optional<std::uint64_t> index_offset;  ///< of the index packet, once it was read
+    std::optional<std::uint64_t> end_offset;    ///< after the end marker, once it was read
+};
+
+void StreamReader::Impl::note(std::uint64_t bytes, std::string_view cause) {
+    if (strict) throw InputError(fmt::format("{}: byte {}", place, window.offset()), cause);
+    if (report.damage.size() < StreamReport::kMaxListedDamage)
+        report.damage.push_back({window.offset(), bytes, std::string(cause)});
+    else
+        ++report.unlisted_damage;
+}
+
+void StreamReader::Impl::begin_search(std::string_view cause) {
+    note(0, cause);
+    search_begin = window.offset();
+    searched_to = 0;
+    window.skip(1);
+}
+
+// Damaged packets may overlap, each header in the payload of the one before. What is left of an
+// honest file does so now and then; a crafted one could make the work quadratic.
+void StreamReader::Impl::limit_vain_work(std::size_t payload_bytes) {
+    vain_bytes += payload_bytes;
+    if (vain_bytes / 16 > kMaxVainBytes / 16 + window.offset())
+        throw InputError(fmt::format("{}: byte {}", place, window.offset()),
+                         "too many damaged packets overlap; get another copy of the file");
+}
+
+void StreamReader::Impl::extend_damage(std::uint64_t begin, std::uint64_t end) {
+    // Damage that is not listed has none listed after it.
+    if (report.unlisted_damage == 0) report.damage.back().bytes = end - begin;
+}
+
+bool StreamReader::Impl::search() {
+    for (;;) {
+        const Bytes bytes = window.peek(kSearchBytes);
+        const std::size_t found = find_start(bytes);
+        const bool at_end = bytes.size() < kSearchBytes;
+        const std::uint64_t skipped_to = window.offset() + found;
+        if (found < bytes.size()) {
+            extend_damage(*search_begin, skipped_to);
+            window.skip(found);
+            search_begin.reset();
+            return true;
+        }
+        // The last bytes may be the first of a header.
+        window.skip(bytes.size() - std::min(bytes.size(), kPacketHeaderBytes - 1));
+        if (at_end) {
+            extend_damage(*search_begin, skipped_to);
+            return false;
+        }
+    }
+}
+
+StreamReader::Impl::Step StreamReader::Impl::step(SamplePacket& packet) {
+    const Bytes bytes = window.peek(kPacketHeaderBytes);
+    report.tail_bytes = 0;
+    if (bytes.empty()) return Step::kStop;
+    const Start start = start_of(bytes);
+    switch (start) {
+        case Start::kPacket:
+            return take_packet(decode_packet_header(bytes), packet);
+        case Start::kEnd:
+            take_end_marker(decode_end_marker(bytes));
+            return Step::kGoOn;
+        case Start::kCut:
+            return wait_for_rest(bytes);
+        default:
+            begin_search(cause_of(start));
+            return Step::kGoOn;
+    }
+}
+
+StreamReader::Impl::Step StreamReader::Impl::wait_for_rest(Bytes tail) {
+    if (strict)
+        note(0, fmt::format("the file ends within a packet, after {} bytes of it", tail.size()));
+    // A good header further on means that bytes of this packet are missing. What was searched at
+    // an earlier call is not searched again, but for a header that was cut.
+    const std::uint64_t cut_from =
+        std::max(searched_to, window.offset() + kPacketHeaderBytes) - (kPacketHeaderBytes - 1);
+    const std::size_t from = std::min<std::size_t>(tail.size(), cut_from - window.offset());
+    searched_to = window.offset() + tail.size();
+    const Bytes rest = tail.subspan(from);
+    if (find_start(rest) < rest.size()) {
+        begin_search("bytes of a packet are missing");
+        return Step::kGoOn;
+    }
+    report.tail_bytes = tail.size();
+    return Step::kStop;
+}
+
+StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& found,
+                                                         SamplePacket& packet) {
+    const std::size_t size = kPacketHeaderBytes + found.payload_bytes;
+    const Bytes bytes = window.peek(size);
+    if (bytes.size() < size) return wait_for_rest(bytes);
+    const Bytes payload = bytes.subspan(kPacketHeaderBytes);
+    if (crc32c(payload) != found.payload_crc) {
+        begin_search("the payload of a packet is damaged (CRC mismatch)");
+        limit_vain_work(payload.size());
+        return Step::kGoOn;
+    }
+    const auto fault = fault_of(found, payload);
+    if (fault)
+        note(size, *fault);
+    else if (found.kind == PacketKind::kIndex)
+        take_index(found);
+    else
+        deliver(found, payload, packet);
+    window.skip(size);
+    return fault || found.kind == PacketKind::kIndex ? Step::kGoOn : Step::kDelivered;
+}
+
+std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& found,
+                                                        Bytes payload) const {
+    if (index_offset) return "a packet after the index";
+    if (found.kind == PacketKind::kSamples)
+        return sample_fault(header, found, payload, order.expected());
+    if (found.kind != PacketKind::kIndex)
+        return fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
+    // After damage and gaps no offset is right, but the number of slots is.
+    const StreamPosition end{static_cast<std::int64_t>(found.slot), 0};
+    const bool intact = report.damage.empty() && end == order.expected();
+    const auto before = intact ? window.offset() : std::numeric_limits<std::uint64_t>::max();
+    if (auto fault = index_fault(found, payload, before, order.expected())) return fault;
+    return intact ? wrong_entry(load_index(payload), window) : std::nullopt;
+}
+
+void StreamReader::Impl::skip_to(StreamPosition position) {
+    if (position == order.expected()) return;
+    note(0, order.missing_before(position));
+    order.skip_to(position);
+    report.missing_slots = order.missing_slots();
+}
+
+void StreamReader::Impl::deliver(const PacketHeader& found, Bytes payload, SamplePacket& packet) {
+    packet.slot = static_cast<std::int64_t>(found.slot);
+    packet.first_row = found.first_row;
+    packet.rows = found.rows;
+    packet.flags = found.flags;
+    skip_to({packet.slot, packet.first_row});
+    packet.dn.resize(found.samples);
+    unpack_bits(payload, header.calibration.bit_depth, packet.dn);
+    order.advance(packet.rows);
+    ++report.packets;
+    report.samples += found.samples;
+    report.payload_bits +=
+        std::uint64_t{found.samples} * static_cast<unsigned>(header.calibration.bit_depth);
+    report.slots = packet.slot + 1;
+}
+
+void StreamReader::Impl::take_index(const PacketHeader& found) {
+    index_offset = window.offset();
+    report.slots = static_cast<std::int64_t>(found.slot);
+    skip_to({report.slots, 0});
+}
+
+void StreamReader::Impl::take_end_marker(std::uint64_t index_at) {
+    if (report.damage.empty() && index_at != index_offset)
+        note(kEndMarkerBytes, "the end marker does not point to an index before it");
+    window.skip(kEndMarkerBytes);
+    end_offset = window.offset();
+}
+
+void StreamReader::Impl::count_bytes_after_end() {
+    for (;;) {
+        const Bytes bytes = window.peek(kSearchBytes);
+        if (bytes.empty()) return;
+        if (window.offset() == *end_offset) note(0, "bytes after the end marker");
+        extend_damage(*end_offset, window.offset() + bytes.size());
+        window.skip(bytes.size());
+    }
+}
+
+StreamReader::StreamReader(const std::filesystem::path& file, ReadPolicy policy)
+    : impl_(std::make_unique<Impl>(file, policy)) {}
+
+StreamReader::~StreamReader() = default;
+StreamReader::StreamReader(StreamReader&&) noexcept = default;
+StreamReader& StreamReader::operator=(StreamReader&&) noexcept = default;
+
+const StreamHeader& StreamReader::header() const {
+    return impl_->header;
+}
+
+std::optional<std::int64_t> StreamReader::slots() const {
+    return impl_->slots;
+}
+
+bool StreamReader::next(SamplePacket& packet) {
+    for (;;) {
+        if (impl_->end_offset) {
+            impl_->count_bytes_after_end();
+            return false;
+        }
+        if (impl_->search_begin && !impl_->search()) return false;
+        const auto step = impl_->step(packet);
+        if (step != Impl::Step::kGoOn) return step == Impl::Step::kDelivered;
+    }
+}
+
+const StreamReport& StreamReader::report() const {
+    return impl_->report;
+}
+
+}  // namespace stipple

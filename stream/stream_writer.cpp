@@ -1,0 +1,92 @@
+#include "stream/stream_writer.h"
+
+#include <cassert>
+#include <vector>
+
+#include "stream/append_file.h"
+#include "stream/bit_packing.h"
+#include "stream/due_count.h"
+#include "stream/header_codec.h"
+#include "stream/packet_codec.h"
+#include "stream/packet_order.h"
+#include "stream/slot_index.h"
+
+namespace stipple {
+
+struct StreamWriter::Impl {
+    /// `encoded` comes in, so that the header is checked before the file is created.
+    Impl(const std::filesystem::path& path, const StreamHeader& stream, const std::string& place,
+         const std::vector<std::uint8_t>& encoded)
+        : header(stream), file(path, place), order(stream.shape.rows) {
+        file.append(encoded);
+    }
+
+    [[nodiscard]] bool is_due(const SamplePacket& packet) const;
+
+    StreamHeader header;
+    AppendFile file;
+    PacketOrder order;
+    SlotIndex index;
+    std::vector<std::uint8_t> bytes;
+};
+
+bool StreamWriter::Impl::is_due(const SamplePacket& packet) const {
+    if (StreamPosition{packet.slot, packet.first_row} != order.expected()) return false;
+    if (packet.rows < 1 || packet.rows > header.shape.rows - packet.first_row) return false;
+    if ((packet.flags & SamplePacket::kDropped) != 0) return packet.dn.empty();
+    unsigned bits = 0;
+    for (const unsigned dn : packet.dn) bits |= dn;
+    if (bits >> static_cast<unsigned>(header.calibration.bit_depth) != 0) return false;
+    return matches_schedule(header, packet.slot, {packet.first_row, packet.rows}, packet.dn.size());
+}
+
+StreamWriter::StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
+                           std::string place) {
+    if (place.empty()) place = file.string();
+    impl_ = std::make_unique<Impl>(file, header, place, encode_header(header, place));
+}
+
+StreamWriter::~StreamWriter() = default;
+
+void StreamWriter::write(const SamplePacket& packet) {
+    assert(impl_->is_due(packet));
+    const int bit_depth = impl_->header.calibration.bit_depth;
+    PacketHeader header;
+    header.flags = packet.flags;
+    header.slot = static_cast<std::uint64_t>(packet.slot);
+    header.first_row = static_cast<std::uint16_t>(packet.first_row);
+    header.rows = static_cast<std::uint16_t>(packet.rows);
+    header.samples = static_cast<std::uint32_t>(packet.dn.size());
+    auto& bytes = impl_->bytes;
+    bytes.resize(kPacketHeaderBytes + packed_bytes(packet.dn.size(), bit_depth));
+    pack_bits(packet.dn, bit_depth, std::span(bytes).subspan(kPacketHeaderBytes));
+    frame_packet(header, bytes);
+    if (packet.first_row == 0) impl_->index.add({header.slot, impl_->file.bytes()});
+    impl_->file.append(bytes);
+    impl_->order.advance(packet.rows);
+}
+
+void StreamWriter::finish() {
+    const StreamPosition end = impl_->order.expected();
+    if (end.row > 0)  // the rows of the last slot that never came
+        write({end.slot, end.row, impl_->header.shape.rows - end.row, SamplePacket::kDropped, {}});
+    const auto entries = impl_->index.entries();
+    PacketHeader header;
+    header.kind = PacketKind::kIndex;
+    header.slot = static_cast<std::uint64_t>(impl_->order.expected().slot);
+    header.samples = static_cast<std::uint32_t>(entries.size());
+    auto& bytes = impl_->bytes;
+    bytes.resize(kPacketHeaderBytes + entries.size() * kIndexEntryBytes);
+    store_index(entries, std::span(bytes).subspan(kPacketHeaderBytes));
+    frame_packet(header, bytes);
+    const auto marker = encode_end_marker(impl_->file.bytes());
+    bytes.insert(bytes.end(), marker.begin(), marker.end());
+    impl_->file.append(bytes);
+    impl_->file.close();
+}
+
+std::uint64_t StreamWriter::bytes_written() const {
+    return impl_->file.bytes();
+}
+
+}  // namespace stipple

@@ -1,0 +1,95 @@
+#include "tests/stream/golden_cases.h"
+
+#include <cstdint>
+
+#include "tests/stream/stream_bytes.h"
+
+namespace stipple {
+namespace {
+
+std::string feature(const StreamHeader& header, int slots, int band_rows) {
+    return bytes_of(header, random_packets(header, slots, band_rows)).bytes;
+}
+
+std::string flags() {
+    const StreamHeader header = varied_header({4, 4, 1});
+    auto packets = random_packets(header, 3, 2);
+    packets[2].flags = SamplePacket::kOverrun;
+    packets[3].flags = SamplePacket::kDropped;
+    packets[3].dn.clear();
+    return bytes_of(header, packets).bytes;
+}
+
+std::string addressed_packet() {
+    const StreamHeader header = varied_header({4, 4, 1});
+    const StreamBytes stream = bytes_of(header, random_packets(header, 3, 4));
+    PacketHeader packet;
+    packet.kind = PacketKind::kAddressed;
+    packet.slot = 1;
+    packet.rows = 4;
+    packet.samples = 1;
+    const std::string sample("\x02\x00\x03\x00\x00\x01\xFF\x03", 8);
+    std::string bytes = stream.bytes;
+    return bytes.insert(stream.begins[2], framed(packet, sample));
+}
+
+std::vector<GoldenCase> features() {
+    return {{"example", example_stream()},
+            {"mono_10_bits", feature(varied_header({4, 5, 1}, 10), 6, 4)},
+            {"mono_1_bit", feature(varied_header({4, 5, 1}, 1), 6, 4)},
+            {"mono_16_bits", feature(varied_header({4, 5, 1}, 16), 6, 4)},
+            {"colour_12_bits", feature(varied_header({3, 4, 3}, 12), 6, 3)},
+            {"bands_of_rows", feature(varied_header({5, 4, 1}), 3, 2)},
+            {"random_schedule", feature(random_header({3, 4, 1}, 20260101), 16, 3)},
+            {"no_slots", feature(varied_header(), 0, 4)},
+            {"flags", flags()},
+            {"addressed_packet", addressed_packet()}};
+}
+
+/// Three slots of one packet each, with something done to them.
+std::vector<GoldenCase> damages() {
+    const StreamHeader header = varied_header({4, 4, 1});
+    const StreamBytes whole = bytes_of(header, random_packets(header, 3, 4));
+    const auto& begins = whole.begins;
+    const auto flipped = [&](std::size_t at) {
+        std::string bytes = whole.bytes;
+        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+        return bytes;
+    };
+    const auto without = [&](std::size_t begin, std::size_t end) {
+        std::string bytes = whole.bytes;
+        return bytes.erase(begin, end - begin);
+    };
+    std::string twice = whole.bytes;
+    twice.insert(begins[2], whole.bytes.substr(begins[1], begins[2] - begins[1]));
+    return {{"interrupted", whole.bytes.substr(0, begins[3])},
+            {"cut_in_packet", whole.bytes.substr(0, begins[3] - 1)},
+            {"cut_in_header", whole.bytes.substr(0, begins[0] - 1)},
+            {"damaged_header", flipped(40)},
+            {"damaged_packet_header", flipped(begins[1] + 8)},
+            {"damaged_payload", flipped(begins[1] + kPacketHeaderBytes)},
+            {"damaged_index", flipped(begins[3] + kPacketHeaderBytes)},
+            {"damaged_end_marker", flipped(begins[4])},
+            {"missing_packet", without(begins[1], begins[2])},
+            {"missing_bytes", without(begins[1] + 10, begins[1] + 20)},
+            {"missing_end_of_last_packet", without(begins[3] - 3, begins[3])},
+            {"packet_twice", twice},
+            {"bytes_after_end", whole.bytes + "more"}};
+}
+
+}  // namespace
+
+std::string example_stream() {
+    const ExposureSchedule schedule(1, 2, 2, {0, 2, 3}, {{0, 0b1}, {1, 0b1}, {0, 0b11}});
+    StreamHeader header{{2, 2, 1}, 5000, {}, schedule, {}, "example", "seed = 1\n"};
+    header.calibration = {10, Rounding::kNearest, 64, 20, 10, 20000, 1000};
+    return bytes_of(header, {{0, 0, 2, 0, {1023, 1}}, {1, 0, 2, 0, {512, 3, 4, 0}}}).bytes;
+}
+
+std::vector<GoldenCase> golden_cases() {
+    std::vector<GoldenCase> cases = features();
+    for (GoldenCase& damage : damages()) cases.push_back(std::move(damage));
+    return cases;
+}
+
+}  // namespace stipple

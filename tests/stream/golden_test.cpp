@@ -1,0 +1,142 @@
+// The files in tests/golden/stream say what version 1 is, for other programs too. After an intended
+// change of the format: STIPPLE_UPDATE_GOLDEN=1 build/release/stream_test --gtest_filter='Golden*'
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "tests/stream/golden_cases.h"
+#include "tests/stream/stream_bytes.h"
+
+namespace stipple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::filesystem::path kFolder =
+    std::filesystem::path(STIPPLE_SOURCE_DIR) / "tests/golden/stream";
+
+bool updating() {
+    return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;
+}
+
+Json to_json(const ExposureSchedule& schedule) {
+    Json pixels = Json::array();
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col) {
+            Json exposures = Json::array();
+            for (const Exposure& exposure : schedule.exposures(row, col))
+                exposures.push_back({exposure.first_slot, exposure.open_slots});
+            pixels.push_back(exposures);
+        }
+    return {{"tile_rows", schedule.tile_rows()},
+            {"tile_cols", schedule.tile_cols()},
+            {"period_slots", schedule.period_slots()},
+            {"exposures", pixels}};
+}
+
+Json to_json(const StreamHeader& header) {
+    const Calibration& c = header.calibration;
+    return {{"rows", header.shape.rows},
+            {"cols", header.shape.cols},
+            {"planes", header.shape.planes},
+            {"slot_us", header.slot_us},
+            {"bit_depth", c.bit_depth},
+            {"rounding", c.rounding == Rounding::kNearest ? "nearest" : "floor"},
+            {"black_level_dn", c.black_level_dn},
+            {"gain_e_per_dn", c.gain_e_per_dn},
+            {"read_noise_e", c.read_noise_e},
+            {"full_well_e", c.full_well_e},
+            {"electrons_per_unit", c.electrons_per_unit},
+            {"schedule_name", header.schedule_name},
+            {"provenance", header.provenance},
+            {"schedule", to_json(header.schedule)}};
+}
+
+Json to_json(const SamplePacket& packet) {
+    return {{"slot", packet.slot},
+            {"first_row", packet.first_row},
+            {"rows", packet.rows},
+            {"flags", packet.flags},
+            {"dn", packet.dn}};
+}
+
+Json to_json(const StreamDamage& damage) {
+    return {{"offset", damage.offset}, {"bytes", damage.bytes}, {"cause", damage.cause}};
+}
+
+/// A message without the name of the file; null if there is none.
+template <typename Action>
+Json refusal(const MemoryFile& file, Action&& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return std::string(error.what()).substr(file.path().string().size() + 2);
+    }
+    return nullptr;
+}
+
+/// All that a file says to a tolerant reader, and what a strict one has against it.
+Json description(const std::string& bytes) {
+    const MemoryFile file(bytes);
+    Json text;
+    text["strict_error"] = refusal(file, [&] { read_bytes(bytes, ReadPolicy::kStrict); });
+    text["error"] = refusal(file, [&] {
+        StreamReader reader(file.path());
+        text["header"] = to_json(reader.header());
+        text["packets"] = Json::array();
+        for (const SamplePacket& packet : read_packets(reader))
+            text["packets"].push_back(to_json(packet));
+        const StreamReport& report = reader.report();
+        text["slots"] = report.slots;
+        text["missing_slots"] = report.missing_slots;
+        text["tail_bytes"] = report.tail_bytes;
+        text["damage"] = Json::array();
+        for (const StreamDamage& damage : report.damage) text["damage"].push_back(to_json(damage));
+    });
+    return text;
+}
+
+/// A line per field, and per element of a list.
+std::string pretty(const Json& text) {
+    std::string lines = "{";
+    for (const auto& [key, value] : text.items()) {
+        lines += (lines.size() > 1 ? ",\n" : "\n") + Json(key).dump() + ": ";
+        if (!value.is_array() || value.empty()) {
+            lines += value.dump();
+            continue;
+        }
+        for (std::size_t i = 0; i < value.size(); ++i)
+            lines += (i == 0 ? "[\n  " : ",\n  ") + value[i].dump();
+        lines += "]";
+    }
+    return lines + "\n}\n";
+}
+
+TEST(GoldenTest, EachFileIsWrittenAsEver) {
+    for (const auto& [name, bytes] : golden_cases()) {
+        const auto file = kFolder / (name + ".stipple");
+        if (updating()) write_text(file, bytes);
+        EXPECT_TRUE(read_text(file) == bytes) << file;
+    }
+}
+
+TEST(GoldenTest, EachFileReadsAsItsDescriptionSays) {
+    for (const auto& [name, bytes] : golden_cases()) {
+        const std::string text = pretty(description(read_text(kFolder / (name + ".stipple"))));
+        const auto file = kFolder / (name + ".json");
+        if (updating()) write_text(file, text);
+        EXPECT_EQ(read_text(file), text) << file;
+    }
+}
+
+TEST(GoldenTest, NoFileIsLeftOver) {
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(kFolder))
+        if (entry.path().filename() != "README.md") ++files;
+    EXPECT_EQ(files, 2 * golden_cases().size());
+}
+
+}  // namespace
+}  // namespace stipple
