@@ -1,0 +1,165 @@
+#include "readout/coded_sensor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "readout/column_adc.h"
+#include "readout/sequencer.h"
+#include "sensor_model/pixel_array.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kBandRows = 16;  ///< rows that one thread takes at a time: a few hundred kilobytes
+
+void check(FrameShape shape) {
+    if (shape.rows < 1 || shape.cols < 1 || shape.planes < 1 || shape.pixels() > UINT32_MAX)
+        throw InputError("sensor", fmt::format("array of {} x {} pixels and {} planes: needs 1 to "
+                                               "2^32 - 1 pixels and at least one plane",
+                                               shape.rows, shape.cols, shape.planes));
+}
+
+/// The samples of a band of rows and what leads to them; kept so that no slot allocates.
+struct Band {
+    std::vector<std::uint32_t> pixels;  ///< due, in scan order
+    std::vector<std::uint16_t> dn;      ///< planes of a pixel side by side
+    std::uint64_t saturated = 0;
+    std::vector<std::uint8_t> open;  ///< of one row
+    std::vector<float> light;        ///< of one plane, as the next two
+    std::vector<float> electrons;
+    std::vector<std::uint16_t> plane_dn;
+};
+
+void add(std::span<const float> frame, std::span<float> light) noexcept {
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] += frame[i];
+}
+
+void add_where(std::span<const std::uint8_t> open, std::span<const float> frame,
+               std::span<float> light) noexcept {
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] += open[i] != 0 ? frame[i] : 0.0F;
+}
+
+/// Moves the light of `pixels` out of `plane`, which leaves them reset.
+void take(std::span<const std::uint32_t> pixels, std::span<float> plane,
+          std::span<float> light) noexcept {
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        light[i] = std::exchange(plane[pixels[i]], 0.0F);
+}
+
+}  // namespace
+
+Calibration calibration_of(const SensorParams& params) {
+    return {
+        .bit_depth = params.bit_depth,
+        .rounding = params.rounding == AdcRounding::kFloor ? Rounding::kFloor : Rounding::kNearest,
+        .black_level_dn = 0,
+        .gain_e_per_dn = params.full_scale_e / ((1 << params.bit_depth) - 1),
+        .read_noise_e = params.read_noise_e,
+        .full_well_e = params.full_well_e,
+        .electrons_per_unit = params.photons_per_unit};
+}
+
+struct CodedSensor::Impl {
+    Impl(const SensorParams& params, FrameShape frame_shape, const ExposureSchedule& schedule,
+         std::uint64_t seed)
+        : array(params, seed), adc(params), sequencer(schedule, frame_shape), shape(frame_shape) {
+        check(shape);
+        light.resize(shape.sites());
+        bands.resize(static_cast<std::size_t>((shape.rows + kBandRows - 1) / kBandRows));
+    }
+
+    void expose_band(std::span<const float> frame, int first_row, Band& band);
+    void collect(std::span<const float> frame, int row, Band& band);
+    void read(std::uint32_t plane, Band& band);
+
+    PixelArray array;
+    ColumnAdc adc;
+    Sequencer sequencer;
+    FrameShape shape;
+    std::vector<float> light;  ///< collected since the exposure began, order (plane, row, col)
+    std::vector<Band> bands;
+    ReadoutStats stats;  ///< `stats.slots` is the slot to expose next
+};
+
+/// Adds the light of one row, all planes.
+void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& band) {
+    const bool all_open = sequencer.all_open(stats.slots);
+    const auto cols = static_cast<std::size_t>(shape.cols);
+    if (!all_open) {
+        band.open.resize(cols);
+        sequencer.list_open(stats.slots, row, band.open);
+    }
+    for (auto at = static_cast<std::size_t>(row) * cols; at < light.size(); at += shape.pixels()) {
+        const auto from = frame.subspan(at, cols);
+        const auto to = std::span(light).subspan(at, cols);
+        all_open ? add(from, to) : add_where(band.open, from, to);
+    }
+}
+
+/// Light to DN of the due pixels of one plane.
+void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
+    take(band.pixels, std::span(light).subspan(plane * shape.pixels(), shape.pixels()), band.light);
+    array.expose(band.light, band.pixels, static_cast<std::uint32_t>(stats.slots), plane,
+                 band.electrons);
+    adc.convert(band.electrons, band.plane_dn);
+    const auto planes = static_cast<std::size_t>(shape.planes);
+    for (std::size_t i = 0; i < band.pixels.size(); ++i)
+        band.dn[i * planes + plane] = band.plane_dn[i];
+}
+
+void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row, Band& band) {
+    const int end_row = std::min(first_row + kBandRows, shape.rows);
+    band.pixels.clear();
+    for (int row = first_row; row < end_row; ++row) {
+        collect(frame, row, band);
+        sequencer.append_due(stats.slots, row, band.pixels);
+    }
+    const std::size_t samples = band.pixels.size();
+    band.dn.resize(samples * static_cast<std::size_t>(shape.planes));
+    band.light.resize(samples);
+    band.electrons.resize(samples);
+    band.plane_dn.resize(samples);
+    for (int plane = 0; plane < shape.planes; ++plane)
+        read(static_cast<std::uint32_t>(plane), band);
+    band.saturated = static_cast<std::uint64_t>(std::ranges::count(band.dn, adc.most_dn()));
+}
+
+CodedSensor::CodedSensor(const SensorParams& params, FrameShape shape,
+                         const ExposureSchedule& schedule, std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(params, shape, schedule, seed)) {}
+
+CodedSensor::~CodedSensor() = default;
+CodedSensor::CodedSensor(CodedSensor&&) noexcept = default;
+CodedSensor& CodedSensor::operator=(CodedSensor&&) noexcept = default;
+
+void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
+    assert(frame.size() == impl_->shape.sites());
+    auto& bands = impl_->bands;
+    const auto band_of = [&](int i) -> Band& { return bands[static_cast<std::size_t>(i)]; };
+    parallel_for(0, static_cast<int>(bands.size()),
+                 [&](int i) { impl_->expose_band(frame, i * kBandRows, band_of(i)); });
+
+    ReadoutStats& stats = impl_->stats;
+    packet.slot = stats.slots++;
+    packet.first_row = 0;
+    packet.rows = impl_->shape.rows;
+    packet.flags = 0;
+    packet.dn.clear();
+    for (const Band& band : bands) {
+        packet.dn.insert(packet.dn.end(), band.dn.begin(), band.dn.end());
+        stats.saturated_samples += band.saturated;
+    }
+    stats.samples += packet.dn.size();
+}
+
+const ReadoutStats& CodedSensor::stats() const {
+    return impl_->stats;
+}
+
+}  // namespace stipple

@@ -1,0 +1,58 @@
+#include "readout/sequencer.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+/// Whether a pixel with these exposures collects light in `slot`. As they do not interleave, only
+/// the last one to begin can be open. One that would have begun before slot 0 has not begun.
+bool is_open(std::span<const Exposure> exposures, std::int64_t slot, int period_slots) {
+    if (exposures.empty()) return false;
+    const auto phase = static_cast<std::uint32_t>(slot % period_slots);
+    const auto next = std::ranges::upper_bound(exposures, phase, {}, &Exposure::first_slot);
+    const bool began_last_period = next == exposures.begin();
+    const Exposure& e = began_last_period ? exposures.back() : *(next - 1);
+    const auto age = std::int64_t{phase} - e.first_slot + (began_last_period ? period_slots : 0);
+    return age < e.span_slots() && age <= slot && (e.open_slots >> age & 1U) != 0;
+}
+
+}  // namespace
+
+Sequencer::Sequencer(const ExposureSchedule& schedule, FrameShape shape)
+    : schedule_(&schedule), cols_(shape.cols), gapless_(schedule.gapless()) {
+    if (schedule.interleaved())
+        throw InputError("exposure schedule",
+                         "exposures of a pixel interleave, which needs two charge stores per "
+                         "pixel; the emulated sensor has one, use a schedule without");
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col)
+            for (const Exposure& e : schedule.exposures(row, col))
+                longest_span_slots_ = std::max(longest_span_slots_, e.span_slots());
+}
+
+bool Sequencer::all_open(std::int64_t slot) const noexcept {
+    return gapless_ && slot + 1 >= longest_span_slots_;
+}
+
+void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept {
+    assert(open.size() == static_cast<std::size_t>(cols_));
+    const int tile_row = row % schedule_->tile_rows();
+    const auto once = static_cast<std::size_t>(std::min(cols_, schedule_->tile_cols()));
+    for (std::size_t col = 0; col < once; ++col) {
+        const auto exposures = schedule_->exposures(tile_row, static_cast<int>(col));
+        open[col] = is_open(exposures, slot, schedule_->period_slots()) ? 1 : 0;
+    }
+    for (std::size_t col = once; col < open.size(); ++col) open[col] = open[col - once];
+}
+
+void Sequencer::append_due(std::int64_t slot, int row, std::vector<std::uint32_t>& pixels) const {
+    const auto first = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(cols_);
+    visit_due(*schedule_, slot, row, cols_,
+              [&](int col, int) { pixels.push_back(first + static_cast<std::uint32_t>(col)); });
+}
+
+}  // namespace stipple

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// Tells the chip what to do in each slot: which pixels collect light and which are read at its
+/// end, row by row in scan order. It says nothing of time within a slot. A timing model belongs
+/// between it and CodedSensor: each row's list is what one row of readout commands carries, whose
+/// cycles a model gives (`earliest_cycle`) and checks (`issue`).
+class Sequencer {
+  public:
+    /// `schedule` must outlive the sequencer. \throws InputError if the schedule is interleaved:
+    /// the pixels have one charge store each.
+    Sequencer(const ExposureSchedule& schedule, FrameShape shape);
+
+    /// True if all pixels collect light in this slot, in exposures that began in slot 0 or later.
+    [[nodiscard]] bool all_open(std::int64_t slot) const noexcept;
+
+    /// `open[col]` = 1 for each pixel of `row` that does so, 0 for the others.
+    /// Precondition: open.size() == columns of the array.
+    void list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept;
+
+    /// Appends row * cols + col of each pixel of `row` that is read at the end of `slot`, by
+    /// column.
+    void append_due(std::int64_t slot, int row, std::vector<std::uint32_t>& pixels) const;
+
+  private:
+    const ExposureSchedule* schedule_;
+    int cols_;
+    int longest_span_slots_ = 0;
+    bool gapless_;
+};
+
+}  // namespace stipple
