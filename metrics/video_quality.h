@@ -2,35 +2,60 @@
 
 #include <optional>
 #include <span>
-#include <string>
+#include <vector>
 
-#include "core/flux_video.h"
+#include "core/geometry.h"
 
 namespace stipple {
 
 struct QualityOptions {
-    int margin = 0;                   ///< frames left out at each end
-    std::optional<double> max_value;  ///< clamp both sides to it first
-    double peak_cd_per_m2 = 100;      ///< luminance of 1.0 for PU21
+    int margin = 0;                        ///< frames left out at each end
+    std::optional<double> max_value = {};  ///< clamp both sides to it first
+    double peak_cd_per_m2 = 100;           ///< luminance of 1.0 for PU21
 };
 
-/// Quality of a video against its reference; all in dB except `ssim` (0..1).
+/// Quality of a video against its reference; all in dB except `ssim` (up to 1). Identical videos
+/// have infinite PSNR.
 struct VideoQuality {
     double psnr_db = 0;             ///< peak 1.0, pooled over everything, linear, not clamped
     double psnr_gamma_db = 0;       ///< after clamping to 0..1 and the power 1/2.2
     double psnr_frame_mean_db = 0;  ///< mean of per-frame linear PSNR
-    double pu21_psnr_db = 0;        ///< PU21 banding_glare, peak = PU21(peak_cd_per_m2)
-    double ssim = 0;                ///< Wang et al. 2004, after the 1/2.2 curve
+    double pu21_psnr_db = 0;        ///< PU21 of each plane, peak = PU21(peak_cd_per_m2)
+    double ssim = 0;                ///< clamped, 1/2.2; mean over frames and planes; see ssim.h
 };
 
-/// Adds up quality frame by frame, so that videos longer than memory compare.
+/// Adds up quality frame by frame, so that videos longer than memory compare. The same bits for
+/// any thread count.
 class QualityMeter {
   public:
+    /// \throws InputError if the shape is empty, the margin negative, or `max_value` or
+    /// `peak_cd_per_m2` not above 0.
     QualityMeter(FrameShape shape, const QualityOptions& options);
-    /// Adds one frame of each; both hold shape.sites() floats, order (plane, row, col).
+
+    /// Adds one frame of each; both hold shape.sites() finite floats, order (plane, row, col).
     void add(std::span<const float> result, std::span<const float> reference);
-    /// Identical videos have infinite PSNR. \throws InputError if no frame was added.
+    /// \throws InputError if no frame is left between the margins.
     [[nodiscard]] VideoQuality quality() const;
+
+  private:
+    /// Squared errors summed over something, in three scales.
+    struct SquaredErrors {
+        double linear = 0;
+        double gamma = 0;
+        double pu21 = 0;
+        SquaredErrors& operator+=(const SquaredErrors& other);
+    };
+    struct FrameQuality {
+        SquaredErrors errors;
+        double ssim = 0;
+    };
+    SquaredErrors add_row(std::span<const float> result, std::span<const float> reference, int row);
+
+    FrameShape shape_;
+    QualityOptions options_;
+    std::vector<FrameQuality> frames_;  ///< all of them: which ones count is known at the end
+    std::vector<float> result_gamma_;   ///< the frame being added after the 1/2.2 curve
+    std::vector<float> reference_gamma_;
 };
 
 }  // namespace stipple

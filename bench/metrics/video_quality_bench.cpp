@@ -1,0 +1,50 @@
+#include "metrics/video_quality.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/parallel.h"
+#include "metrics/ssim.h"
+
+namespace stipple {
+namespace {
+
+constexpr FrameShape kVga{480, 640, 3};
+
+/// Light 0..2 of no structure.
+std::vector<float> noise(std::uint32_t state) {
+    std::vector<float> values(kVga.sites());
+    for (float& value : values) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<float>(state >> 8U) / 8388608.0F;
+    }
+    return values;
+}
+
+/// One colour frame in all measures. Argument: threads.
+void compare_frame(benchmark::State& state) {
+    const ThreadLimit limit(static_cast<int>(state.range(0)));
+    const std::vector<float> result = noise(1);
+    const std::vector<float> reference = noise(2);
+    QualityMeter meter(kVga, {});
+    for ([[maybe_unused]] auto unused : state) meter.add(result, reference);
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVga.sites()));
+}
+BENCHMARK(compare_frame)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+void ssim_of_a_plane(benchmark::State& state) {
+    const ThreadLimit limit(1);
+    const std::vector<float> x = noise(1);
+    const std::vector<float> y = noise(2);
+    for ([[maybe_unused]] auto unused : state)
+        benchmark::DoNotOptimize(
+            ssim({x.data(), kVga.rows, kVga.cols}, {y.data(), kVga.rows, kVga.cols}));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVga.pixels()));
+}
+BENCHMARK(ssim_of_a_plane)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,117 @@
+#include "metrics/video_quality.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "metrics/pu21.h"
+#include "metrics/ssim.h"
+
+namespace stipple {
+namespace {
+
+double square(double value) {
+    return value * value;
+}
+
+double psnr(double peak, double mean_square) {
+    return 10 * std::log10(square(peak) / mean_square);
+}
+
+float gamma_encoded(float light) {
+    return std::pow(std::clamp(light, 0.0F, 1.0F), 1 / 2.2F);
+}
+
+}  // namespace
+
+auto QualityMeter::SquaredErrors::operator+=(const SquaredErrors& other) -> SquaredErrors& {
+    linear += other.linear;
+    gamma += other.gamma;
+    pu21 += other.pu21;
+    return *this;
+}
+
+QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
+    : shape_(shape),
+      options_(options),
+      result_gamma_(shape.sites()),
+      reference_gamma_(shape.sites()) {
+    if (shape.rows < 1 || shape.cols < 1 || shape.planes < 1)
+        throw InputError("quality", "the frames are empty");
+    if (options.margin < 0)
+        throw InputError("margin", fmt::format("{} is negative", options.margin));
+    if (options.max_value && !(*options.max_value > 0))
+        throw InputError("max_value", fmt::format("{} is not above 0", *options.max_value));
+    if (!(options.peak_cd_per_m2 > 0))
+        throw InputError("peak_cd_per_m2",
+                         fmt::format("{} is not above 0", options.peak_cd_per_m2));
+}
+
+QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
+                                                  std::span<const float> reference, int row) {
+    const auto most = static_cast<float>(
+        options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
+    const auto width = static_cast<std::size_t>(shape_.cols);
+    const std::size_t begin = static_cast<std::size_t>(row) * width;
+    SquaredErrors sum;
+    for (std::size_t i = begin; i < begin + width; ++i) {
+        const float a = std::min(result[i], most);
+        const float b = std::min(reference[i], most);
+        result_gamma_[i] = gamma_encoded(a);
+        reference_gamma_[i] = gamma_encoded(b);
+        const auto x = static_cast<double>(a);
+        const auto y = static_cast<double>(b);
+        sum += {square(x - y),
+                square(static_cast<double>(result_gamma_[i]) -
+                       static_cast<double>(reference_gamma_[i])),
+                square(pu21(x * options_.peak_cd_per_m2) - pu21(y * options_.peak_cd_per_m2))};
+    }
+    return sum;
+}
+
+void QualityMeter::add(std::span<const float> result, std::span<const float> reference) {
+    assert(result.size() == shape_.sites() && reference.size() == shape_.sites());
+    const int rows = shape_.planes * shape_.rows;
+    std::vector<SquaredErrors> row_errors(static_cast<std::size_t>(rows));
+    parallel_for(0, rows, [&](int row) {
+        row_errors[static_cast<std::size_t>(row)] = add_row(result, reference, row);
+    });
+    FrameQuality frame;
+    for (const SquaredErrors& errors : row_errors) frame.errors += errors;
+    for (int plane = 0; plane < shape_.planes; ++plane) {
+        const std::size_t offset = static_cast<std::size_t>(plane) * shape_.pixels();
+        frame.ssim += ssim({result_gamma_.data() + offset, shape_.rows, shape_.cols},
+                           {reference_gamma_.data() + offset, shape_.rows, shape_.cols});
+    }
+    frames_.push_back(frame);
+}
+
+VideoQuality QualityMeter::quality() const {
+    const auto margin = static_cast<std::size_t>(options_.margin);
+    if (frames_.size() <= 2 * margin)
+        throw InputError("margin",
+                         fmt::format("leaving out {} frames at each end leaves none of {}", margin,
+                                     frames_.size()));
+    const std::span counted = std::span(frames_).subspan(margin, frames_.size() - 2 * margin);
+    const auto frames = static_cast<double>(counted.size());
+    const auto sites = static_cast<double>(shape_.sites());
+    SquaredErrors errors;
+    VideoQuality quality;
+    for (const FrameQuality& frame : counted) {
+        errors += frame.errors;
+        quality.psnr_frame_mean_db += psnr(1, frame.errors.linear / sites) / frames;
+        quality.ssim += frame.ssim / (frames * shape_.planes);
+    }
+    quality.psnr_db = psnr(1, errors.linear / (frames * sites));
+    quality.psnr_gamma_db = psnr(1, errors.gamma / (frames * sites));
+    quality.pu21_psnr_db = psnr(pu21(options_.peak_cd_per_m2), errors.pu21 / (frames * sites));
+    return quality;
+}
+
+}  // namespace stipple

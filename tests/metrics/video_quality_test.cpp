@@ -1,0 +1,150 @@
+#include "metrics/video_quality.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "metrics/pu21.h"
+#include "metrics/ssim.h"
+
+namespace stipple {
+namespace {
+
+using Floats = std::vector<float>;
+constexpr FrameShape kShape{12, 16, 1};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Values such as 0.6F are off by up to 3e-8; an error of 0.1 is then off by 6e-7 relative, its
+// PSNR by 8.7 * 6e-7 dB.
+constexpr double kToleranceDb = 1e-5;
+
+/// Quality of flat frames: result[t] against reference[t].
+VideoQuality flat_quality(const Floats& result, const Floats& reference,
+                          const QualityOptions& options = {}) {
+    QualityMeter meter(kShape, options);
+    for (std::size_t t = 0; t < result.size(); ++t)
+        meter.add(Floats(kShape.sites(), result[t]), Floats(kShape.sites(), reference[t]));
+    return meter.quality();
+}
+
+Floats noise(std::size_t count, std::uint32_t state) {
+    Floats values(count);
+    for (float& value : values) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<float>(state >> 8U) / 8388608.0F;  // 0..2
+    }
+    return values;
+}
+
+TEST(VideoQualityTest, AnErrorOfATenthIs20Db) {
+    const auto quality = flat_quality({0.6F}, {0.5F});
+    EXPECT_NEAR(quality.psnr_db, 20, kToleranceDb);
+    EXPECT_NEAR(quality.psnr_frame_mean_db, 20, kToleranceDb);
+}
+
+TEST(VideoQualityTest, PoolsErrorsButAveragesFrameValues) {
+    // Mean squares 1e-2 and 1e-4.
+    const auto quality = flat_quality({0.6F, 0.51F}, {0.5F, 0.5F});
+    EXPECT_NEAR(quality.psnr_db, -10 * std::log10((1e-2 + 1e-4) / 2), 10 * kToleranceDb);
+    EXPECT_NEAR(quality.psnr_frame_mean_db, (20 + 40) / 2, 10 * kToleranceDb);
+}
+
+TEST(VideoQualityTest, LinearPsnrDoesNotClampButGammaDoes) {
+    const auto quality = flat_quality({3}, {1});
+    EXPECT_NEAR(quality.psnr_db, -20 * std::log10(2.0), kToleranceDb);
+    EXPECT_EQ(quality.psnr_gamma_db, kInfinity);
+    EXPECT_EQ(flat_quality({-1}, {0}).psnr_gamma_db, kInfinity);
+}
+
+TEST(VideoQualityTest, GammaPsnrIsTakenAfterTheCurve) {
+    // 0.5^2.2 is shown as 0.5 and 1 as 1.
+    const auto quality = flat_quality({std::pow(0.5F, 2.2F)}, {1});
+    EXPECT_NEAR(quality.psnr_gamma_db, 20 * std::log10(2.0), kToleranceDb);
+}
+
+TEST(VideoQualityTest, Pu21PsnrTakesThePeakLuminanceAsItsPeak) {
+    for (const double peak : {100.0, 4000.0}) {
+        const auto quality = flat_quality({0.5F}, {1}, {.peak_cd_per_m2 = peak});
+        const double expected = 20 * std::log10(pu21(peak) / (pu21(peak) - pu21(peak / 2)));
+        EXPECT_NEAR(quality.pu21_psnr_db, expected, kToleranceDb);
+    }
+}
+
+TEST(VideoQualityTest, ClampsBothSidesToTheLargestValue) {
+    EXPECT_NEAR(flat_quality({5}, {1.5F}, {.max_value = 2.0}).psnr_db, 20 * std::log10(2.0),
+                kToleranceDb);
+    EXPECT_EQ(flat_quality({5}, {7}, {.max_value = 2.0}).psnr_db, kInfinity);
+}
+
+TEST(VideoQualityTest, LeavesOutTheMarginAtBothEnds) {
+    const Floats reference(5, 0.5F);
+    const auto quality = flat_quality({0, 0, 0.6F, 0, 0}, reference, {.margin = 2});
+    EXPECT_NEAR(quality.psnr_db, 20, kToleranceDb);
+    EXPECT_NEAR(quality.psnr_frame_mean_db, 20, kToleranceDb);
+}
+
+TEST(VideoQualityTest, AMarginThatLeavesNothingIsAnError) {
+    EXPECT_THROW(flat_quality({0, 0, 0, 0}, Floats(4), {.margin = 2}), InputError);
+    EXPECT_THROW(flat_quality({}, {}), InputError);
+}
+
+TEST(VideoQualityTest, IdenticalVideosAreInfinitelyGood) {
+    const Floats frame = noise(kShape.sites(), 1);
+    QualityMeter meter(kShape, {});
+    meter.add(frame, frame);
+    const auto quality = meter.quality();
+    EXPECT_EQ(quality.psnr_db, kInfinity);
+    EXPECT_EQ(quality.psnr_gamma_db, kInfinity);
+    EXPECT_EQ(quality.psnr_frame_mean_db, kInfinity);
+    EXPECT_EQ(quality.pu21_psnr_db, kInfinity);
+    EXPECT_NEAR(quality.ssim, 1, 1e-12);
+}
+
+TEST(VideoQualityTest, SsimIsTheMeanOverFramesAndPlanesAfterTheCurve) {
+    const FrameShape shape{12, 16, 3};
+    QualityMeter meter(shape, {});
+    double expected = 0;
+    for (std::uint32_t t = 0; t < 2; ++t) {
+        const Floats result = noise(shape.sites(), 10 + t);
+        const Floats reference = noise(shape.sites(), 20 + t);
+        meter.add(result, reference);
+        for (std::size_t plane = 0; plane < 3; ++plane) {
+            Floats x;
+            Floats y;
+            for (std::size_t i = plane * shape.pixels(); i < (plane + 1) * shape.pixels(); ++i) {
+                x.push_back(std::pow(std::min(result[i], 1.0F), 1 / 2.2F));
+                y.push_back(std::pow(std::min(reference[i], 1.0F), 1 / 2.2F));
+            }
+            expected += ssim({x.data(), 12, 16}, {y.data(), 12, 16}) / 6;
+        }
+    }
+    EXPECT_NEAR(meter.quality().ssim, expected, 1e-9);
+}
+
+TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
+    const auto measure = [](int threads) {
+        const ThreadLimit limit(threads);
+        QualityMeter meter({40, 50, 3}, {});
+        meter.add(noise(40 * 50 * 3, 1), noise(40 * 50 * 3, 2));
+        return meter.quality();
+    };
+    const auto one = measure(1);
+    const auto two = measure(2);
+    EXPECT_EQ(one.psnr_db, two.psnr_db);
+    EXPECT_EQ(one.psnr_gamma_db, two.psnr_gamma_db);
+    EXPECT_EQ(one.pu21_psnr_db, two.pu21_psnr_db);
+    EXPECT_EQ(one.ssim, two.ssim);
+}
+
+TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
+    EXPECT_THROW(QualityMeter({}, {}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.margin = -1}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.peak_cd_per_m2 = 0}), InputError);
+}
+
+}  // namespace
+}  // namespace stipple
