@@ -22,10 +22,9 @@ enum class DecodeMethod {
 using FrameSink = std::function<bool(std::int64_t slot, std::span<const float> frame)>;
 
 struct DecodeReport {
-    std::int64_t slots = 0;          ///< frames delivered
-    std::uint64_t voxels = 0;        ///< slots x planes x rows x cols
-    double seconds = 0;              ///< wall time, the sink's included
-    std::uint64_t working_bytes = 0;  ///< most memory held for voxels of a block at a time
+    std::int64_t slots = 0;    ///< frames delivered
+    std::uint64_t voxels = 0;  ///< slots x planes x rows x cols
+    double seconds = 0;        ///< wall time, the sink's included
 };
 
 /// Decodes a stream from where its reader stands (its beginning), block by block: memory does not

@@ -1,0 +1,46 @@
+#include "decoder/block_partition.h"
+
+#include <algorithm>
+
+namespace stipple {
+namespace {
+
+constexpr std::int64_t kHaloPixels = 32;
+constexpr std::int64_t kMaxCoreSites = std::int64_t{1} << 20;
+
+Stretch part(std::int64_t length, std::int64_t i, std::int64_t parts) {
+    const std::int64_t begin = length * i / parts;
+    const std::int64_t end = length * (i + 1) / parts;
+    return {.begin = std::max<std::int64_t>(begin - kHaloPixels, 0),
+            .core_begin = begin,
+            .core_end = end,
+            .end = std::min(end + kHaloPixels, length)};
+}
+
+}  // namespace
+
+Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots) {
+    const bool last = slots - core_begin <= kCoreSlots + kRestSlots;
+    const std::int64_t core_end = last ? slots : core_begin + kCoreSlots;
+    return {.begin = std::max<std::int64_t>(core_begin - kHaloSlots, 0),
+            .core_begin = core_begin,
+            .core_end = core_end,
+            .end = std::min(core_end + kHaloSlots, slots)};
+}
+
+std::vector<Tile> frame_tiles(FrameShape shape) {
+    std::int64_t down = 1;
+    std::int64_t across = 1;
+    const auto ceil_div = [](std::int64_t a, std::int64_t b) { return (a + b - 1) / b; };
+    const auto tile_rows = [&] { return ceil_div(shape.rows, down); };
+    const auto tile_cols = [&] { return ceil_div(shape.cols, across); };
+    while (tile_rows() * tile_cols() * shape.planes > kMaxCoreSites)
+        ++(tile_rows() > tile_cols() ? down : across);
+    std::vector<Tile> tiles;
+    for (std::int64_t row = 0; row < down; ++row)
+        for (std::int64_t col = 0; col < across; ++col)
+            tiles.push_back({part(shape.rows, row, down), part(shape.cols, col, across)});
+    return tiles;
+}
+
+}  // namespace stipple

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// A stretch of rows, columns or slots: [begin, end) is decoded, [core_begin, core_end) is kept.
+/// What lies between is the halo, in which the edge of the block does harm.
+struct Stretch {
+    std::int64_t begin = 0;
+    std::int64_t core_begin = 0;
+    std::int64_t core_end = 0;
+    std::int64_t end = 0;
+};
+
+/// Slots of a block's core, of its halo on each side, and the longest rest that the last block
+/// takes along instead of leaving it to a block of its own.
+inline constexpr std::int64_t kCoreSlots = 48;
+inline constexpr std::int64_t kHaloSlots = 8;
+inline constexpr std::int64_t kRestSlots = 16;
+
+/// The block of slots whose core begins at `core_begin`, of a recording that has `slots` slots; if
+/// it may go on, `slots` is what is known so far, at least core_begin + kCoreSlots + kRestSlots
+/// + 1.
+[[nodiscard]] Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots);
+
+/// Tiles of a frame, in rows and columns.
+struct Tile {
+    Stretch rows;
+    Stretch cols;
+};
+
+/// Cuts a frame into the fewest equal tiles with at most 2^20 sites in their cores; it depends on
+/// the shape only.
+[[nodiscard]] std::vector<Tile> frame_tiles(FrameShape shape);
+
+}  // namespace stipple

@@ -1,0 +1,94 @@
+// Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over sites are
+// left to the compiler's vectoriser; every target gives the same bits.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decoder/data_prox.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include <hwy/highway.h>
+
+#include <cassert>
+#include <cstdint>
+
+#include "decoder/data_prox.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace stipple::HWY_NAMESPACE {
+
+/// One slot of a run.
+struct Slice {
+    std::size_t sites;
+    const std::uint8_t* state;
+    const float* y;
+    const float* variance;
+    const float* step;
+    float* v;
+};
+
+Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const float* step,
+            float* v) {
+    const std::size_t voxel = slot * m.shape.sites() + run.begin;
+    const std::size_t pixels = m.shape.pixels();
+    return {.sites = run.end - run.begin,
+            .state = &m.state[voxel],
+            .y = &m.sum[voxel],
+            .variance = &m.variance[voxel],
+            .step = step + slot * pixels + run.begin % pixels,
+            .v = v + voxel};
+}
+
+/// Adds a slot to the sums of v and step over each exposure; `correction` is (y - sum v) /
+/// (variance + sum step) where an exposure ends, else anything.
+void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_step,
+            float* HWY_RESTRICT correction) {
+    const std::uint8_t* HWY_RESTRICT state = s.state;
+    for (std::size_t i = 0; i < s.sites; ++i) {
+        const float keep = (state[i] & Measurements::kFirst) != 0 ? 0.0F : 1.0F;
+        const float open = (state[i] & Measurements::kOpen) != 0 ? 1.0F : 0.0F;
+        sum_v[i] = keep * sum_v[i] + open * s.v[i];
+        sum_step[i] = keep * sum_step[i] + open * s.step[i];
+        const float missing = s.y[i] - sum_v[i];
+        const bool explained = (state[i] & Measurements::kSaturated) != 0 && missing < 0;
+        correction[i] = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
+    }
+}
+
+/// Moves the open voxels of a slot; `correction` is that of the exposure each is in.
+void distribute(const Slice& s, const float* HWY_RESTRICT ending, float* HWY_RESTRICT correction) {
+    const std::uint8_t* HWY_RESTRICT state = s.state;
+    float* HWY_RESTRICT v = s.v;
+    for (std::size_t i = 0; i < s.sites; ++i) {
+        correction[i] = (state[i] & Measurements::kLast) != 0 ? ending[i] : correction[i];
+        const float move = s.step[i] * correction[i];
+        v[i] += (state[i] & Measurements::kOpen) != 0 ? move : 0.0F;
+    }
+}
+
+void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
+    const auto slots = static_cast<std::size_t>(m.slots);
+    float ending[kMaxRunSlots][kMaxRunSites];
+    float sum_v[kMaxRunSites] = {};
+    float sum_step[kMaxRunSites] = {};
+    for (std::size_t slot = 0; slot < slots; ++slot)
+        add_up(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
+    float correction[kMaxRunSites] = {};
+    for (std::size_t slot = slots; slot-- > 0;)
+        distribute(slice(m, run, slot, step, v), ending[slot], correction);
+}
+
+}  // namespace stipple::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stipple {
+
+HWY_EXPORT(prox_run);
+
+void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
+               std::span<float> v) noexcept {
+    assert(run.end - run.begin <= kMaxRunSites && measurements.slots <= kMaxRunSlots);
+    assert(v.size() == measurements.voxels());
+    HWY_DYNAMIC_DISPATCH(prox_run)(measurements, run, step.data(), v.data());
+}
+
+}  // namespace stipple
+#endif  // HWY_ONCE

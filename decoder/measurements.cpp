@@ -1,0 +1,148 @@
+#include "decoder/measurements.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace stipple {
+namespace {
+
+/// DN to light, and which DN say only "at least".
+class Converter {
+  public:
+    explicit Converter(const Calibration& calibration)
+        : unit_per_dn_(calibration.gain_e_per_dn / calibration.electrons_per_unit),
+          black_level_dn_(calibration.black_level_dn -
+                          (calibration.rounding == Rounding::kFloor ? 0.5 : 0.0)) {
+        // A sample within two standard deviations of the full well may have been clipped by it.
+        const double well_dn =
+            calibration.black_level_dn +
+            (calibration.full_well_e - 2 * calibration.read_noise_e) / calibration.gain_e_per_dn;
+        const double full_scale_dn = static_cast<double>((1U << calibration.bit_depth) - 1);
+        saturation_dn_ = std::min(full_scale_dn, well_dn);
+    }
+    [[nodiscard]] float light(std::uint16_t dn) const {
+        return static_cast<float>((dn - black_level_dn_) * unit_per_dn_);
+    }
+    [[nodiscard]] bool saturated(std::uint16_t dn) const { return dn >= saturation_dn_; }
+
+  private:
+    double unit_per_dn_;
+    double black_level_dn_;
+    double saturation_dn_;
+};
+
+std::size_t index(std::int64_t value) {
+    return static_cast<std::size_t>(value);
+}
+
+class Collector {
+  public:
+    Collector(const StreamHeader& header, const VideoWindow& window, Measurements& measurements)
+        : schedule_(header.schedule),
+          array_(header.shape),
+          converter_(header.calibration),
+          noise_(header.calibration),
+          window_(window),
+          out_(measurements) {}
+
+    void add(const SamplePacket& packet) {
+        if (packet.slot < window_.first_slot || packet.slot >= window_.first_slot + window_.slots ||
+            packet.dn.empty())
+            return;
+        const std::uint16_t* dn = packet.dn.data();
+        for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+            visit_due(schedule_, packet.slot, row, array_.cols, [&](int col, int span_slots) {
+                place(packet.slot, row, col, {dn, span_slots});
+                dn += array_.planes;
+            });
+    }
+
+  private:
+    struct Sample {
+        const std::uint16_t* dn;  ///< one for each plane
+        int span_slots;
+    };
+
+    void place(std::int64_t last_slot, int row, int col, const Sample& sample) {
+        const int window_row = row - window_.first_row;
+        const int window_col = col - window_.first_col;
+        const std::int64_t first = last_slot - sample.span_slots + 1 - window_.first_slot;
+        if (window_row < 0 || window_row >= window_.shape.rows || window_col < 0 ||
+            window_col >= window_.shape.cols || first < 0)
+            return;
+        const std::uint64_t open = open_slots(last_slot, row, col, sample.span_slots);
+        const auto sites = window_.shape.sites();
+        auto voxel = index(first) * sites + index(window_row) * index(window_.shape.cols) +
+                     index(window_col);
+        for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
+            write(voxel, sample.dn[plane], {open, sample.span_slots});
+    }
+
+    struct Span {
+        std::uint64_t open_slots;
+        int slots;
+    };
+
+    void write(std::size_t first_voxel, std::uint16_t dn, const Span& span) {
+        const auto sites = window_.shape.sites();
+        for (int i = 0; i < span.slots; ++i)
+            if ((span.open_slots >> static_cast<unsigned>(i) & 1U) != 0)
+                out_.state[first_voxel + index(i) * sites] = Measurements::kOpen;
+        const std::size_t last_voxel = first_voxel + index(span.slots - 1) * sites;
+        out_.state[first_voxel] |= Measurements::kFirst;
+        out_.state[last_voxel] |= Measurements::kLast;
+        if (converter_.saturated(dn)) out_.state[last_voxel] |= Measurements::kSaturated;
+        out_.sum[last_voxel] = converter_.light(dn);
+        out_.variance[last_voxel] = noise_.variance(out_.sum[last_voxel]);
+    }
+
+    [[nodiscard]] std::uint64_t open_slots(std::int64_t last_slot, int row, int col,
+                                           int span_slots) const {
+        const auto period = schedule_.period_slots();
+        const auto first = static_cast<std::uint32_t>((last_slot - span_slots + 1 + period) %
+                                                      period);  // span_slots <= period
+        for (const Exposure& e :
+             schedule_.exposures(row % schedule_.tile_rows(), col % schedule_.tile_cols()))
+            if (e.first_slot == first) return e.open_slots;
+        return 0;  // cannot be: the pixel is due, so it has this exposure
+    }
+
+    const ExposureSchedule& schedule_;
+    FrameShape array_;
+    Converter converter_;
+    SampleNoise noise_;
+    VideoWindow window_;
+    Measurements& out_;
+};
+
+}  // namespace
+
+Measurements collect_measurements(const StreamHeader& header, std::span<const SamplePacket> packets,
+                                  const VideoWindow& window) {
+    if (header.schedule.interleaved())
+        throw InputError("exposure schedule",
+                         "pixels begin an exposure before the last one has ended; this decoder "
+                         "takes schedules without such overlap");
+    Measurements result{
+        .slots = window.slots,
+        .shape = window.shape,
+        .state = std::vector<std::uint8_t>(window.voxels()),
+        .sum = std::vector<float>(window.voxels()),
+        .variance = std::vector<float>(window.voxels()),
+    };
+    Collector collector(header, window, result);
+    parallel_for(0, static_cast<int>(packets.size()),
+                 [&](int i) { collector.add(packets[index(i)]); });
+    return result;
+}
+
+SampleNoise::SampleNoise(const Calibration& calibration)
+    : per_unit_(static_cast<float>(1 / calibration.electrons_per_unit)) {
+    const double read = calibration.read_noise_e / calibration.electrons_per_unit;
+    const double quantum = calibration.gain_e_per_dn / calibration.electrons_per_unit;
+    constant_ = static_cast<float>(read * read + quantum * quantum / 12);
+}
+
+}  // namespace stipple

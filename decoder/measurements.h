@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// A box of voxels of a recording: `slots` slots from `first_slot` of the pixels from
+/// (first_row, first_col); `shape` is the size of one of its frames.
+struct VideoWindow {
+    std::int64_t first_slot = 0;
+    int slots = 0;
+    int first_row = 0;
+    int first_col = 0;
+    FrameShape shape;
+
+    [[nodiscard]] std::size_t voxels() const {
+        return static_cast<std::size_t>(slots) * shape.sites();
+    }
+};
+
+/// The samples y of a window in the units of FluxVideo, spread out so that a voxel knows its
+/// exposure: arrays of order (slot, plane, row, col). Exposures that reach beyond the window or
+/// whose sample is missing are not in it; their voxels are unobserved.
+struct Measurements {
+    static constexpr std::uint8_t kOpen = 1;       ///< the voxel's light is in a sample
+    static constexpr std::uint8_t kFirst = 2;      ///< first voxel of an exposure
+    static constexpr std::uint8_t kLast = 4;       ///< last voxel of an exposure, where `sum` is
+    static constexpr std::uint8_t kSaturated = 8;  ///< with kLast: the light is `sum` or more
+
+    int slots = 0;
+    FrameShape shape;
+    std::vector<std::uint8_t> state;
+    std::vector<float> sum;       ///< y: light of the whole exposure, at its last voxel; else 0
+    std::vector<float> variance;  ///< of `sum` at the same voxel; else 0
+
+    [[nodiscard]] std::size_t voxels() const { return state.size(); }
+};
+
+/// Collects the samples of `window` from packets that may hold more. Variances are set as if each
+/// sample were its own mean. \throws InputError if the schedule is interleaved: its exposures
+/// overlap in time, which the arrays above cannot tell.
+[[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
+                                                std::span<const SamplePacket> packets,
+                                                const VideoWindow& window);
+
+/// Noise of a sample in the units of FluxVideo: shot noise, read noise and rounding.
+class SampleNoise {
+  public:
+    explicit SampleNoise(const Calibration& calibration);
+    /// (r X + sigma^2) / r^2 + q^2 / 12 for an exposure that collected the light X: r electrons
+    /// per unit, read noise sigma, one DN q.
+    [[nodiscard]] float variance(float light) const {
+        return constant_ + per_unit_ * (light > 0 ? light : 0);
+    }
+
+  private:
+    float per_unit_;
+    float constant_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,108 @@
+#include "decoder/motion_tv.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/light.h"
+#include "core/parallel.h"
+#include "decoder/nearest_samples.h"
+#include "decoder/sampling_operator.h"
+
+namespace stipple {
+namespace {
+
+constexpr float kMinStep = 0.1F;  // of the step at `step_flux`
+constexpr float kMaxStep = 4;
+constexpr int kBlurRadius = 3;  // pixels; a box of 7 has a standard deviation of 2
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+/// Mean of 2 kBlurRadius + 1 values around each of `count`, `stride` apart; ends are repeated.
+void box_blur(int count, std::size_t stride, const float* from, float* to) {
+    for (int i = 0; i < count; ++i) {
+        float sum = 0;
+        for (int k = i - kBlurRadius; k <= i + kBlurRadius; ++k)
+            sum += from[index(std::clamp(k, 0, count - 1)) * stride];
+        to[index(i) * stride] = sum / (2 * kBlurRadius + 1);
+    }
+}
+
+/// Light of a frame as one plane.
+void reduce_to_one_plane(std::span<const float> frame, std::span<float> light) {
+    if (frame.size() == 3 * light.size())
+        reduce_to_luminance(frame, light);
+    else
+        std::copy_n(frame.begin(), light.size(), light.begin());
+}
+
+/// Primal steps in proportion to the light around a pixel: what is bright moves further and is
+/// known less exactly.
+std::vector<float> primal_steps(const FluxVideo& x, const MotionTvOptions& options) {
+    const FrameShape shape = x.shape();
+    std::vector<float> step(index(x.slots()) * shape.pixels());
+    parallel_for(0, x.slots(), [&](int slot) {
+        const auto frame = std::span(step).subspan(index(slot) * shape.pixels(), shape.pixels());
+        reduce_to_one_plane(x.frame(slot), frame);
+        for (float& s : frame)
+            s = options.step * std::clamp(s / options.step_flux, kMinStep, kMaxStep);
+        std::vector<float> across(shape.pixels());
+        const auto cols = index(shape.cols);
+        for (std::size_t row = 0; row < index(shape.rows); ++row)
+            box_blur(shape.cols, 1, &frame[row * cols], &across[row * cols]);
+        for (std::size_t col = 0; col < cols; ++col)
+            box_blur(shape.rows, cols, &across[col], &frame[col]);
+    });
+    return step;
+}
+
+/// Takes the confidence from links whose partner has a much larger step: it has become brighter,
+/// so it is hardly the same thing, and the dual step, made for the smaller one, would not converge.
+void cut_links_to_larger_steps(MotionField& field, FrameShape shape, std::span<const float> step,
+                               float max_ratio) {
+    const auto slots = static_cast<int>(step.size() / shape.pixels());
+    const auto cols = index(shape.cols);
+    parallel_for(0, slots, [&](int slot) {
+        if (slot + field.step < 0 || slot + field.step >= slots) return;
+        const float* partner = &step[index(slot + field.step) * shape.pixels()];
+        std::size_t i = index(slot) * shape.pixels();
+        for (int row = 0; row < shape.rows; ++row)
+            for (int col = 0; col < shape.cols; ++col, ++i) {
+                const auto partner_pixel = [](int at, int shift, int last) {
+                    constexpr int kPerPixel = MotionField::kShiftsPerPixel;
+                    return index(std::min((at * kPerPixel + shift) / kPerPixel, last));
+                };
+                const auto top = partner_pixel(row, field.row_shift[i], shape.rows - 2);
+                const auto left = partner_pixel(col, field.col_shift[i], shape.cols - 2);
+                const float* at = partner + top * cols + left;
+                if (std::max({at[0], at[1], at[cols], at[cols + 1]}) > max_ratio * step[i])
+                    field.confidence[i] = 0;
+            }
+    });
+}
+
+}  // namespace
+
+FluxVideo decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
+                           const MotionTvOptions& options) {
+    FluxVideo x = nearest_samples(measurements);
+    minimise_total_variation(measurements, {}, primal_steps(x, options), options.at_rest, x);
+    const FrameShape shape = x.shape();
+    if (std::min(shape.rows, shape.cols) < kMinMotionSide) return x;
+    for (int round = 0; round < options.rounds; ++round) {
+        refresh_variances(measurements, noise, x.data());
+        auto motion = estimate_motion(x, {.finest_scale = round == 0 ? 1 : 0});
+        const auto step = primal_steps(x, options);
+        for (MotionField& field : motion)
+            cut_links_to_larger_steps(field, shape, step, options.max_step_ratio);
+        auto along_motion = options.along_motion;
+        if (round + 1 == options.rounds) along_motion.iterations = options.last_iterations;
+        minimise_total_variation(measurements, motion, step, along_motion, x);
+    }
+    return x;
+}
+
+}  // namespace stipple

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/flux_video.h"
+#include "decoder/measurements.h"
+#include "decoder/motion.h"
+#include "decoder/total_variation.h"
+
+namespace stipple {
+
+/// The method `fast`; the values were found on natural and high-speed footage
+/// (docs/decoder_experiments.md).
+struct MotionTvOptions {
+    /// The estimate that the first motion is found in: total variation at rest.
+    TotalVariationOptions at_rest{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
+    /// Along motion, once a round.
+    TotalVariationOptions along_motion{
+        .iterations = 12, .spatial_weight = 4, .temporal_weight = 45};
+    int rounds = 3;
+    int last_iterations = 30;  ///< of the last round, instead of those of `along_motion`
+    float step = 0.005F;       ///< primal step at `step_flux`, flux^2
+    float step_flux = 0.3F;
+    float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
+};
+
+/// Decodes one block: total variation at rest, then rounds of (variances, motion, total variation
+/// along it), each from the estimate of the last. The result may be slightly negative.
+[[nodiscard]] FluxVideo decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
+                                         const MotionTvOptions& options);
+
+}  // namespace stipple

@@ -1,0 +1,89 @@
+#include "decoder/nearest_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/parallel.h"
+
+namespace stipple {
+namespace {
+
+/// exp(-d / 1.5) for a distance of d slots; further away nothing changes.
+constexpr std::array<float, 17> kCloseness = {
+    1.0F,           5.13417119e-1F, 2.63597138e-1F, 1.35335283e-1F, 6.94834512e-2F, 3.56739933e-2F,
+    1.83156389e-2F, 9.40356255e-3F, 4.82794999e-3F, 2.47875218e-3F, 1.27263380e-3F, 6.53391981e-4F,
+    3.35462628e-4F, 1.72232257e-4F, 8.84270376e-5F, 4.53999298e-5F, 2.33091012e-5F};
+constexpr float kShortest = 0.3F;
+constexpr float kSaturatedWeight = 1e-6F;
+
+/// An exposure of one site.
+struct SiteExposure {
+    int first_slot;
+    int last_slot;
+    int open_slots;
+    float light_per_slot;
+    float weight;
+};
+
+void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
+    list.clear();
+    SiteExposure e{};
+    for (int slot = 0; slot < m.slots; ++slot) {
+        const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
+        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, 0, 0};
+        e.open_slots += m.state[i] & Measurements::kOpen;
+        if ((m.state[i] & Measurements::kLast) == 0) continue;
+        const bool saturated = (m.state[i] & Measurements::kSaturated) != 0;
+        const auto n = static_cast<float>(e.open_slots);
+        e.last_slot = slot;
+        e.light_per_slot = m.sum[i] / n;
+        e.weight = (saturated ? kSaturatedWeight : 1.0F) / (kShortest + n);
+        list.push_back(e);
+    }
+}
+
+/// Weighted mean for one slot; `own` is the exposure that the slot is in, or none.
+float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposure* own) {
+    float light = 0;
+    float weight = 0;
+    for (const SiteExposure& e : list) {
+        if (own != nullptr && &e != own && e.open_slots >= own->open_slots) continue;
+        const int distance = std::max({0, e.first_slot - slot, slot - e.last_slot});
+        const float w =
+            e.weight *
+            kCloseness[std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1)];
+        light += w * e.light_per_slot;
+        weight += w;
+    }
+    return weight > 0 ? light / weight : 0;
+}
+
+void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list,
+                   float* x) {
+    list_exposures(m, site, list);
+    auto next = list.begin();
+    for (int slot = 0; slot < m.slots; ++slot) {
+        const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
+        while (next != list.end() && next->last_slot < slot) ++next;
+        const bool open = (m.state[i] & Measurements::kOpen) != 0;
+        x[i] = estimate(list, slot, open ? &*next : nullptr);
+    }
+}
+
+}  // namespace
+
+FluxVideo nearest_samples(const Measurements& measurements) {
+    FluxVideo x(measurements.slots, measurements.shape);
+    const auto cols = static_cast<std::size_t>(measurements.shape.cols);
+    parallel_for(0, measurements.shape.planes * measurements.shape.rows, [&](int row) {
+        std::vector<SiteExposure> list;
+        const std::size_t begin = static_cast<std::size_t>(row) * cols;
+        for (std::size_t site = begin; site < begin + cols; ++site)
+            estimate_site(measurements, site, list, x.data().data());
+    });
+    return x;
+}
+
+}  // namespace stipple

@@ -1,0 +1,129 @@
+#include "decoder/reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/error.h"
+#include "decoder/block_partition.h"
+#include "decoder/motion_tv.h"
+#include "decoder/nearest_samples.h"
+
+namespace stipple {
+namespace {
+
+std::size_t index(std::int64_t value) {
+    return static_cast<std::size_t>(value);
+}
+
+/// The packets that the blocks being decoded need, read as late as possible.
+class PacketBuffer {
+  public:
+    explicit PacketBuffer(StreamReader& reader) : reader_(reader) {}
+
+    /// Reads on until every packet of slots below `slot` is here, or the stream ends.
+    void read_up_to(std::int64_t slot) {
+        while (!ended_ && slots_ <= slot) {
+            SamplePacket packet;
+            ended_ = !reader_.next(packet);
+            if (ended_) break;
+            slots_ = std::max(slots_, packet.slot + 1);
+            packets_.push_back(std::move(packet));
+        }
+        if (ended_) slots_ = std::max(slots_, reader_.slots().value_or(0));
+    }
+    void drop_below(std::int64_t slot) {
+        std::erase_if(packets_, [&](const SamplePacket& packet) { return packet.slot < slot; });
+    }
+    /// Slots that are known to be in the recording; all, once it has been read to its end.
+    [[nodiscard]] std::int64_t slots() const { return slots_; }
+    [[nodiscard]] std::span<const SamplePacket> packets() const { return packets_; }
+
+  private:
+    StreamReader& reader_;
+    bool ended_ = false;
+    std::int64_t slots_ = 0;
+    std::vector<SamplePacket> packets_;
+};
+
+FluxVideo decode_block(const StreamHeader& header, std::span<const SamplePacket> packets,
+                       DecodeMethod method, const VideoWindow& window) {
+    Measurements measurements = collect_measurements(header, packets, window);
+    if (method == DecodeMethod::kNaive) return nearest_samples(measurements);
+    return decode_motion_tv(measurements, SampleNoise(header.calibration), {});
+}
+
+/// Where a block's core goes in the frames of its slots.
+struct Placement {
+    Tile tile;
+    Stretch slots;
+};
+
+/// Copies the core of a decoded block; light is not negative.
+void copy_core(const FluxVideo& block, const Placement& at, FluxVideo& video) {
+    const auto [rows, cols] = at.tile;
+    const auto width = index(cols.core_end - cols.core_begin);
+    for (std::int64_t slot = at.slots.core_begin; slot < at.slots.core_end; ++slot)
+        for (int plane = 0; plane < video.shape().planes; ++plane)
+            for (std::int64_t row = rows.core_begin; row < rows.core_end; ++row) {
+                const auto from = block.plane(static_cast<int>(slot - at.slots.begin), plane)
+                                      .row(static_cast<int>(row - rows.begin))
+                                      .subspan(index(cols.core_begin - cols.begin), width);
+                const auto to = video.plane(static_cast<int>(slot - at.slots.core_begin), plane)
+                                    .row(static_cast<int>(row))
+                                    .subspan(index(cols.core_begin), width);
+                std::transform(from.begin(), from.end(), to.begin(),
+                               [](float light) { return std::max(light, 0.0F); });
+            }
+}
+
+/// Decodes the cores of all tiles of the block of slots.
+FluxVideo decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
+                       DecodeMethod method, const Stretch& slots) {
+    FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), header.shape);
+    for (const Tile& tile : frame_tiles(header.shape)) {
+        const FrameShape shape{.rows = static_cast<int>(tile.rows.end - tile.rows.begin),
+                               .cols = static_cast<int>(tile.cols.end - tile.cols.begin),
+                               .planes = header.shape.planes};
+        const VideoWindow window{.first_slot = slots.begin,
+                                 .slots = static_cast<int>(slots.end - slots.begin),
+                                 .first_row = static_cast<int>(tile.rows.begin),
+                                 .first_col = static_cast<int>(tile.cols.begin),
+                                 .shape = shape};
+        copy_core(decode_block(header, packets, method, window), {tile, slots}, video);
+    }
+    return video;
+}
+
+}  // namespace
+
+DecodeMethod decode_method_from_name(std::string_view name) {
+    if (name == "naive") return DecodeMethod::kNaive;
+    if (name == "fast") return DecodeMethod::kFast;
+    throw InputError("decoding method", fmt::format("`{}` is none of naive, fast", name));
+}
+
+DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink) {
+    const auto begin = std::chrono::steady_clock::now();
+    const StreamHeader& header = reader.header();
+    PacketBuffer buffer(reader);
+    DecodeReport report;
+    for (bool more = true; more;) {
+        buffer.read_up_to(report.slots + kCoreSlots + kRestSlots);
+        const Stretch slots = slot_stretch(report.slots, buffer.slots());
+        if (slots.core_end <= slots.core_begin) break;
+        buffer.drop_below(slots.begin);
+        const FluxVideo video = decode_slots(header, buffer.packets(), method, slots);
+        for (int slot = 0; slot < video.slots() && more; ++slot) {
+            more = sink(report.slots, video.frame(slot));
+            ++report.slots;
+        }
+    }
+    report.voxels = static_cast<std::uint64_t>(report.slots) * header.shape.sites();
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return report;
+}
+
+}  // namespace stipple

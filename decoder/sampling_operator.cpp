@@ -1,0 +1,68 @@
+#include "decoder/sampling_operator.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/parallel.h"
+
+namespace stipple {
+namespace {
+
+/// Calls body(first site, one past the last) for runs of sites that fit the cache.
+template <typename Body>
+void for_each_run(std::size_t sites, const Body& body) {
+    constexpr std::size_t kRun = 256;
+    parallel_for(0, static_cast<int>((sites + kRun - 1) / kRun), [&](int run) {
+        const auto begin = static_cast<std::size_t>(run) * kRun;
+        body(begin, std::min(begin + kRun, sites));
+    });
+}
+
+}  // namespace
+
+void sample(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
+    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+    const std::size_t sites = measurements.shape.sites();
+    for_each_run(sites, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> light(end - begin, 0);
+        for (std::size_t frame = 0; frame < measurements.voxels(); frame += sites)
+            for (std::size_t site = begin; site < end; ++site) {
+                const auto state = measurements.state[frame + site];
+                float& sum = light[site - begin];
+                if ((state & Measurements::kFirst) != 0) sum = 0;
+                if ((state & Measurements::kOpen) != 0) sum += x[frame + site];
+                sums[frame + site] = (state & Measurements::kLast) != 0 ? sum : 0;
+            }
+    });
+}
+
+void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
+    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+    const std::size_t sites = measurements.shape.sites();
+    for_each_run(sites, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> value(end - begin, 0);
+        for (std::size_t frame = measurements.voxels(); frame != 0;) {
+            frame -= sites;
+            for (std::size_t site = begin; site < end; ++site) {
+                const auto state = measurements.state[frame + site];
+                if ((state & Measurements::kLast) != 0) value[site - begin] = sums[frame + site];
+                x[frame + site] = (state & Measurements::kOpen) != 0 ? value[site - begin] : 0;
+            }
+        }
+    });
+}
+
+void refresh_variances(Measurements& measurements, const SampleNoise& noise,
+                       std::span<const float> x) {
+    sample(measurements, x, measurements.variance);
+    const std::size_t sites = measurements.shape.sites();
+    parallel_for(0, measurements.slots, [&](int slot) {
+        const auto begin = static_cast<std::size_t>(slot) * sites;
+        for (std::size_t i = begin; i < begin + sites; ++i)
+            measurements.variance[i] = (measurements.state[i] & Measurements::kLast) != 0
+                                           ? noise.variance(measurements.variance[i])
+                                           : 0;
+    });
+}
+
+}  // namespace stipple

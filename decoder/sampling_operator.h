@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "decoder/measurements.h"
+
+namespace stipple {
+
+// The sampling operator A of y = A x + noise: one row per exposure, 1 at each of its open voxels.
+// Rows share no voxel, so A A^T is diagonal and holds the number of open voxels. Arrays are those
+// of Measurements; a row is stored at its last voxel. The same bits for any thread count.
+
+/// sums = A x. Entries that end no exposure become 0.
+void sample(const Measurements& measurements, std::span<const float> x, std::span<float> sums);
+
+/// x = A^T sums: each open voxel takes the value of its exposure, others 0.
+void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x);
+
+/// Sets each variance to that of its exposure's light in the estimate x, which is less noisy than
+/// the sample.
+void refresh_variances(Measurements& measurements, const SampleNoise& noise,
+                       std::span<const float> x);
+
+}  // namespace stipple

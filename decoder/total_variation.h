@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/flux_video.h"
+#include "decoder/measurements.h"
+#include "decoder/motion.h"
+
+namespace stipple {
+
+/// Weights are in 1/flux: the price of a difference of 1.0 between neighbours.
+struct TotalVariationOptions {
+    int iterations = 20;
+    float spatial_weight = 4;
+    float temporal_weight = 30;  ///< all links of a voxel together, at full confidence
+};
+
+/// Minimises, by the primal-dual method of Chambolle and Pock (2011) from the start x,
+///   sum_k (y_k - (A x)_k)^2 / (2 variance_k) + spatial sum |grad x| + temporal sum_links c |D x|
+/// where grad x is the forward difference to the right and below, D x = x(partner) - x(voxel)
+/// between slots, c the link's confidence; |.| is the Euclidean norm over directions and planes,
+/// so edges of all planes fall together. Partners are found along `motion` by bilinear
+/// interpolation; without motion, at the same pixel one slot later. `step` is the primal step of
+/// each pixel (order (slot, row, col), flux^2): larger where more light changes in an iteration
+/// (Pock and Chambolle, ICCV 2011). The same bits for any thread count and SIMD target.
+void minimise_total_variation(const Measurements& measurements, std::span<const MotionField> motion,
+                              std::span<const float> step, const TotalVariationOptions& options,
+                              FluxVideo& x);
+
+}  // namespace stipple
