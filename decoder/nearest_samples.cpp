@@ -23,6 +23,7 @@ struct SiteExposure {
     int first_slot;
     int last_slot;
     int open_slots;
+    bool saturated;
     float light_per_slot;
     float weight;
 };
@@ -32,14 +33,14 @@ void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExp
     SiteExposure e{};
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
-        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, 0, 0};
+        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, false, 0, 0};
         e.open_slots += m.state[i] & Measurements::kOpen;
         if ((m.state[i] & Measurements::kLast) == 0) continue;
-        const bool saturated = (m.state[i] & Measurements::kSaturated) != 0;
+        e.saturated = (m.state[i] & Measurements::kSaturated) != 0;
         const auto n = static_cast<float>(e.open_slots);
         e.last_slot = slot;
         e.light_per_slot = m.sum[i] / n;
-        e.weight = (saturated ? kSaturatedWeight : 1.0F) / (kShortest + n);
+        e.weight = (e.saturated ? kSaturatedWeight : 1.0F) / (kShortest + n);
         list.push_back(e);
     }
 }
@@ -57,7 +58,8 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
         light += w * e.light_per_slot;
         weight += w;
     }
-    return weight > 0 ? light / weight : 0;
+    const float mean = weight > 0 ? light / weight : 0;
+    return own != nullptr && own->saturated ? std::max(mean, own->light_per_slot) : mean;
 }
 
 void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list,

@@ -17,6 +17,9 @@ std::size_t index(std::int64_t value) {
     return static_cast<std::size_t>(value);
 }
 
+/// Slots without any sample that are filled in; more are not a gap but a wrong number.
+constexpr std::int64_t kMaxMissingSlots = 100000;
+
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
@@ -28,6 +31,11 @@ class PacketBuffer {
             SamplePacket packet;
             ended_ = !reader_.next(packet);
             if (ended_) break;
+            if (packet.slot - slots_ > kMaxMissingSlots)
+                throw InputError("sample stream",
+                                 fmt::format("slot {} follows slot {}: more than {} slots are "
+                                             "missing, which is no recording to decode",
+                                             packet.slot, slots_ - 1, kMaxMissingSlots));
             slots_ = std::max(slots_, packet.slot + 1);
             packets_.push_back(std::move(packet));
         }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/philox.h"
-#include "tests/sensor_model/simd_targets.h"
+#include "tests/support/simd_targets.h"
 
 namespace stipple {
 namespace {

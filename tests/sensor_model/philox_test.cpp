@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sensor_model/sample_words.h"
-#include "tests/sensor_model/simd_targets.h"
+#include "tests/support/simd_targets.h"
 
 namespace stipple {
 namespace {

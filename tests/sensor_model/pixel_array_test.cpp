@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/poisson.h"
-#include "tests/sensor_model/simd_targets.h"
+#include "tests/support/simd_targets.h"
 
 namespace stipple {
 namespace {

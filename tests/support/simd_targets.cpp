@@ -1,4 +1,4 @@
-#include "tests/sensor_model/simd_targets.h"
+#include "tests/support/simd_targets.h"
 
 #include <hwy/targets.h>
 

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/footage_arguments.h"
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/progress.h"
+#include "apps/quality_json.h"
+#include "apps/read_ahead.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+#include "metrics/video_quality.h"
+
+namespace stipple {
+namespace {
+
+struct CompareOptions {
+    std::string result;
+    std::string reference;
+    FootageOptions footage;  ///< of the reference
+    QualityOptions quality;
+};
+
+[[noreturn]] void fail_shape(const CompareOptions& options, FrameShape result, FrameShape wanted) {
+    throw InputError(options.result,
+                     fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+                                 "reference \"{}\" has {} x {} x {}{}",
+                                 result.rows, result.cols, result.planes, options.reference,
+                                 wanted.rows, wanted.cols, wanted.planes,
+                                 result.planes == wanted.planes ? "" : "; try --luminance"));
+}
+
+/// Adds up all frames. \throws InputError if one video ends before the other.
+void compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead& reference,
+                    QualityMeter& meter, Progress& progress) {
+    while (true) {
+        throw_if_stopped();
+        const auto a = result.next();
+        const auto b = reference.next();
+        if (a.empty() != b.empty())
+            throw InputError(
+                a.empty() ? options.result : options.reference,
+                fmt::format("ends after {} frames, before \"{}\" does", progress.done(),
+                            a.empty() ? options.reference : options.result));
+        if (a.empty()) return;
+        meter.add(a, b);
+        progress.advance();
+    }
+}
+
+void compare(const CompareOptions& options, const RunOptions& run) {
+    JsonFile json(run);
+    ReadAhead result(options.result, {.luminance = options.footage.luminance, .max_value = {}});
+    ReadAhead reference(options.reference, options.footage);
+    if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
+    QualityMeter meter(reference.shape(), options.quality);
+    VideoQuality quality;
+    {
+        Progress progress(run, "comparing", reference.slots());
+        compare_frames(options, result, reference, meter, progress);
+        quality = meter.quality();
+    }
+    json.write(quality_json(quality));
+    run.say(
+        fmt::format("PSNR        {:7.2f} dB  linear, peak 1.0\n"
+                    "PSNR gamma  {:7.2f} dB  clamped to 0..1, power 1/2.2\n"
+                    "PSNR frames {:7.2f} dB  linear, mean of the frames' values\n"
+                    "PU21-PSNR   {:7.2f} dB  1.0 = {} cd/m2\n"
+                    "SSIM        {:7.4f}     clamped to 0..1, power 1/2.2",
+                    quality.psnr_db, quality.psnr_gamma_db, quality.psnr_frame_mean_db,
+                    quality.pu21_psnr_db, options.quality.peak_cd_per_m2, quality.ssim));
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("compare", "Measure a video against its reference");
+    const auto options = std::make_shared<CompareOptions>();
+    command->add_option("RESULT", options->result, "video in linear light")->required();
+    command->add_option("REFERENCE", options->reference, "footage")->required();
+    command->add_option("--margin", options->quality.margin, "frames left out at each end (0)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N");
+    add_max_value(*command, options->quality.max_value);
+    add_footage_arguments(*command, options->footage);
+    command->footer(
+        "Examples:\n"
+        "  stipple compare decoded scene --margin 4\n"
+        "  stipple compare decoded.npy footage.npy --max-value 2 --json figures.json");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { compare(*options, run); };
+    });
+}
+
+}  // namespace stipple

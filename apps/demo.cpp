@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/demo_trials.h"
+#include "apps/json_file.h"
+#include "apps/name_check.h"
+#include "apps/scene_arguments.h"
+#include "apps/subcommands.h"
+#include "apps/trial.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+struct DemoOptions {
+    std::string folder = "stipple_demo";
+    std::string scene = "pan";
+    SceneOptions rendering;
+};
+
+/// \throws InputError, DeviceError.
+fs::path made_folder(const fs::path& folder, bool force) {
+    std::error_code error;
+    if (fs::is_directory(folder, error) && !force)
+        throw InputError(folder.string(),
+                         "exists already; give another name, or --force to replace what is in it");
+    if (!fs::is_directory(folder, error) && !fs::create_directory(folder, error))
+        throw DeviceError(folder.string(), "cannot be created: " + error.message());
+    return folder;
+}
+
+void demo(const DemoOptions& options, const RunOptions& run) {
+    const auto start = std::chrono::steady_clock::now();
+    const Scene scene(scene_from_name(options.scene), options.rendering);
+    JsonFile json(run);
+    const fs::path folder = made_folder(options.folder, run.force);
+    const FluxVideo truth = render_video(scene, run);
+    const auto results = run_trials(truth, folder, run);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    json.write({{"scene", options.scene},
+                {"slots", truth.slots()},
+                {"rows", truth.shape().rows},
+                {"cols", truth.shape().cols},
+                {"planes", truth.shape().planes},
+                {"seconds", elapsed.count()},
+                {"trials", trials_json(results)}});
+    run.say(
+        fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
+                    "In {}:\n"
+                    "  side_by_side_1.png ...  4x | 1x | naive | decoded | truth, tone-mapped\n"
+                    "  decoded.mp4             decoded video, tone-mapped\n"
+                    "  decoded/                the same as EXR, linear light\n"
+                    "  random.stipple          the recording it was made of",
+                    options.scene, truth.slots(), truth.shape().cols, truth.shape().rows,
+                    elapsed.count(), trials_table(results), folder.string()));
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("demo", "Render, emulate, decode and compare a scene");
+    const auto options = std::make_shared<DemoOptions>();
+    command->add_option("-o,--output", options->folder, "folder (stipple_demo)")->type_name("DIR");
+    command->add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
+        ->check(name_check(scene_from_name))
+        ->type_name("NAME");
+    add_scene_arguments(*command, options->rendering);
+    command->footer(
+        "Examples:\n"
+        "  stipple demo\n"
+        "  stipple demo -o dice_demo --scene dice --frames 32 --size 160x120");
+    command->callback(
+        [options, &action] { action = [options](const RunOptions& run) { demo(*options, run); }; });
+}
+
+}  // namespace stipple

@@ -1,0 +1,46 @@
+#include "apps/demo_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/quality_json.h"
+
+namespace stipple {
+
+nlohmann::ordered_json trials_json(const std::vector<TrialResult>& results) {
+    auto json = nlohmann::ordered_json::array();
+    for (const TrialResult& result : results) {
+        nlohmann::ordered_json entry{{"name", result.name},
+                                     {"schedule", result.schedule},
+                                     {"compression_ratio", result.size.compression_ratio},
+                                     {"payload_bits", result.size.payload_bits},
+                                     {"megabits_per_second", result.size.megabits_per_second}};
+        entry.update(quality_json(result.quality));
+        json.push_back(entry);
+    }
+    return json;
+}
+
+std::string trials_table(const std::vector<TrialResult>& results) {
+    constexpr auto kLine = "{:<16}{:>13}{:>9}{:>9}{:>10}{:>10}{:>10}{:>8}\n";
+    const auto number = [](double value, int digits) {
+        return fmt::format("{:.{}f}", value, digits);
+    };
+    std::string text = fmt::format(kLine, "", "compression", "Mbit", "Mbit/s", "PSNR dB",
+                                   "gamma dB", "PU21 dB", "SSIM");
+    for (const TrialResult& result : results)
+        text +=
+            fmt::format(kLine, result.name, number(result.size.compression_ratio, 2) + " : 1",
+                        number(static_cast<double>(result.size.payload_bits) / 1e6, 1),
+                        number(result.size.megabits_per_second, 1),
+                        number(result.quality.psnr_db, 2), number(result.quality.psnr_gamma_db, 2),
+                        number(result.quality.pu21_psnr_db, 2), number(result.quality.ssim, 3));
+    const RecordingSize& size = results.front().size;
+    return text + fmt::format(
+                      "Every pixel read in every slot would be {:.1f} Mbit/s. Light is "
+                      "compared up to {:.1f}.",
+                      size.megabits_per_second * size.compression_ratio, kBrightestLight);
+}
+
+}  // namespace stipple

@@ -1,0 +1,79 @@
+#include "apps/demo_trials.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+
+#include "apps/side_by_side.h"
+#include "apps/trial.h"
+#include "core/frame_writer.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// A way to record and decode the scene.
+struct Trial {
+    const char* name;
+    const char* schedule;
+    DecodeMethod method;
+};
+constexpr std::array<Trial, 4> kTrials = {{{"4x exposure", "full4x", DecodeMethod::kNaive},
+                                           {"1x exposure", "full1x", DecodeMethod::kNaive},
+                                           {"coded, naive", "random", DecodeMethod::kNaive},
+                                           {"coded, decoded", "random", DecodeMethod::kFast}}};
+
+/// A slot of which a picture is left.
+struct ShownSlot {
+    int slot;
+    SideBySide versions;
+};
+
+std::vector<ShownSlot> shown_slots(const FluxVideo& truth) {
+    std::vector<std::string> names;
+    names.reserve(kTrials.size() + 1);
+    for (const Trial& trial : kTrials) names.emplace_back(trial.name);
+    names.emplace_back("truth");
+    std::vector<ShownSlot> shown;
+    for (const int quarter : {1, 2, 3}) {
+        const int slot = truth.slots() * quarter / 4;
+        shown.push_back({slot, SideBySide(truth.shape(), names)});
+        shown.back().versions.put(kTrials.size(), truth.frame(slot));
+    }
+    return shown;
+}
+
+}  // namespace
+
+std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& folder,
+                                    const RunOptions& run) {
+    std::vector<ShownSlot> shown = shown_slots(truth);
+    FrameWriter frames(folder / "decoded", truth.shape(), {.force = run.force});
+    FrameWriter film(folder / "decoded.mp4", truth.shape(), {.force = run.force});
+    std::vector<TrialResult> results;
+    for (std::size_t i = 0; i < kTrials.size(); ++i) {
+        const auto& [name, schedule, method] = kTrials[i];
+        const fs::path file = folder / fmt::format("{}.stipple", schedule);
+        const bool recorded = i > 0 && results.back().schedule == schedule;
+        const RecordingSize size =
+            recorded ? results.back().size : record_video(truth, schedule, file, run);
+        const auto take = [&](std::int64_t slot, std::span<const float> frame) {
+            for (ShownSlot& place : shown)
+                if (place.slot == slot) place.versions.put(i, frame);
+            if (i + 1 < kTrials.size()) return true;
+            frames.write(frame);
+            film.write(frame);
+            return true;
+        };
+        results.push_back(
+            {name, schedule, size, decode_and_compare(file, method, truth, take, run)});
+    }
+    frames.finish();
+    film.finish();
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        shown[i].versions.write(folder / fmt::format("side_by_side_{}.png", i + 1), run.force);
+    return results;
+}
+
+}  // namespace stipple

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "apps/footage_arguments.h"
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/progress.h"
+#include "apps/read_ahead.h"
+#include "apps/recording.h"
+#include "apps/subcommands.h"
+#include "core/frame_writer.h"
+
+namespace stipple {
+namespace {
+
+struct EmulateOptions {
+    std::string footage;
+    std::string output;
+    std::string truth;  ///< empty: none
+    FootageOptions reading;
+    SensorChoice sensor;
+};
+
+/// The name of the footage without its folders.
+std::string name_of(const std::string& footage) {
+    const std::filesystem::path path(footage);
+    return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+void emulate(const EmulateOptions& options, const RunOptions& run) {
+    ReadAhead footage(options.footage, options.reading);
+    const SensorSetup setup = set_up_sensor(options.sensor, footage.shape());
+    JsonFile json(run);
+    std::optional<FrameWriter> truth;
+    if (!options.truth.empty())
+        truth.emplace(options.truth, setup.shape, FrameWriterOptions{.force = run.force});
+    Recording recording(options.output, run.force, setup, name_of(options.footage));
+    Progress progress(run, "emulating", footage.slots());
+    for (auto frame = footage.next(); !frame.empty() && stop_signal() == 0;
+         frame = footage.next()) {
+        recording.expose(frame);
+        if (truth) truth->write(frame);
+        progress.advance();
+    }
+    if (progress.done() == 0) throw_if_stopped();
+    if (truth) truth->finish();
+    recording.finish();
+    json.write(recording_json(recording, progress.seconds()));
+    run.say(fmt::format("{}: {}", options.output, recording_text(recording, progress.seconds())));
+}
+
+}  // namespace
+
+void add_emulate(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("emulate", "Footage through the sensor to a sample stream");
+    const auto options = std::make_shared<EmulateOptions>();
+    command
+        ->add_option("FOOTAGE", options->footage,
+                     "folder or printf pattern of PNG, TIFF or EXR, video file, or .npy")
+        ->required();
+    command->add_option("-o,--output", options->output, "sample stream")
+        ->type_name("FILE")
+        ->required();
+    command->add_option("--sensor", options->sensor.sensor, "sensor (paper)")
+        ->type_name("NAME|FILE");
+    command
+        ->add_option("--schedule", options->sensor.schedule,
+                     "who exposes when: random, tiled, full4x, full1x (random)")
+        ->type_name("NAME|FILE");
+    command
+        ->add_option("--set", options->sensor.settings,
+                     "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command->add_option("--seed", options->sensor.seed, "of noise and schedule (1)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
+    add_footage_arguments(*command, options->reading);
+    add_max_value(*command, options->reading.max_value);
+    command->add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
+        ->type_name("OUT");
+    command->footer(
+        "Examples:\n"
+        "  stipple emulate scene -o clip.stipple\n"
+        "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
+        "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
+        "      --set read_noise_e=5 --set bit_depth=10 --set schedule.tile_rows=8");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { emulate(*options, run); };
+    });
+}
+
+}  // namespace stipple

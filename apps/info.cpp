@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/stream_text.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+void info(const std::string& file, const RunOptions& run) {
+    StreamReader reader(file);
+    JsonFile json(run);
+    SamplePacket packet;
+    while (reader.next(packet)) throw_if_stopped();
+    json.write(stream_json(reader.header(), reader.report()));
+    run.say(stream_text(reader.header(), reader.report()));
+    if (!reader.header().provenance.empty())
+        run.say(fmt::format("provenance\n{}", reader.header().provenance));
+    if (!undamaged(reader.report())) throw InputError(file, damage_text(reader.report()));
+    run.say("condition    undamaged");
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("info", "Say what a sample stream is and holds");
+    const auto file = std::make_shared<std::string>();
+    command->add_option("STREAM", *file, "sample stream")->required();
+    command->footer(
+        "Examples:\n"
+        "  stipple info clip.stipple\n"
+        "  stipple info clip.stipple --json -\n"
+        "The whole stream is checked. If it is damaged, the damage is listed, the exit code is 1.");
+    command->callback(
+        [file, &action] { action = [file](const RunOptions& run) { info(*file, run); }; });
+}
+
+}  // namespace stipple

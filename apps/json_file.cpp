@@ -1,0 +1,32 @@
+#include "apps/json_file.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "core/output_file.h"
+
+namespace stipple {
+
+JsonFile::JsonFile(const RunOptions& run) : to_stdout_(run.json == "-") {
+    if (!run.json.empty() && !to_stdout_) output_.emplace(run.json, run.force);
+}
+
+void JsonFile::write(const nlohmann::ordered_json& figures) {
+    using nlohmann::ordered_json;
+    // Bytes of a damaged file that are no UTF-8 must not stop the report.
+    const std::string text =
+        figures.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+    if (to_stdout_) fmt::print("{}", text);
+    if (!output_) return;
+    OutputFile file(output_->partial(), output_->final_path().string());
+    file.write(std::as_bytes(std::span(text)));
+    file.close();
+    output_->commit();
+}
+
+}  // namespace stipple

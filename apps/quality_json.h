@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "metrics/video_quality.h"
+
+namespace stipple {
+
+/// The figures of a comparison under the names of docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json quality_json(const VideoQuality& quality);
+
+}  // namespace stipple

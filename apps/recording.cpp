@@ -1,0 +1,77 @@
+#include "apps/recording.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace stipple {
+namespace {
+
+StreamHeader header_of(const SensorSetup& setup, const std::string& footage) {
+    return {.shape = setup.shape,
+            .slot_us = setup.params.slot_us,
+            .calibration = calibration_of(setup.params),
+            .schedule = setup.schedule.schedule,
+            .schedule_source = setup.schedule.source,
+            .schedule_name = setup.schedule.name,
+            .provenance = provenance_of(setup, footage)};
+}
+
+}  // namespace
+
+Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
+                     const std::string& footage)
+    : setup_(setup),
+      output_(file, force),
+      sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed),
+      writer_(output_.partial(), header_of(setup, footage), output_.final_path().string()) {}
+
+void Recording::expose(std::span<const float> frame) {
+    sensor_.expose(frame, packet_);
+    writer_.write(packet_);
+}
+
+void Recording::finish() {
+    writer_.finish();
+    output_.commit();
+}
+
+std::uint64_t Recording::payload_bits() const {
+    return stats().samples * static_cast<std::uint64_t>(setup_.params.bit_depth);
+}
+
+double Recording::compression_ratio() const {
+    const double light_values =
+        static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.sites());
+    return light_values / static_cast<double>(stats().samples);
+}
+
+double Recording::saturated_fraction() const {
+    return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
+}
+
+nlohmann::ordered_json recording_json(const Recording& recording, double seconds) {
+    const ReadoutStats& stats = recording.stats();
+    return {{"slots", stats.slots},
+            {"samples", stats.samples},
+            {"payload_bits", recording.payload_bits()},
+            {"compression_ratio", recording.compression_ratio()},
+            {"light_throughput", recording.setup().schedule.schedule.light_throughput()},
+            {"saturated_fraction", recording.saturated_fraction()},
+            {"slots_per_second", static_cast<double>(stats.slots) / seconds},
+            {"samples_per_second", static_cast<double>(stats.samples) / seconds}};
+}
+
+std::string recording_text(const Recording& recording, double seconds) {
+    const SensorSetup& setup = recording.setup();
+    const ReadoutStats& stats = recording.stats();
+    return fmt::format(
+        "{} slots of {} x {} x {}, {} samples of {} bits, 1 for {:.2f} values of light\n"
+        "light throughput {:.1f} %, {:.2f} % of the samples saturated, {:.3g} slots/s",
+        stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, stats.samples,
+        setup.params.bit_depth, recording.compression_ratio(),
+        100 * setup.schedule.schedule.light_throughput(), 100 * recording.saturated_fraction(),
+        static_cast<double>(stats.slots) / seconds);
+}
+
+}  // namespace stipple

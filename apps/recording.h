@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+
+#include "apps/sensor_setup.h"
+#include "core/pending_output.h"
+#include "readout/coded_sensor.h"
+#include "stream/stream_writer.h"
+
+namespace stipple {
+
+/// An emulated sensor whose samples go to a stream file.
+class Recording {
+  public:
+    /// `setup` must outlive the recording. \throws InputError, DeviceError as PendingOutput and
+    /// StreamWriter.
+    Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
+              const std::string& footage);
+
+    /// Exposes the next slot to `frame` (order (plane, row, col)) and writes its samples.
+    /// \throws DeviceError.
+    void expose(std::span<const float> frame);
+    /// Puts the file in place. \throws DeviceError.
+    void finish();
+
+    [[nodiscard]] const SensorSetup& setup() const { return setup_; }
+    [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    [[nodiscard]] std::uint64_t payload_bits() const;
+    /// Light values per sample, both counted. Infinite before the first sample.
+    [[nodiscard]] double compression_ratio() const;
+    /// Samples at full scale. NaN before the first sample.
+    [[nodiscard]] double saturated_fraction() const;
+
+  private:
+    const SensorSetup& setup_;
+    PendingOutput output_;
+    CodedSensor sensor_;
+    StreamWriter writer_;
+    SamplePacket packet_;
+};
+
+/// What was recorded, for programs: the keys of `emulate` in docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording, double seconds);
+
+/// The same in two lines for people.
+[[nodiscard]] std::string recording_text(const Recording& recording, double seconds);
+
+}  // namespace stipple

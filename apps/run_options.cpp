@@ -1,0 +1,24 @@
+#include "apps/run_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+namespace stipple {
+
+void RunOptions::say(std::string_view text) const {
+    if (!quiet && json != "-") fmt::print("{}\n", text);
+}
+
+void add_run_options(CLI::App& command, RunOptions& run) {
+    command.add_option("--json", run.json, "write the figures as JSON; - is standard output")
+        ->type_name("FILE");
+    command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
+        ->check(CLI::Range(0, 1024))
+        ->type_name("N");
+    command.add_flag("--force", run.force, "replace existing outputs");
+    command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
+}
+
+}  // namespace stipple

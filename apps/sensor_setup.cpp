@@ -1,0 +1,60 @@
+#include "apps/sensor_setup.h"
+
+#include <toml++/toml.h>
+
+#include <sstream>
+#include <string_view>
+
+#include "core/config.h"
+#include "sensor_model/sensor_config.h"
+
+namespace stipple {
+namespace {
+
+/// The settings whose key begins with `section` (empty: with none of the sections), without it.
+std::vector<std::string> settings_of(const SensorChoice& choice, std::string_view section) {
+    constexpr std::string_view kSchedule = "schedule.";
+    std::vector<std::string> settings;
+    for (const std::string& setting : choice.settings)
+        if (setting.starts_with(kSchedule) == (section == kSchedule))
+            settings.push_back(setting.substr(section.size()));
+    return settings;
+}
+
+}  // namespace
+
+SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape) {
+    Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
+    const SensorParams params = read_sensor(sensor);
+    sensor.reject_unknown_keys();
+    Config schedule(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
+    SensorSetup setup{params, read_schedule(schedule, shape, choice.seed), shape, choice.seed};
+    schedule.reject_unknown_keys();
+    return setup;
+}
+
+std::string provenance_of(const SensorSetup& setup, const std::string& footage) {
+    const SensorParams& params = setup.params;
+    const toml::table sensor{
+        {"mode", "paper"},
+        {"name", params.name},
+        {"photons_per_unit", params.photons_per_unit},
+        {"full_scale_e", params.full_scale_e},
+        {"full_well_e", params.full_well_e},
+        {"read_noise_e", params.read_noise_e},
+        {"shot_noise", params.shot_noise},
+        {"bit_depth", params.bit_depth},
+        {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
+        {"slot_us", params.slot_us}};
+    const toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
+                           {"footage", footage},
+                           {"schedule", setup.schedule.name},
+                           // TOML integers are signed, seeds are not.
+                           {"seed", std::to_string(setup.seed)},
+                           {"sensor", sensor}};
+    std::ostringstream stream;
+    stream << text << '\n';
+    return stream.str();
+}
+
+}  // namespace stipple

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "readout/schedule_catalogue.h"
+#include "sensor_model/sensor_params.h"
+
+namespace stipple {
+
+/// A sensor as the command line describes it.
+struct SensorChoice {
+    std::string sensor = "paper";            ///< name or file
+    std::string schedule = "random";         ///< name or file
+    std::vector<std::string> settings = {};  ///< "key=value" for the sensor, "schedule.key=value"
+    std::uint64_t seed = 1;                  ///< of noise and schedule
+};
+
+/// All that decides what a sensor makes of light.
+struct SensorSetup {
+    SensorParams params;
+    NamedSchedule schedule;
+    FrameShape shape;
+    std::uint64_t seed = 1;
+};
+
+/// \throws InputError naming file, line and key of what cannot be used.
+[[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape);
+
+/// The text that a stream carries of where it comes from (TOML): emulator, `footage`, all sensor
+/// parameters, schedule, seed. No time and no path, so that the same run gives the same bytes.
+[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const std::string& footage);
+
+}  // namespace stipple

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/name_check.h"
+#include "apps/progress.h"
+#include "apps/scene_arguments.h"
+#include "apps/subcommands.h"
+#include "core/frame_writer.h"
+#include "scenes/scene.h"
+
+namespace stipple {
+namespace {
+
+struct SynthOptions {
+    std::string scene;
+    std::string output;
+    SceneOptions rendering;
+};
+
+void synth(const SynthOptions& options, const RunOptions& run) {
+    const Scene scene(scene_from_name(options.scene), options.rendering);
+    const FrameShape shape = options.rendering.shape;
+    JsonFile json(run);
+    FrameWriter writer(options.output, shape, {.force = run.force});
+    std::vector<float> frame(shape.sites());
+    Progress progress(run, "rendering", options.rendering.slots);
+    for (int slot = 0; slot < options.rendering.slots && stop_signal() == 0; ++slot) {
+        scene.render(slot, frame);
+        writer.write(frame);
+        progress.advance();
+    }
+    if (progress.done() == 0) throw_if_stopped();
+    writer.finish();
+    const double rate = static_cast<double>(progress.done()) / progress.seconds();
+    json.write({{"scene", options.scene},
+                {"slots", progress.done()},
+                {"rows", shape.rows},
+                {"cols", shape.cols},
+                {"planes", shape.planes},
+                {"slots_per_second", rate}});
+    run.say(fmt::format("{}: {} frames of {} x {}, linear light, {:.3g} frames/s", options.output,
+                        progress.done(), shape.cols, shape.rows, rate));
+}
+
+}  // namespace
+
+void add_synth(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("synth", "Render an embedded HDR scene as footage");
+    const auto options = std::make_shared<SynthOptions>();
+    command->add_option("SCENE", options->scene, "pan, roll, pencils, dice or still")
+        ->check(name_check(scene_from_name))
+        ->required();
+    command->add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
+        ->type_name("OUT")
+        ->required();
+    add_scene_arguments(*command, options->rendering);
+    command->footer(
+        "Examples:\n"
+        "  stipple synth pan -o scene\n"
+        "  stipple synth dice -o dice.mp4 --frames 200 --size 640x480 --seed 7");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { synth(*options, run); };
+    });
+}
+
+}  // namespace stipple

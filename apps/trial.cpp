@@ -1,0 +1,58 @@
+#include "apps/trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/interrupt.h"
+#include "apps/progress.h"
+#include "apps/recording.h"
+#include "apps/sensor_setup.h"
+
+namespace stipple {
+
+FluxVideo render_video(const Scene& scene, const RunOptions& run) {
+    const SceneOptions& options = scene.options();
+    FluxVideo video(options.slots, options.shape);
+    Progress progress(run, "rendering", options.slots);
+    for (int slot = 0; slot < options.slots; ++slot) {
+        throw_if_stopped();
+        scene.render(slot, video.frame(slot));
+        progress.advance();
+    }
+    return video;
+}
+
+RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
+                           const std::filesystem::path& file, const RunOptions& run) {
+    const SensorSetup setup = set_up_sensor({.schedule = schedule}, light.shape());
+    Recording recording(file, run.force, setup, "embedded scene");
+    Progress progress(run, fmt::format("recording ({})", schedule), light.slots());
+    for (int slot = 0; slot < light.slots(); ++slot) {
+        throw_if_stopped();
+        recording.expose(light.frame(slot));
+        progress.advance();
+    }
+    recording.finish();
+    const double duration_us = light.slots() * setup.params.slot_us;
+    const std::uint64_t bits = recording.payload_bits();
+    return {recording.compression_ratio(), bits, static_cast<double>(bits) / duration_us};
+}
+
+VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod method,
+                                const FluxVideo& truth, const FrameSink& take,
+                                const RunOptions& run) {
+    StreamReader reader(file);
+    QualityMeter meter(truth.shape(), {.margin = std::min(4, (truth.slots() - 1) / 2),
+                                       .max_value = kBrightestLight});
+    Progress progress(run, fmt::format("decoding {}", file.filename().string()), truth.slots());
+    decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
+        meter.add(frame, truth.frame(static_cast<int>(slot)));
+        progress.advance();
+        return take(slot, frame) && stop_signal() == 0;
+    });
+    throw_if_stopped();
+    return meter.quality();
+}
+
+}  // namespace stipple

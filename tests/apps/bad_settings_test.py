@@ -1,0 +1,54 @@
+"""Keys and values of sensors and schedules that cannot be used are refused by name."""
+
+import unittest
+
+from program import INPUT, USAGE, ProgramTest
+
+
+class BadSettingsTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write_flat("light.npy", slots=2)
+
+    def refuse(self, parts, *arguments, code=INPUT):
+        self.fails(code, parts, "emulate", "light.npy", "-o", "clip.stipple", *arguments)
+
+    def test_an_unknown_key_with_the_nearest_known_one(self):
+        self.refuse(["--set read_noise", "unknown", "read_noise_e"], "--set", "read_noise=3")
+        self.refuse(["unknown"], "--schedule", "tiled", "--set", "schedule.tile_row=3")
+
+    def test_a_value_out_of_range_with_the_range(self):
+        for setting, limits in (("bit_depth=17", "1..16"), ("photons_per_unit=0", "0.001"),
+                                ("read_noise_e=-1", "0..100000"), ("slot_us=nan", "slot_us")):
+            self.refuse([setting.split("=")[0], limits], "--set", setting)
+        self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[65]")
+        self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[]")
+
+    def test_a_value_of_another_type(self):
+        self.refuse(["bit_depth", "integer"], "--set", "bit_depth=many")
+        self.refuse(["rounding", "nearest", "floor"], "--set", "rounding=up")
+
+    def test_a_setting_without_a_value(self):
+        self.refuse(["bit_depth"], "--set", "bit_depth")
+
+    def test_a_file_by_file_and_line(self):
+        (self.folder / "mine.toml").write_text('mode = "paper"\nread_noise = 3\n')
+        self.refuse(["mine.toml:2", "read_noise", "unknown"], "--sensor", "mine.toml")
+        (self.folder / "mine.toml").write_text('mode = "paper"\nbit_depth = = 3\n')
+        self.refuse(["mine.toml", "2"], "--sensor", "mine.toml")
+        (self.folder / "mine.toml").write_text('kind = "full"\n\nopen_slots = 65\n')
+        self.refuse(["mine.toml:3", "open_slots", "1..64"], "--schedule", "mine.toml")
+
+    def test_a_name_that_nobody_knows_with_the_known_ones(self):
+        self.refuse(["nobody", "paper"], "--sensor", "nobody")
+        self.refuse(["nobody", "full4x", "random", "tiled"], "--schedule", "nobody")
+
+    def test_numbers_of_the_command_line(self):
+        for option, value in (("--max-value", "nan"), ("--max-value", "0"), ("--max-value", "inf"),
+                              ("--seed", "-1"), ("--seed", "1.5"), ("--threads", "-1"),
+                              ("--transfer", "log")):
+            self.refuse([option], option, value, code=USAGE)
+
+
+if __name__ == "__main__":
+    unittest.main()

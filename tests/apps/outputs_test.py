@@ -1,0 +1,65 @@
+"""Outputs appear complete or not at all, and never in the place of something else."""
+
+import resource
+import unittest
+
+from program import DEVICE, INPUT, PROGRAM, ProgramTest
+
+SYNTH = ["synth", "roll", "--frames", "3", "--size", "64x48", "-o"]
+
+
+def small_files():
+    """As on a full disk: what fits is stored, then writing fails."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+
+class OutputsTest(ProgramTest):
+    def test_an_existing_output_is_kept_unless_forced(self):
+        for name in ("out.npy", "out.mp4"):
+            (self.folder / name).write_text("precious")
+            self.fails(INPUT, [name, "exists already", "--force"], *SYNTH, name)
+            self.assertEqual((self.folder / name).read_text(), "precious")
+            self.succeed(*SYNTH, name, "--force")
+            self.assertNotEqual((self.folder / name).read_bytes(), b"precious")
+
+    def test_an_existing_stream_or_report_is_kept_unless_forced(self):
+        emulate = ["emulate", self.write_flat("light.npy"), "-o", self.write_stream()]
+        self.fails(INPUT, ["clip.stipple", "exists already"], *emulate)
+        self.succeed(*emulate, "--force")
+        (self.folder / "figures.json").touch()
+        self.fails(INPUT, ["figures.json", "exists already"], "emulate", "light.npy", "-o",
+                   "other.stipple", "--json", "figures.json")
+
+    def test_a_folder_with_other_things_in_it_is_kept_even_if_forced(self):
+        self.succeed(*SYNTH, "out")
+        self.fails(INPUT, ["out", "exists already"], *SYNTH, "out")
+        self.succeed(*SYNTH, "out", "--force")
+        (self.folder / "out/thesis.txt").touch()
+        self.fails(INPUT, ["out", "thesis.txt"], *SYNTH, "out", "--force")
+
+    def test_an_output_in_a_folder_that_does_not_exist(self):
+        self.fails(INPUT, ["nowhere/out.npy", "nowhere"], *SYNTH, "nowhere/out.npy")
+
+    def test_an_output_of_unknown_kind(self):
+        self.fails(INPUT, ["out.avi", ".npy", ".mp4"], *SYNTH, "out.avi")
+
+    def test_a_full_disk_is_said_and_leaves_nothing(self):
+        for name in ("out", "out.npy", "out.mp4"):
+            self.fails(DEVICE, [name], *SYNTH, name, preexec_fn=small_files)
+        self.write_flat("light.npy", rows=64, cols=64)
+        self.fails(DEVICE, ["clip.stipple", "too large"], "emulate", "light.npy", "-o",
+                   "clip.stipple", preexec_fn=small_files)
+        self.write_stream()
+        self.fails(DEVICE, ["out.npy", "too large"], "decode", "clip.stipple", "-o", "out.npy",
+                   "--method", "naive", preexec_fn=small_files)
+
+    def test_a_full_disk_behind_standard_output_is_an_error(self):
+        stream = self.write_stream()
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = self.start_program("info", stream, stdout=full)
+            self.assertIn("No space left", done.communicate()[1])
+        self.assertEqual(done.returncode, DEVICE, PROGRAM)
+
+
+if __name__ == "__main__":
+    unittest.main()

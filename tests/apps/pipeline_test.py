@@ -1,0 +1,133 @@
+"""Footage in, stream, video out: figures that follow from the definitions."""
+
+import math
+import unittest
+
+import numpy as np
+from program import ProgramTest
+
+EXACT = ["--set", "shot_noise=false", "--set", "read_noise_e=0"]
+STEP = 2000 / 255 / 1000  # one DN of the default sensor in units of light
+
+
+class PipelineTest(ProgramTest):
+    def test_a_conventional_camera_reads_every_pixel_every_fourth_slot(self):
+        light = self.write_flat("light.npy", slots=8, rows=3, cols=5, light=1)
+        figures = self.figures("emulate", light, "-o", "a.stipple", "--schedule", "full4x", *EXACT)
+        self.assertEqual(figures["slots"], 8)
+        self.assertEqual(figures["samples"], 2 * 15)
+        self.assertEqual(figures["payload_bits"], 2 * 15 * 8)
+        self.assertEqual(figures["compression_ratio"], 4)
+        self.assertEqual(figures["light_throughput"], 1)
+        self.assertEqual(figures["saturated_fraction"], 1)  # 4000 e, 2000 e are full scale
+        figures = self.figures("emulate", light, "-o", "b.stipple", "--schedule", "full1x", *EXACT)
+        self.assertEqual(figures["light_throughput"], 0.25)
+        self.assertEqual(figures["saturated_fraction"], 0)
+        self.assertGreater(figures["slots_per_second"], 0)
+        self.assertGreater(figures["samples_per_second"], 0)
+
+    def test_schedule_and_sensor_follow_the_settings(self):
+        light = self.write_flat("light.npy", slots=6, rows=4, cols=4)
+        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "bit_depth=12",
+                               "--set", "schedule.exposure_slots=[1]")
+        self.assertEqual(figures["samples"], 6 * 16)  # each pixel in each slot
+        self.assertEqual(figures["payload_bits"], 6 * 16 * 12)
+        report = self.figures("info", "a.stipple")
+        self.assertEqual(report["calibration"]["bit_depth"], 12)
+        self.assertEqual((report["slots"], report["packets"], report["samples"]), (6, 6, 96))
+        self.assertEqual(report["damage"], [])
+        self.assertIn("light.npy", report["provenance"])
+        self.assertIn("undamaged", self.succeed("info", "a.stipple"))
+
+    def test_still_light_comes_back_up_to_half_a_step(self):
+        """The shortest exposure is one slot long, so light is off by STEP / 2 at most."""
+        light = self.write_flat("light.npy", slots=40, light=0.2)
+        for schedule in ("random", "tiled", "full4x", "full1x"):
+            self.succeed("emulate", light, "-o", "clip.stipple", "--schedule", schedule, "--force",
+                         *EXACT)
+            figures = self.figures("decode", "clip.stipple", "-o", "out.npy", "--method", "naive",
+                                   "--force")
+            self.assertEqual(figures["method"], "naive")
+            self.assertEqual(figures["voxels"], 40 * 64)
+            self.assertGreater(figures["voxels_per_second"], 0)
+            self.assertGreater(figures["peak_memory_bytes"], 0)
+            self.assertGreater(figures["threads"], 0)
+            np.testing.assert_allclose(self.array("out.npy")[15:-15], 0.2, atol=STEP / 2 + 1e-6)
+
+    def test_compare_gives_the_figures_of_the_definitions(self):
+        result = self.write_array("result.npy", [np.full((16, 16), light) for light in (0.6, 0.51)])
+        reference = self.write_flat("light.npy", slots=2, rows=16, cols=16, light=0.5)
+        figures = self.figures("compare", result, reference)
+        self.assertAlmostEqual(figures["psnr_db"], -10 * math.log10((1e-2 + 1e-4) / 2), places=4)
+        self.assertAlmostEqual(figures["psnr_frame_mean_db"], (20 + 40) / 2, places=3)
+        gamma = [(light ** (1 / 2.2) - 0.5 ** (1 / 2.2)) ** 2 for light in (0.6, 0.51)]
+        self.assertAlmostEqual(figures["psnr_gamma_db"], -10 * math.log10(sum(gamma) / 2), places=4)
+        self.assertLess(figures["ssim"], 1)
+        self.assertEqual(set(figures), {"psnr_db", "psnr_gamma_db", "psnr_frame_mean_db",
+                                        "pu21_psnr_db", "ssim"})
+        figures = self.figures("compare", result, reference, "--max-value", "0.5")
+        self.assertIsNone(figures["psnr_db"], "no difference is left; JSON has no infinity")
+        self.assertAlmostEqual(figures["ssim"], 1)
+
+    def test_compare_refuses_videos_of_different_shape(self):
+        a = self.write_flat("a.npy", slots=4)
+        self.fails(1, ["b.npy", "8 x 9"], "compare", self.write_flat("b.npy", slots=4, cols=9), a)
+        self.fails(1, ["b.npy", "ends after 3 frames"], "compare",
+                   self.write_flat("b.npy", slots=3), a)
+        self.fails(1, ["margin", "none of 4"], "compare", a, a, "--margin", 2)
+
+    def test_footage_is_turned_into_light_as_asked(self):
+        colour = np.zeros((2, 4, 4, 3))
+        colour[..., 0] = 0.5
+        self.write_array("colour.npy", colour)
+        self.succeed("emulate", "colour.npy", "-o", "a.stipple", "--luminance", "--transfer",
+                     "gamma22", "--truth", "truth.npy")
+        np.testing.assert_allclose(self.array("truth.npy"), 0.2126 * 0.5**2.2, rtol=1e-5)
+        self.succeed("emulate", "colour.npy", "-o", "b.stipple", "--max-value", "0.25", "--truth",
+                     "clipped.npy")
+        np.testing.assert_array_equal(self.array("clipped.npy"), np.minimum(colour, 0.25))
+
+    def test_pictures_of_a_folder_or_a_pattern_are_footage(self):
+        for number in range(1, 4):
+            self.write_png(f"frames/f{number}.png", np.full((4, 4), 51 * number))
+        for footage in ("frames", "frames/f%d.png"):
+            self.succeed("emulate", footage, "-o", "a.stipple", "--truth", "truth.npy", "--force")
+            np.testing.assert_allclose(self.array("truth.npy")[:, 0, 0], [0.2, 0.4, 0.6], rtol=1e-6)
+
+    def test_a_run_is_the_same_bytes_with_any_number_of_threads(self):
+        for threads in ("1", "2"):
+            (self.folder / threads).mkdir()
+            self.succeed("synth", "dice", "-o", f"{threads}/light", "--frames", "20", "--size",
+                         "48x40", "--threads", threads)
+            self.succeed("emulate", f"{threads}/light", "-o", f"{threads}/clip.stipple",
+                         "--threads", threads)
+            for method in ("naive", "fast"):
+                self.succeed("decode", f"{threads}/clip.stipple", "-o", f"{threads}/{method}.npy",
+                             "--method", method, "--threads", threads)
+        one, two = ([path for path in sorted((self.folder / threads).rglob("*")) if path.is_file()]
+                    for threads in ("1", "2"))
+        self.assertEqual(len(one), 20 + 1 + 2)
+        for a, b in zip(one, two, strict=True):
+            self.assertEqual(a.read_bytes(), b.read_bytes(), b)
+
+    def test_demo_leaves_video_pictures_and_figures(self):
+        demo = ["demo", "--frames", "20", "--size", "48x40", "-o", "shown"]
+        trials = self.figures(*demo)["trials"]
+        self.assertEqual([trial["name"] for trial in trials],
+                         ["4x exposure", "1x exposure", "coded, naive", "coded, decoded"])
+        for trial in trials:
+            self.assertGreater(trial["psnr_db"], 0)
+            self.assertAlmostEqual(trial["megabits_per_second"],
+                                   trial["payload_bits"] / 20 / 5000)
+        self.assertEqual(len(list((self.folder / "shown/decoded").glob("frame_*.exr"))), 20)
+        pictures = [f"side_by_side_{number}.png" for number in (1, 2, 3)]
+        for name in ("decoded.mp4", "random.stipple", *pictures):
+            self.assertGreater((self.folder / "shown" / name).stat().st_size, 0)
+        self.fails(1, ["shown", "exists already", "--force"], *demo)
+        text = self.succeed(*demo, "--force")
+        self.assertIn("In shown:", text)
+        self.assertRegex(text, r"coded, decoded +\d+\.\d\d : 1")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,193 @@
+#include "decoder/reconstruct.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "decoder/nearest_samples.h"
+#include "stream/stream_writer.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/decoder/recordings.h"
+#include "tests/stream/stream_bytes.h"
+
+namespace stipple {
+namespace {
+
+/// A bright disc that crosses a lit wall.
+FluxVideo disc(int slots, FrameShape shape) {
+    FluxVideo video(slots, shape);
+    for (int slot = 0; slot < slots; ++slot)
+        for (int plane = 0; plane < shape.planes; ++plane)
+            for (int row = 0; row < shape.rows; ++row)
+                for (int col = 0; col < shape.cols; ++col) {
+                    const double distance = std::hypot(row - shape.rows / 2, col - 10 - slot / 2);
+                    video.plane(slot, plane)(row, col) = static_cast<float>(
+                        distance < 8 ? 0.9 - 0.2 * plane : 0.2 + 0.1 * ((row / 5 + col / 5) % 2));
+                }
+    return video;
+}
+
+class ReconstructTest : public testing::Test {
+  protected:
+    std::filesystem::path write(const FluxVideo& video, const ExposureSchedule& schedule) {
+        const Recorded recorded = record(video, schedule);
+        const auto file = folder_ / "clip.stipple";
+        StreamWriter writer(file, recorded.header);
+        for (const SamplePacket& packet : recorded.packets) writer.write(packet);
+        writer.finish();
+        return file;
+    }
+    static std::vector<float> decode_all(const std::filesystem::path& file, DecodeMethod method,
+                                         FrameShape shape) {
+        StreamReader reader(file);
+        std::vector<float> x;
+        std::int64_t next = 0;
+        const DecodeReport report =
+            decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
+                EXPECT_EQ(slot, next++);
+                EXPECT_EQ(frame.size(), shape.sites());
+                x.insert(x.end(), frame.begin(), frame.end());
+                return true;
+            });
+        EXPECT_EQ(report.slots, next);
+        EXPECT_EQ(report.voxels, x.size());
+        return x;
+    }
+    TemporaryFolder folder_;
+};
+
+double mean_square(std::span<const float> a, std::span<const float> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += (double{a[i]} - double{b[i]}) * (double{a[i]} - double{b[i]});
+    return sum / static_cast<double>(a.size());
+}
+
+TEST(DecodeMethodTest, KnowsItsNames) {
+    EXPECT_EQ(decode_method_from_name("naive"), DecodeMethod::kNaive);
+    EXPECT_EQ(decode_method_from_name("fast"), DecodeMethod::kFast);
+    expect_parts(message_of<InputError>([] { return decode_method_from_name("slow"); }),
+                 {"slow", "naive, fast"});
+}
+
+TEST_F(ReconstructTest, DeliversEverySlotOfALongClipWithoutSeams) {
+    const FrameShape shape{32, 90, 1};
+    const FluxVideo video = disc(150, shape);  // blocks of 48, 48 and 54 slots
+    const auto file = write(video, random_schedule(32, 90, kPaperExposureSlots, 1));
+    const auto x = decode_all(file, DecodeMethod::kFast, shape);
+    ASSERT_EQ(x.size(), video.voxels());
+    const auto error = [&](int first, int slots) {
+        const auto begin = static_cast<std::size_t>(first) * shape.sites();
+        const auto count = static_cast<std::size_t>(slots) * shape.sites();
+        return mean_square(std::span(x).subspan(begin, count), video.data().subspan(begin, count));
+    };
+    // The slots at a seam are as good as those in the middle of blocks; 1.5 is 1.8 dB.
+    EXPECT_LT(error(46, 4), 1.5 * error(20, 8));
+    EXPECT_LT(error(94, 4), 1.5 * error(68, 8));
+    EXPECT_LT(error(8, 130),
+              0.25 * mean_square(decode_all(file, DecodeMethod::kNaive, shape), video.data()));
+}
+
+TEST_F(ReconstructTest, GivesTheSameBitsForAnyNumberOfThreads) {
+    const FrameShape shape{24, 40, 3};
+    const auto file = write(disc(70, shape), random_schedule(24, 40, kPaperExposureSlots, 1));
+    for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+        const auto decoded = [&](int threads) {
+            const ThreadLimit limit(threads);
+            return decode_all(file, method, shape);
+        };
+        EXPECT_EQ(decoded(1), decoded(2));
+    }
+}
+
+TEST_F(ReconstructTest, CutsLargeFramesIntoTilesThatFitTogether) {
+    const FrameShape shape{1030, 1040, 1};
+    FluxVideo video(3, shape);
+    for (int slot = 0; slot < 3; ++slot)
+        for (int row = 0; row < shape.rows; ++row)
+            for (int col = 0; col < shape.cols; ++col)
+                video.plane(slot, 0)(row, col) =
+                    static_cast<float>(row * 7 + col * 3 + slot) / 1e4F;
+    const ExposureSchedule schedule = random_schedule(1030, 1040, kPaperExposureSlots, 1);
+    const auto x = decode_all(write(video, schedule), DecodeMethod::kNaive, shape);
+    const FluxVideo single = [&] {  // one block
+        const Recorded recorded = record(video, schedule);
+        return nearest_samples(
+            collect_measurements(recorded.header, recorded.packets, whole(video)));
+    }();
+    EXPECT_TRUE(std::ranges::equal(x, single.data()));
+}
+
+TEST_F(ReconstructTest, DecodesFramesTooSmallForMotion) {
+    for (const FrameShape shape :
+         {FrameShape{1, 1, 1}, FrameShape{1, 40, 3}, FrameShape{15, 3, 1}}) {
+        const FluxVideo video = random_video(40, shape, 1);
+        std::filesystem::remove(folder_ / "clip.stipple");
+        const auto x = decode_all(
+            write(video, random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1)),
+            DecodeMethod::kFast, shape);
+        EXPECT_EQ(x.size(), video.voxels());
+        EXPECT_TRUE(std::ranges::all_of(x, [](float v) { return v >= 0 && v < 3; }));
+    }
+}
+
+TEST_F(ReconstructTest, StopsWhenTheSinkHasEnough) {
+    const FrameShape shape{16, 16, 1};
+    StreamReader reader(write(disc(100, shape), random_schedule(16, 16, kPaperExposureSlots, 1)));
+    const DecodeReport report =
+        decode(reader, DecodeMethod::kNaive,
+               [](std::int64_t slot, std::span<const float>) { return slot < 60; });
+    EXPECT_EQ(report.slots, 61);
+}
+
+TEST_F(ReconstructTest, DeliversNothingOfAnEmptyRecording) {
+    const FrameShape shape{16, 16, 1};
+    EXPECT_TRUE(
+        decode_all(write(FluxVideo(0, shape), random_schedule(16, 16, kPaperExposureSlots, 1)),
+                   DecodeMethod::kFast, shape)
+            .empty());
+}
+
+TEST_F(ReconstructTest, FillsWhatALostPacketLeavesUnknown) {
+    const FrameShape shape{32, 90, 1};
+    const FluxVideo video = disc(60, shape);
+    const Recorded recorded = record(video, random_schedule(32, 90, kPaperExposureSlots, 1));
+    StreamBytes stream = bytes_of(recorded.header, recorded.packets);
+    stream.bytes.erase(stream.begins[30], stream.begins[32] - stream.begins[30]);
+    write_text(folder_ / "lossy.stipple", stream.bytes);
+    const auto x = decode_all(folder_ / "lossy.stipple", DecodeMethod::kFast, shape);
+    ASSERT_EQ(x.size(), video.voxels());
+    const auto at = 30 * shape.sites();
+    const auto lost = std::span(x).subspan(at, 2 * shape.sites());
+    // 3 dB above the naive estimate, which has nothing to go by but other slots either.
+    const auto naive = decode_all(folder_ / "lossy.stipple", DecodeMethod::kNaive, shape);
+    const auto truth = video.data().subspan(at, lost.size());
+    EXPECT_LT(mean_square(lost, truth),
+              mean_square(std::span(naive).subspan(at, lost.size()), truth) / 2);
+}
+
+TEST_F(ReconstructTest, RefusesAGapThatNoRecordingHas) {
+    const FrameShape shape{2, 2, 1};
+    const StreamHeader header = record(disc(1, shape), {1, 1, 1, {0, 1}, {{0, 1}}}).header;
+    StreamBytes stream = bytes_of(header, {});
+    PacketHeader far;
+    far.slot = std::uint64_t{1} << 40U;
+    far.rows = 2;
+    far.samples = 4;
+    stream.bytes.resize(stream.begins[0]);
+    stream.bytes += framed(far, "1234");
+    write_text(folder_ / "gap.stipple", stream.bytes);
+    StreamReader reader(folder_ / "gap.stipple");
+    expect_parts(message_of<InputError>([&] {
+                     return decode(reader, DecodeMethod::kNaive,
+                                   [](std::int64_t, std::span<const float>) { return true; });
+                 }),
+                 {"slot 1099511627776", "missing"});
+}
+
+}  // namespace
+}  // namespace stipple
