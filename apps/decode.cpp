@@ -51,12 +51,16 @@ void decode_file(const DecodeOptions& options, const RunOptions& run) {
     DecodeReport report;
     {
         Progress progress(run, "decoding", reader.slots());
-        report = decode(reader, decode_method_from_name(options.method),
-                        [&](std::int64_t, std::span<const float> frame) {
-                            writer.write(frame);
-                            progress.advance();
-                            return stop_signal() == 0;
-                        });
+        report = decode(
+            reader, decode_method_from_name(options.method),
+            [&](std::int64_t, std::span<const float> frame) {
+                writer.write(frame);
+                return stop_signal() == 0;
+            },
+            [&](double slots) {
+                progress.reach(slots);
+                return stop_signal() == 0;
+            });
     }
     if (report.slots == 0) throw_if_stopped();
     if (report.slots == 0) throw InputError(options.stream, "holds no slot to decode");

@@ -39,8 +39,8 @@ double Progress::seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-void Progress::advance() {
-    ++done_;
+void Progress::reach(double frames) {
+    done_ = frames;
     done_at_s_ = seconds();
 }
 
@@ -57,9 +57,10 @@ void Progress::show(const std::stop_token& stop) const {
 }
 
 std::string Progress::line() const {
-    const std::int64_t done = done_;
-    const double rate = done > 0 ? static_cast<double>(done) / done_at_s_ : 0;
-    const std::string rate_text = done > 0 ? fmt::format(", {:.3g} frames/s", rate) : "";
+    const double exact = done_;
+    const auto done = static_cast<std::int64_t>(exact);
+    const double rate = exact > 0 ? exact / done_at_s_ : 0;
+    const std::string rate_text = exact > 0 ? fmt::format(", {:.3g} frames/s", rate) : "";
     if (!total_ || *total_ < done) return fmt::format("{} {} frames{}", task_, done, rate_text);
     std::string text = task_ + ' ';
     if (terminal_) {
@@ -68,8 +69,8 @@ std::string Progress::line() const {
         text += fmt::format("[{:-<{}}] ", std::string(filled, '#'), kWidth);
     }
     text += fmt::format("{}/{} frames{}", done, *total_, rate_text);
-    if (done == 0) return text;
-    const double left_s = done_at_s_ + static_cast<double>(*total_ - done) / rate - seconds();
+    if (rate == 0) return text;
+    const double left_s = done_at_s_ + (static_cast<double>(*total_) - exact) / rate - seconds();
     const std::chrono::seconds left(static_cast<std::int64_t>(std::max(left_s, 0.0)));
     return text + fmt::format(", {:%T} left", left);
 }

@@ -24,9 +24,11 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     /// One more frame is done.
-    void advance();
+    void advance() { reach(static_cast<double>(done_) + 1); }
+    /// So many frames are done, the last one perhaps in part.
+    void reach(double frames);
 
-    [[nodiscard]] std::int64_t done() const { return done_; }
+    [[nodiscard]] std::int64_t done() const { return static_cast<std::int64_t>(done_); }
     /// Since the construction.
     [[nodiscard]] double seconds() const;
 
@@ -39,8 +41,8 @@ class Progress {
     std::optional<std::int64_t> total_;
     bool terminal_;
     Clock::time_point start_;
-    std::atomic<std::int64_t> done_ = 0;
-    std::atomic<double> done_at_s_ = 0;  ///< when the last frame was done
+    std::atomic<double> done_ = 0;
+    std::atomic<double> done_at_s_ = 0;  ///< when `done_` was last set
     std::jthread display_;               ///< last: it reads the others
 };
 

@@ -46,11 +46,16 @@ VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod 
     QualityMeter meter(truth.shape(), {.margin = std::min(4, (truth.slots() - 1) / 2),
                                        .max_value = kBrightestLight});
     Progress progress(run, fmt::format("decoding {}", file.filename().string()), truth.slots());
-    decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
-        meter.add(frame, truth.frame(static_cast<int>(slot)));
-        progress.advance();
-        return take(slot, frame) && stop_signal() == 0;
-    });
+    decode(
+        reader, method,
+        [&](std::int64_t slot, std::span<const float> frame) {
+            meter.add(frame, truth.frame(static_cast<int>(slot)));
+            return take(slot, frame);
+        },
+        [&](double slots) {
+            progress.reach(slots);
+            return stop_signal() == 0;
+        });
     throw_if_stopped();
     return meter.quality();
 }

@@ -84,24 +84,57 @@ void cut_links_to_larger_steps(MotionField& field, FrameShape shape, std::span<c
     });
 }
 
+/// Counts iterations for a checkpoint. Finding the motion takes about as long as 8 of them.
+class WorkCount {
+  public:
+    WorkCount(const MotionTvOptions& options, const Checkpoint& checkpoint)
+        : total_(options.at_rest.iterations +
+                 (options.rounds - 1) * (options.along_motion.iterations + kMotion) +
+                 options.last_iterations + kMotion),
+          checkpoint_(checkpoint) {}
+    void add_motion() { done_ += kMotion; }
+    bool add_iteration() {
+        ++done_;
+        stopped_ = stopped_ || !checkpoint_(static_cast<double>(done_) / total_);
+        return !stopped_;
+    }
+    [[nodiscard]] bool stopped() const { return stopped_; }
+
+  private:
+    static constexpr int kMotion = 8;
+    int total_;
+    int done_ = 0;
+    bool stopped_ = false;
+    const Checkpoint& checkpoint_;
+};
+
 }  // namespace
 
-FluxVideo decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
-                           const MotionTvOptions& options) {
+std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
+                                          const MotionTvOptions& options,
+                                          const Checkpoint& checkpoint) {
+    WorkCount work(options, checkpoint);
     FluxVideo x = nearest_samples(measurements);
-    minimise_total_variation(measurements, {}, primal_steps(x, options), options.at_rest, x);
+    const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
+                              TotalVariationOptions tv) {
+        tv.after_iteration = [&] { return work.add_iteration(); };
+        minimise_total_variation(measurements, motion, step, tv, x);
+    };
+    minimise({}, primal_steps(x, options), options.at_rest);
     const FrameShape shape = x.shape();
-    if (std::min(shape.rows, shape.cols) < kMinMotionSide) return x;
-    for (int round = 0; round < options.rounds; ++round) {
+    const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
+    for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {
         refresh_variances(measurements, noise, x.data());
         auto motion = estimate_motion(x, {.finest_scale = round == 0 ? 1 : 0});
+        work.add_motion();
         const auto step = primal_steps(x, options);
         for (MotionField& field : motion)
             cut_links_to_larger_steps(field, shape, step, options.max_step_ratio);
         auto along_motion = options.along_motion;
         if (round + 1 == options.rounds) along_motion.iterations = options.last_iterations;
-        minimise_total_variation(measurements, motion, step, along_motion, x);
+        minimise(motion, step, along_motion);
     }
+    if (work.stopped()) return {};
     return x;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "core/flux_video.h"
 #include "decoder/measurements.h"
 #include "decoder/motion.h"
@@ -22,9 +25,14 @@ struct MotionTvOptions {
     float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
 };
 
+/// Told now and then which fraction of the work is done; false stops.
+using Checkpoint = std::function<bool(double fraction)>;
+
 /// Decodes one block: total variation at rest, then rounds of (variances, motion, total variation
-/// along it), each from the estimate of the last. The result may be slightly negative.
-[[nodiscard]] FluxVideo decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
-                                         const MotionTvOptions& options);
+/// along it), each from the estimate of the last. The result may be slightly negative. Nothing if
+/// `checkpoint` has stopped it.
+[[nodiscard]] std::optional<FluxVideo> decode_motion_tv(
+    Measurements& measurements, const SampleNoise& noise, const MotionTvOptions& options,
+    const Checkpoint& checkpoint = [](double) { return true; });
 
 }  // namespace stipple

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "core/error.h"
 #include "decoder/block_partition.h"
@@ -55,11 +56,12 @@ class PacketBuffer {
     std::vector<SamplePacket> packets_;
 };
 
-FluxVideo decode_block(const StreamHeader& header, std::span<const SamplePacket> packets,
-                       DecodeMethod method, const VideoWindow& window) {
-    Measurements measurements = collect_measurements(header, packets, window);
+using Block = std::optional<FluxVideo>;  ///< nothing if stopped
+
+Block decode_block(Measurements measurements, const Calibration& calibration, DecodeMethod method,
+                   const Checkpoint& checkpoint) {
     if (method == DecodeMethod::kNaive) return nearest_samples(measurements);
-    return decode_motion_tv(measurements, SampleNoise(header.calibration), {});
+    return decode_motion_tv(measurements, SampleNoise(calibration), {}, checkpoint);
 }
 
 /// Where a block's core goes in the frames of its slots.
@@ -86,20 +88,31 @@ void copy_core(const FluxVideo& block, const Placement& at, FluxVideo& video) {
             }
 }
 
-/// Decodes the cores of all tiles of the block of slots.
-FluxVideo decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
-                       DecodeMethod method, const Stretch& slots) {
+VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
+    return {.first_slot = slots.begin,
+            .slots = static_cast<int>(slots.end - slots.begin),
+            .first_row = static_cast<int>(tile.rows.begin),
+            .first_col = static_cast<int>(tile.cols.begin),
+            .shape = {.rows = static_cast<int>(tile.rows.end - tile.rows.begin),
+                      .cols = static_cast<int>(tile.cols.end - tile.cols.begin),
+                      .planes = planes}};
+}
+
+/// Decodes the cores of all tiles of a block of slots.
+Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
+                   DecodeMethod method, const Stretch& slots, const Checkpoint& checkpoint) {
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), header.shape);
-    for (const Tile& tile : frame_tiles(header.shape)) {
-        const FrameShape shape{.rows = static_cast<int>(tile.rows.end - tile.rows.begin),
-                               .cols = static_cast<int>(tile.cols.end - tile.cols.begin),
-                               .planes = header.shape.planes};
-        const VideoWindow window{.first_slot = slots.begin,
-                                 .slots = static_cast<int>(slots.end - slots.begin),
-                                 .first_row = static_cast<int>(tile.rows.begin),
-                                 .first_col = static_cast<int>(tile.cols.begin),
-                                 .shape = shape};
-        copy_core(decode_block(header, packets, method, window), {tile, slots}, video);
+    const std::vector<Tile> tiles = frame_tiles(header.shape);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        const auto tile_checkpoint = [&](double fraction) {
+            return checkpoint((static_cast<double>(i) + fraction) /
+                              static_cast<double>(tiles.size()));
+        };
+        const VideoWindow window = window_of(tiles[i], slots, header.shape.planes);
+        const Block block = decode_block(collect_measurements(header, packets, window),
+                                         header.calibration, method, tile_checkpoint);
+        if (!block || !tile_checkpoint(1)) return {};
+        copy_core(*block, {tiles[i], slots}, video);
     }
     return video;
 }
@@ -112,7 +125,8 @@ DecodeMethod decode_method_from_name(std::string_view name) {
     throw InputError("decoding method", fmt::format("`{}` is none of naive, fast", name));
 }
 
-DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink) {
+DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+                    const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
     PacketBuffer buffer(reader);
@@ -122,9 +136,14 @@ DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& 
         const Stretch slots = slot_stretch(report.slots, buffer.slots());
         if (slots.core_end <= slots.core_begin) break;
         buffer.drop_below(slots.begin);
-        const FluxVideo video = decode_slots(header, buffer.packets(), method, slots);
-        for (int slot = 0; slot < video.slots() && more; ++slot) {
-            more = sink(report.slots, video.frame(slot));
+        const auto checkpoint = [&](double fraction) {
+            return monitor(static_cast<double>(slots.core_begin) +
+                           fraction * static_cast<double>(slots.core_end - slots.core_begin));
+        };
+        const Block video = decode_slots(header, buffer.packets(), method, slots, checkpoint);
+        if (!video) break;
+        for (int slot = 0; slot < video->slots() && more; ++slot) {
+            more = sink(report.slots, video->frame(slot));
             ++report.slots;
         }
     }

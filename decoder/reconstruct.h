@@ -21,6 +21,10 @@ enum class DecodeMethod {
 /// FluxVideo. Returns false to stop decoding.
 using FrameSink = std::function<bool(std::int64_t slot, std::span<const float> frame)>;
 
+/// Told now and then, by the thread that called `decode`, how many slots' worth of work is done.
+/// Returns false to stop without the block being worked on, which may hold a minute of work.
+using DecodeMonitor = std::function<bool(double slots)>;
+
 struct DecodeReport {
     std::int64_t slots = 0;    ///< frames delivered
     std::uint64_t voxels = 0;  ///< slots x planes x rows x cols
@@ -32,6 +36,8 @@ struct DecodeReport {
 /// missing or damaged count as unobserved; `reader.report()` says which.
 /// \throws InputError as StreamReader::next, if the method cannot decode the schedule, or if 100000
 /// slots in succession have no sample.
-DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink);
+DecodeReport decode(
+    StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+    const DecodeMonitor& monitor = [](double) { return true; });
 
 }  // namespace stipple

@@ -145,7 +145,10 @@ void minimise_total_variation(const Measurements& measurements, std::span<const 
                               FluxVideo& x) {
     assert(measurements.voxels() == x.voxels() && x.slots() == measurements.slots);
     PrimalDual solver(measurements, motion, step, options, x);
-    for (int i = 0; i < options.iterations; ++i) solver.iterate();
+    for (int i = 0; i < options.iterations; ++i) {
+        solver.iterate();
+        if (!options.after_iteration()) return;
+    }
 }
 
 }  // namespace stipple

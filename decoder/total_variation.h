@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct TotalVariationOptions {
     int iterations = 20;
     float spatial_weight = 4;
     float temporal_weight = 30;  ///< all links of a voxel together, at full confidence
+    std::function<bool()> after_iteration = [] { return true; };  ///< false: that is enough
 };
 
 /// Minimises, by the primal-dual method of Chambolle and Pock (2011) from the start x,

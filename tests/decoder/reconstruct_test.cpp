@@ -144,6 +144,27 @@ TEST_F(ReconstructTest, StopsWhenTheSinkHasEnough) {
     EXPECT_EQ(report.slots, 61);
 }
 
+TEST_F(ReconstructTest, TellsTheMonitorHowFarItIsAndStopsInTheMidstOfABlock) {
+    const FrameShape shape{16, 16, 1};
+    const auto file = write(disc(100, shape), random_schedule(16, 16, kPaperExposureSlots, 1));
+    double last = 0;
+    const auto run = [&](double stop_at) {
+        StreamReader reader(file);
+        last = 0;
+        return decode(
+            reader, DecodeMethod::kFast, [](std::int64_t, std::span<const float>) { return true; },
+            [&](double slots) {
+                EXPECT_GE(slots, last);
+                last = slots;
+                return slots < stop_at;
+            });
+    };
+    EXPECT_EQ(run(1e9).slots, 100);
+    EXPECT_DOUBLE_EQ(last, 100);
+    EXPECT_EQ(run(60).slots, 48);  // blocks of 48 and 52 slots
+    EXPECT_NEAR(last, 60, 5);  // as finely as motion is found
+}
+
 TEST_F(ReconstructTest, DeliversNothingOfAnEmptyRecording) {
     const FrameShape shape{16, 16, 1};
     EXPECT_TRUE(

@@ -138,7 +138,7 @@ TEST(TotalVariationTest, SaturatedAreasReachTheLightOfTheShortExposures) {
                 video.plane(slot, 0)(row, col) = bright ? 1.5F : 0.2F;
             }
     Measurements m = measure(video, random_schedule(48, 48, kPaperExposureSlots, 1));
-    const FluxVideo x = decode_motion_tv(m, SampleNoise(Calibration{}), {});
+    const FluxVideo x = *decode_motion_tv(m, SampleNoise(Calibration{}), {});
     for (int slot = 4; slot < 28; ++slot) {
         double sum = 0;
         for (int row = 18; row <= 30; ++row)
@@ -155,7 +155,7 @@ TEST(TotalVariationTest, GivesTheSameBitsForAnyNumberOfThreads) {
     const auto decoded = [&](int threads) {
         const ThreadLimit limit(threads);
         Measurements m = measure(video, random_schedule(40, 56, kPaperExposureSlots, 1));
-        const FluxVideo x = decode_motion_tv(m, SampleNoise(Calibration{}), {});
+        const FluxVideo x = *decode_motion_tv(m, SampleNoise(Calibration{}), {});
         return std::vector<float>(x.data().begin(), x.data().end());
     };
     EXPECT_EQ(decoded(1), decoded(2));
