@@ -29,11 +29,13 @@ void add_squares(Index cols, const float* HWY_RESTRICT dual, float* HWY_RESTRICT
     for (Index i = 0; i < cols; ++i) squares[i] += dual[i] * dual[i];
 }
 
-/// Squared norms become the factors that bring their duals back to `weight`.
-void to_factors(Index cols, float weight, float* HWY_RESTRICT squares) {
+/// Squared norms become the factors that bring their duals back to where they must stay.
+void to_factors(Index cols, const DualStep& dual_step, float* HWY_RESTRICT squares) {
+    const float* HWY_RESTRICT step = dual_step.step;
     for (Index i = 0; i < cols; ++i) {
+        const float most = dual_step.weight * std::sqrt(dual_step.reference_step / step[i]);
         const float norm = std::sqrt(squares[i]);
-        squares[i] = weight / (norm > weight ? norm : weight);
+        squares[i] = most / (norm > most ? norm : most);
     }
 }
 
@@ -74,7 +76,7 @@ void spatial_frame(FrameShape shape, const DualStep& frame_step, const float* x,
             add_squares(cols, dual.col + i, factor.data());
             add_squares(cols, dual.row + i, factor.data());
         }
-        to_factors(cols, dual_step.weight, factor.data());
+        to_factors(cols, dual_step, factor.data());
         for (Index plane = 0; plane < planes; ++plane) {
             const Index i = plane * shape.pixels() + row * cols;
             multiply(cols, factor.data(), dual.col + i);
@@ -98,7 +100,7 @@ void static_frame(FrameShape shape, const DualStep& frame_step, const SlotPair& 
             ascend(cols, dual_step, {x.now + i, x.next + i}, dual + i);
             add_squares(cols, dual + i, factor.data());
         }
-        to_factors(cols, dual_step.weight, factor.data());
+        to_factors(cols, dual_step, factor.data());
         for (Index plane = 0; plane < planes; ++plane) {
             const Index i = plane * shape.pixels() + row * cols;
             multiply(cols, factor.data(), dual + i);

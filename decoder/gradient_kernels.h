@@ -4,12 +4,13 @@
 
 namespace stipple {
 
-/// How a dual moves and where it must stay. The dual step at a voxel is 1 / (coupling * step): its
-/// primal step times all that touches it.
+/// How a dual moves and where it must stay. At a voxel whose primal step is s, the dual step is
+/// 1 / (coupling s) and the largest norm of the dual weight sqrt(reference_step / s).
 struct DualStep {
     const float* step = nullptr;  ///< primal step of each pixel of the frame, order (row, col)
     float coupling = 8;           ///< bound of the squared norm of all differences together
-    float weight = 1;             ///< largest norm of the dual, above 0
+    float weight = 1;             ///< above 0
+    float reference_step = 1;
 };
 
 /// One frame of the dual of the spatial gradient, order (plane, row, col): `col` belongs to

@@ -115,15 +115,17 @@ class DualUpdate {
     }
 
   private:
-    /// What brings a dual of this squared norm back to weight * confidence / 255.
+    /// What brings a dual of this squared norm back to where it must stay.
     template <typename D>
     hn::Vec<D> shrinkage(D d, Index pixel, hn::Vec<D> square) const {
         const hn::RebindToSigned<D> di;
         const hn::Rebind<std::uint8_t, D> d8;
         const auto confidence =
             hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, link_.confidence + pixel)));
-        const auto bound =
-            hn::Mul(hn::Mul(hn::Set(d, dual_step_.weight), confidence), hn::Set(d, 1.0F / 255));
+        const auto weight = hn::Mul(hn::Set(d, dual_step_.weight),
+                                    hn::Sqrt(hn::Div(hn::Set(d, dual_step_.reference_step),
+                                                     hn::LoadU(d, dual_step_.step + pixel))));
+        const auto bound = hn::Mul(hn::Mul(weight, confidence), hn::Set(d, 1.0F / 255));
         return hn::IfThenElseZero(hn::Gt(bound, hn::Zero(d)),
                                   hn::Div(bound, hn::Max(hn::Sqrt(square), bound)));
     }

@@ -20,8 +20,8 @@ struct MotionLink {
 
 // Kernels on whole frames of at least 2 x 2 pixels; every SIMD target gives the same bits.
 
-/// dual = project(dual + sigma D x), its largest norm being weight * confidence / 255; then
-/// gradient -= dual, the part of D^T dual that falls on x.now.
+/// dual = project(dual + sigma D x), its largest norm being that of `dual_step` times
+/// confidence / 255; then gradient -= dual, the part of D^T dual that falls on x.now.
 void update_motion_dual(const MotionLink& link, const DualStep& dual_step, const SlotPair& x,
                         float* gradient) noexcept;
 

@@ -39,8 +39,8 @@ void reduce_to_one_plane(std::span<const float> frame, std::span<float> light) {
         std::copy_n(frame.begin(), light.size(), light.begin());
 }
 
-/// Primal steps in proportion to the light around a pixel: what is bright moves further and is
-/// known less exactly.
+/// Primal steps in proportion to the light around a pixel: what is bright is known less exactly,
+/// moves further, and differs more from its neighbours.
 std::vector<float> primal_steps(const FluxVideo& x, const MotionTvOptions& options) {
     const FrameShape shape = x.shape();
     std::vector<float> step(index(x.slots()) * shape.pixels());
@@ -117,6 +117,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     FluxVideo x = nearest_samples(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
+        tv.reference_step = options.step;
         tv.after_iteration = [&] { return work.add_iteration(); };
         minimise_total_variation(measurements, motion, step, tv, x);
     };

@@ -16,8 +16,7 @@ struct MotionTvOptions {
     /// The estimate that the first motion is found in: total variation at rest.
     TotalVariationOptions at_rest{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
     /// Along motion, once a round.
-    TotalVariationOptions along_motion{
-        .iterations = 12, .spatial_weight = 4, .temporal_weight = 45};
+    TotalVariationOptions along_motion{.iterations = 12};
     int rounds = 3;
     int last_iterations = 30;  ///< of the last round, instead of those of `along_motion`
     float step = 0.005F;       ///< primal step at `step_flux`, flux^2

@@ -16,7 +16,7 @@ constexpr std::array<float, 17> kCloseness = {
     1.83156389e-2F, 9.40356255e-3F, 4.82794999e-3F, 2.47875218e-3F, 1.27263380e-3F, 6.53391981e-4F,
     3.35462628e-4F, 1.72232257e-4F, 8.84270376e-5F, 4.53999298e-5F, 2.33091012e-5F};
 constexpr float kShortest = 0.3F;
-constexpr float kSaturatedWeight = 1e-6F;
+constexpr int kNearSlots = 8;
 
 /// An exposure of one site.
 struct SiteExposure {
@@ -40,26 +40,33 @@ void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExp
         const auto n = static_cast<float>(e.open_slots);
         e.last_slot = slot;
         e.light_per_slot = m.sum[i] / n;
-        e.weight = (e.saturated ? kSaturatedWeight : 1.0F) / (kShortest + n);
+        e.weight = 1 / (kShortest + n);
         list.push_back(e);
     }
 }
 
-/// Weighted mean for one slot; `own` is the exposure that the slot is in, or none.
+/// What the exposures of a site say of one slot; `own` is the exposure that the slot is in, or
+/// none.
 float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposure* own) {
     float light = 0;
     float weight = 0;
+    float bound = 0;
+    bool near = false;
     for (const SiteExposure& e : list) {
         if (own != nullptr && &e != own && e.open_slots >= own->open_slots) continue;
         const int distance = std::max({0, e.first_slot - slot, slot - e.last_slot});
-        const float w =
-            e.weight *
-            kCloseness[std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1)];
-        light += w * e.light_per_slot;
-        weight += w;
+        if (e.saturated) {
+            if (distance <= kNearSlots) bound = std::max(bound, e.light_per_slot);
+            continue;
+        }
+        near = near || distance <= kNearSlots;
+        const auto i = std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1);
+        light += e.weight * kCloseness[i] * e.light_per_slot;
+        weight += e.weight * kCloseness[i];
     }
-    const float mean = weight > 0 ? light / weight : 0;
-    return own != nullptr && own->saturated ? std::max(mean, own->light_per_slot) : mean;
+    if (weight == 0 || (bound > 0 && !near)) return bound;
+    return own != nullptr && own->saturated ? std::max(light / weight, own->light_per_slot)
+                                            : light / weight;
 }
 
 void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list,

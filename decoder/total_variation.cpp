@@ -56,7 +56,8 @@ class PrimalDual {
         const auto links = static_cast<float>(dual_link_.size());
         return {.step = &step_[index(slot) * shape_.pixels()],
                 .coupling = kSpatialCoupling + kTemporalCoupling * links,
-                .weight = weight};
+                .weight = weight,
+                .reference_step = options_.reference_step};
     }
 
     [[nodiscard]] MotionLink link(std::size_t i, int slot) {

@@ -10,11 +10,14 @@
 
 namespace stipple {
 
-/// Weights are in 1/flux: the price of a difference of 1.0 between neighbours.
+/// Weights are in 1/flux: the price of a difference of 1.0 between neighbours, at pixels whose
+/// primal step is `reference_step` (flux^2). At a step s they are sqrt(reference_step / s) times
+/// that.
 struct TotalVariationOptions {
     int iterations = 20;
-    float spatial_weight = 4;
-    float temporal_weight = 30;  ///< all links of a voxel together, at full confidence
+    float spatial_weight = 3.5F;
+    float temporal_weight = 45;  ///< all links of a voxel together, at full confidence
+    float reference_step = 0.005F;
     std::function<bool()> after_iteration = [] { return true; };  ///< false: that is enough
 };
 
@@ -24,8 +27,9 @@ struct TotalVariationOptions {
 /// between slots, c the link's confidence; |.| is the Euclidean norm over directions and planes,
 /// so edges of all planes fall together. Partners are found along `motion` by bilinear
 /// interpolation; without motion, at the same pixel one slot later. `step` is the primal step of
-/// each pixel (order (slot, row, col), flux^2): larger where more light changes in an iteration
-/// (Pock and Chambolle, ICCV 2011). The same bits for any thread count and SIMD target.
+/// each pixel (order (slot, row, col), flux^2): the larger, the further the pixel moves in an
+/// iteration (Pock and Chambolle, ICCV 2011), and the cheaper its differences are. The same bits
+/// for any thread count and SIMD target.
 void minimise_total_variation(const Measurements& measurements, std::span<const MotionField> motion,
                               std::span<const float> step, const TotalVariationOptions& options,
                               FluxVideo& x);

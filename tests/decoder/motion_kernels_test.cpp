@@ -46,8 +46,10 @@ struct Linked {
         return {shape, row_shift.data(), col_shift.data(), confidence.data(), dual.data()};
     }
     void update(float weight) {
-        update_motion_dual(link(), {.step = step.data(), .coupling = 16, .weight = weight},
-                           {now.data(), next.data()}, gradient_now.data());
+        update_motion_dual(
+            link(),
+            {.step = step.data(), .coupling = 16, .weight = weight, .reference_step = 0.04F},
+            {now.data(), next.data()}, gradient_now.data());
         add_partner_gradient(link(), gradient_next.data());
     }
     /// D of any pair of frames, in double.
@@ -113,7 +115,9 @@ TEST(MotionKernelsTest, ConfidenceLimitsTheDualOverPlanes) {
         };
         for (std::size_t i = 0; i < shape.pixels(); ++i)
             EXPECT_NEAR(norm(limited, i),
-                        std::min(norm(free, i), 2 * limited.confidence[i] / 255.0), 1e-5);
+                        std::min(norm(free, i), 2 * std::sqrt(0.04 / double{free.step[i]}) *
+                                                    limited.confidence[i] / 255.0),
+                        1e-5);
         EXPECT_EQ(limited.dual[3], 0);
     }
 }

@@ -58,10 +58,11 @@ TEST(NearestSamplesTest, LetShorterExposuresSharpenLongerOnes) {
     EXPECT_EQ(x[0], 5);  // the short one does not listen to the long one
 }
 
-TEST(NearestSamplesTest, UseSaturatedSamplesOnlyWhereThereIsNoOther) {
-    EXPECT_NEAR(estimate(5, {{0, 4, 2, true}, {4, 1, 3}})[1], 3, 1e-3);
-    EXPECT_EQ(estimate(5, {{0, 4, 4, true}, {4, 1, 0.5F}})[1], 1);  // or where others say less
-    EXPECT_EQ(estimate(4, {{0, 4, 2, true}})[1], 0.5F);
+TEST(NearestSamplesTest, TakeSaturatedSamplesAsBounds) {
+    EXPECT_EQ(estimate(5, {{0, 4, 2, true}, {4, 1, 3}})[1], 3);  // not a mean with 0.5
+    EXPECT_EQ(estimate(5, {{0, 4, 4, true}, {4, 1, 0.5F}})[1], 1);
+    EXPECT_EQ(estimate(7, {{0, 4, 2, true}, {4, 1, 2, true}, {5, 2, 2, true}})[1], 2);
+    EXPECT_EQ(estimate(20, {{0, 4, 2, true}, {19, 1, 0.3F}})[1], 0.5F);
 }
 
 TEST(NearestSamplesTest, AreZeroForAPixelWithoutSamples) {
@@ -75,8 +76,9 @@ TEST(NearestSamplesTest, RecoverALastingSceneButForNoise) {
         nearest_samples(measure(video, random_schedule(20, 30, kPaperExposureSlots, 1)));
     double sum = 0;
     for (const float light : x.data()) sum += double{light};
-    // 5000 samples with a standard deviation of 0.02 or less per slot.
-    EXPECT_NEAR(sum / static_cast<double>(x.voxels()), 0.5, 0.002);
+    // Exposures of 4 and 8 slots saturate now and then and say nothing, those just below leave a
+    // mean that is up to 1 percent too low.
+    EXPECT_NEAR(sum / static_cast<double>(x.voxels()), 0.5, 0.005);
 }
 
 }  // namespace

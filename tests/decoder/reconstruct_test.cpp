@@ -162,7 +162,7 @@ TEST_F(ReconstructTest, TellsTheMonitorHowFarItIsAndStopsInTheMidstOfABlock) {
     EXPECT_EQ(run(1e9).slots, 100);
     EXPECT_DOUBLE_EQ(last, 100);
     EXPECT_EQ(run(60).slots, 48);  // blocks of 48 and 52 slots
-    EXPECT_NEAR(last, 60, 5);  // as finely as motion is found
+    EXPECT_NEAR(last, 60, 5);      // as finely as motion is found
 }
 
 TEST_F(ReconstructTest, DeliversNothingOfAnEmptyRecording) {

@@ -22,10 +22,11 @@ Measurements direct_samples(int slots, FrameShape shape, const std::vector<float
             std::vector<float>(y.size(), variance)};
 }
 
-FluxVideo solve(const Measurements& m, const TotalVariationOptions& options,
+FluxVideo solve(const Measurements& m, TotalVariationOptions options,
                 const std::vector<MotionField>& motion = {}) {
     FluxVideo x(m.slots, m.shape);
     const std::vector<float> step(static_cast<std::size_t>(m.slots) * m.shape.pixels(), 0.05F);
+    options.reference_step = 0.05F;
     minimise_total_variation(m, motion, step, options, x);
     return x;
 }
@@ -48,6 +49,15 @@ TEST(TotalVariationTest, MovesTwoNeighboursByWeightTimesVariance) {
                                {.iterations = 3000, .temporal_weight = 7});
     EXPECT_NEAR(in_time.data()[0], 0.2 + 7 * 0.01, 1e-4);
     EXPECT_NEAR(in_time.data()[1], 0.6 - 7 * 0.01, 1e-4);
+}
+
+/// A quarter of the step doubles the weight.
+TEST(TotalVariationTest, WeighsDifferencesOfSmallStepsMore) {
+    FluxVideo x(1, {1, 2, 1});
+    minimise_total_variation(direct_samples(1, x.shape(), {0.2F, 0.6F}, 0.01F), {},
+                             std::vector<float>(2, 0.05F),
+                             {.iterations = 3000, .spatial_weight = 5, .reference_step = 0.2F}, x);
+    EXPECT_NEAR(x.data()[0], 0.2 + 2 * 5 * 0.01, 1e-4);
 }
 
 /// Planes that step by d1 .. d3 share one norm: plane p moves by weight * s * dp / |d|.

@@ -1,0 +1,43 @@
+"""Links in Markdown lead to files and headings that exist, and so do mentions of docs/*.md and
+scripts/* in any file."""
+
+import posixpath
+import re
+
+from tree import report
+
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+MENTION = re.compile(r"(?<![\w/.-])((?:docs/\w+\.md)|(?:scripts/[\w-]+(?:\.txt)?))(?![\w/*])")
+
+
+def check(tree):
+    for name in tree.texts():
+        for number, line in tree.lines(name):
+            if name.endswith(".md"):
+                for target in LINK.findall(line):
+                    yield from broken(tree, name, number, target)
+                line = LINK.sub("", line)
+            for target in MENTION.findall(line):
+                if target not in tree.files:
+                    yield f"{name}:{number}: {target} does not exist"
+
+
+def broken(tree, name, number, target):
+    if re.match(r"\w+:", target):
+        return
+    path, _, anchor = target.partition("#")
+    file = posixpath.normpath(posixpath.join(posixpath.dirname(name), path)) if path else name
+    if not (tree.root / file).exists():
+        yield f"{name}:{number}: the link leads to {file}, which does not exist"
+    elif anchor and anchor not in anchors(tree, file):
+        yield f"{name}:{number}: {file} has no heading #{anchor}"
+
+
+def anchors(tree, file):
+    """Headings as GitHub spells them in a link."""
+    headings = re.findall(r"^#+ +(.*)$", tree.text(file), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+if __name__ == "__main__":
+    report(check)

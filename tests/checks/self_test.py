@@ -1,0 +1,141 @@
+"""Each check finds the faults of small made-up trees, and nothing in sound ones."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import config_comments
+import headers
+import includes
+import layout
+import links
+import listed
+import packages
+import sizes
+import words
+from tree import Tree
+
+TABLE = """| module | may include |
+|---|---|
+| core | nothing |
+| stream, sensor_model, metrics, scenes | core |
+| decoder | stream, core |
+| readout | sensor_model, stream, core |
+| apps, tests, bench | everything |
+"""
+
+
+class ChecksTest(unittest.TestCase):
+    def findings(self, check, files):
+        with tempfile.TemporaryDirectory() as root:
+            for name, text in files.items():
+                path = Path(root) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            return list(check(Tree(root)))
+
+    def places(self, check, files):
+        return [finding.split(" ")[0].rstrip(":") for finding in self.findings(check, files)]
+
+    def includes(self, files):
+        sound = {includes.PAGE: TABLE, "core/plane.h": "", "sensor_model/noise.h": ""}
+        return self.places(includes.check, sound | files)
+
+    def test_a_module_includes_what_the_table_allows(self):
+        source = '#include "sensor_model/noise.h"\n#include "core/plane.h"\n#include <vector>\n'
+        self.assertEqual(self.includes({"readout/adc.cpp": source, "tests/t.cpp": source}), [])
+
+    def test_the_decoder_does_not_know_the_sensor_model(self):
+        source = '#include "core/plane.h"\n\n#  include "sensor_model/noise.h"\n'
+        self.assertEqual(self.includes({"decoder/prox.cpp": source}), ["decoder/prox.cpp:3"])
+
+    def test_an_include_that_would_escape_the_check_is_an_error(self):
+        source = '#include <core/plane.h>\n#include "../core/plane.h"\n'
+        self.assertEqual(self.includes({"decoder/a.h": source}), ["decoder/a.h:1", "decoder/a.h:2"])
+
+    def test_linking_follows_the_same_table(self):
+        build = "stipple_module(decoder\n    PUBLIC stipple_core stipple_readout)\n"
+        self.assertEqual(self.includes({"decoder/CMakeLists.txt": build}),
+                         ["decoder/CMakeLists.txt:2"])
+
+    def test_a_module_without_a_row_is_an_error(self):
+        table = TABLE.replace("| decoder | stream, core |\n", "")
+        self.assertEqual(self.includes({includes.PAGE: table}), [includes.PAGE])
+
+    def test_third_party_types_stay_out_of_headers(self):
+        foreign = "#pragma once\n#include <vector>\n#include <opencv2/core.hpp>\n"
+        kernel = "#include <hwy/highway.h>\n"
+        files = {"core/a.h": foreign, "core/a.cpp": foreign, "apps/a.h": foreign,
+                 "core/b-inl.h": kernel, "core/c.h": "#pragma once\n" + kernel}
+        self.assertEqual(self.places(headers.check, files), ["core/a.h:3", "core/c.h:2"])
+
+    def test_a_header_has_pragma_once(self):
+        self.assertEqual(self.places(headers.check, {"core/a.h": "int f();\n"}), ["core/a.h:1"])
+
+    def test_a_source_that_is_not_built_is_found(self):
+        files = {"core/CMakeLists.txt": "stipple_module(core SOURCES new_plane.cpp HEADERS a.h)\n",
+                 "core/plane.cpp": "", "core/new_plane.cpp": "", "core/a.h": "",
+                 "tests/core/CMakeLists.txt": "stipple_test(core a_test.cpp)\n",
+                 "core/b.h": "", "core/kernel-inl.h": "", "apps/c.h": "",
+                 "tests/core/a_test.cpp": "", "tests/core/b_test.cpp": "",
+                 "tests/core/c_test.py": ""}
+        self.assertEqual(self.places(listed.check, files),
+                         ["core/b.h", "core/plane.cpp", "tests/core/b_test.cpp",
+                          "tests/core/c_test.py"])
+
+    def test_sizes_are_limited(self):
+        body = "    f();\n"
+        longest = "void g(int a,\n       int b) {\n" + 58 * body + "}\n"
+        longer = "TEST(A, B) {\n" + 59 * body + "}\n"
+        method = "class A {\n    A() : a_(1) {\n" + 59 * body + "    }\n};\n"
+        files = {"core/a.cpp": longest, "core/b.cpp": longest + longer, "core/c.h": method,
+                 "core/d.cpp": 401 * "\n", "core/e.py": "def f():\n" + 60 * "    g()\n"}
+        self.assertEqual(self.places(sizes.check, files),
+                         ["core/b.cpp:62", "core/c.h:2", "core/d.cpp", "core/e.py:1"])
+
+    @unittest.skipUnless(shutil.which("clang-format"), "clang-format is not installed")
+    def test_layout_is_that_of_clang_format(self):
+        files = {".clang-format": "BasedOnStyle: Google\n", "core/a.cpp": "int f();\n",
+                 "core/b.cpp": "int f();\nint   g();\n", "README.md": "blanks \n"}
+        self.assertEqual(self.places(layout.check, files), ["README.md:1", "core/b.cpp:2"])
+
+    def test_nothing_depends_on_one_machine(self):
+        folder, site = "/" + "home/someone/data", "https:/" + "/example.org"
+        files = {"a.md": f"see {folder}\n/usr/bin/env, /dev/full and docs/home/x are fine\n",
+                 "b.cpp": f"// {site}/page\n"}
+        self.assertEqual(self.places(words.check, files), ["a.md:1", "b.cpp:1"])
+
+    def test_vague_names_and_uncertain_bits_are_found(self):
+        files = {"core/a.h": "class FrameManager;\nstruct BaseLine;\nenum class FrameHelper {};\n",
+                 "core/frame_utils.cpp": "std::normal_distribution<float> draw;\n",
+                 "core/CMakeLists.txt": "add_compile_options(-ffast-math)\n"}
+        self.assertEqual(sorted(self.places(words.check, files)),
+                         ["core/CMakeLists.txt:1", "core/a.h:1", "core/a.h:3",
+                          "core/frame_utils.cpp", "core/frame_utils.cpp:1"])
+
+    def test_links_lead_somewhere(self):
+        link = "[a](pages/a.md) [b](pages/b.md) [c](pages/a.md#two-words) [d](#none)\n"
+        files = {"README.md": link, "pages/a.md": "# Two words\n[up](../README.md)\n",
+                 "core/a.h": "// docs" + "/none.md\n"}
+        self.assertEqual(self.places(links.check, files),
+                         ["README.md:1", "README.md:1", "core/a.h:1"])
+
+    def test_every_config_key_is_explained(self):
+        text = '# width\na = 1\nb = "#"\nc = 2  # height\n[t]\nd = 1\n'
+        self.assertEqual(self.places(config_comments.check, {"config/a.toml": text}),
+                         ["config/a.toml:3", "config/a.toml:6"])
+
+    def test_packages_and_build_agree(self):
+        files = {packages.LIST: "[build]\ncmake - for the presets\nlibfmt-dev fmt text\n",
+                 "CMakeLists.txt": "find_package(fmt REQUIRED)\nfind_package(Threads)\n"}
+        files["README.md"] = "install libfmt-dev first\n"
+        self.assertEqual(self.findings(packages.check, files), [])
+        files["README.md"] = "install libfmt-dev and libboost-dev first\n"
+        files["CMakeLists.txt"] = ("find_package(TBB)\n"
+                                   "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n")
+        self.assertEqual(len(self.findings(packages.check, files)), 4)
+
+
+if __name__ == "__main__":
+    unittest.main()

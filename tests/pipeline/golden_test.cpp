@@ -1,0 +1,69 @@
+// The bits of a decoded clip, which no compiler, SIMD target or number of threads may change. After
+// a change of the method on purpose: STIPPLE_UPDATE_GOLDEN=1 build/release/pipeline_test
+// --gtest_filter='Golden*'
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/core/temporary_folder.h"
+#include "tests/pipeline/clip.h"
+
+namespace stipple {
+namespace {
+
+/// Coloured discs over a chequered wall, dark to saturated, exact in every arithmetic.
+FluxVideo discs(FrameShape shape) {
+    FluxVideo video(26, shape);
+    for (int slot = 0; slot < video.slots(); ++slot)
+        for (int plane = 0; plane < shape.planes; ++plane)
+            for (int row = 0; row < shape.rows; ++row)
+                for (int col = 0; col < shape.cols; ++col) {
+                    const int x = col - 12 - slot;
+                    const int y = row - 20;
+                    const int wall = (row / 6 + col / 6 + plane) % 3;
+                    const int disc = (x / 4 + y / 4 + 40) % 4 + plane;
+                    video.plane(slot, plane)(row, col) =
+                        static_cast<float>(x * x + y * y < 120 ? 8 + 10 * disc : 1 + 3 * wall) / 32;
+                }
+    return video;
+}
+
+std::uint64_t fnv1a(std::span<const float> values) {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const float value : values)
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            hash ^= std::bit_cast<std::uint32_t>(value) >> shift & 255U;
+            hash *= 1099511628211U;
+        }
+    return hash;
+}
+
+void expect_golden(const std::string& name, FrameShape shape, DecodeMethod method) {
+    const TemporaryFolder folder;
+    write_recording(discs(shape), "tiled", folder / "clip.stipple");
+    const FluxVideo decoded = read_recording(folder / "clip.stipple", method);
+    const std::string golden_file = STIPPLE_SOURCE_DIR "/tests/golden/decoder/" + name + ".fnv1a";
+    if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
+        std::ofstream(golden_file) << std::hex << fnv1a(decoded.data()) << '\n';
+    std::uint64_t golden = 0;
+    std::ifstream(golden_file) >> std::hex >> golden;
+    EXPECT_EQ(fnv1a(decoded.data()), golden) << std::hex << fnv1a(decoded.data());
+}
+
+constexpr FrameShape kMono{.rows = 45, .cols = 83, .planes = 1};
+constexpr FrameShape kColour{.rows = 40, .cols = 56, .planes = 3};
+
+TEST(GoldenDecodeTest, NaiveKeepsItsBits) {
+    expect_golden("naive_mono", kMono, DecodeMethod::kNaive);
+    expect_golden("naive_colour", kColour, DecodeMethod::kNaive);
+}
+
+TEST(GoldenDecodeTest, FastKeepsItsBits) {
+    expect_golden("fast_mono", kMono, DecodeMethod::kFast);
+    expect_golden("fast_colour", kColour, DecodeMethod::kFast);
+}
+
+}  // namespace
+}  // namespace stipple
