@@ -126,15 +126,21 @@ class ChecksTest(unittest.TestCase):
         self.assertEqual(self.places(config_comments.check, {"config/a.toml": text}),
                          ["config/a.toml:3", "config/a.toml:6"])
 
-    def test_packages_and_build_agree(self):
-        files = {packages.LIST: "[build]\ncmake - for the presets\nlibfmt-dev fmt text\n",
-                 "CMakeLists.txt": "find_package(fmt REQUIRED)\nfind_package(Threads)\n"}
-        files["README.md"] = "install libfmt-dev first\n"
-        self.assertEqual(self.findings(packages.check, files), [])
-        files["README.md"] = "install libfmt-dev and libboost-dev first\n"
-        files["CMakeLists.txt"] = ("find_package(TBB)\n"
-                                   "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n")
-        self.assertEqual(len(self.findings(packages.check, files)), 4)
+    def test_package_list_build_sources_and_documentation_agree(self):
+        row = "libfmt-dev fmt fmt/ text of messages\n"
+        sound = {packages.LIST: "[build]\ncmake - - for the presets\n" + row,
+                 "CMakeLists.txt": "find_package(fmt REQUIRED)\nfind_package(Threads)\n",
+                 "core/a.cpp": "#include <fmt/format.h>\n#include <sys/stat.h>\n",
+                 "README.md": "install libfmt-dev first\n"}
+        self.assertEqual(self.findings(packages.check, sound), [])
+        for name, text in {"README.md": "install libboost-dev\n",
+                           "CMakeLists.txt": "find_package(fmt)\nfind_package(TBB)\n",
+                           "core/b.cpp": "#include <gmock/gmock.h>\n",
+                           packages.LIST: row + "libtbb-dev TBB - threads\n"}.items():
+            self.assertEqual(len(self.findings(packages.check, sound | {name: text})), 1, name)
+        self.assertEqual(len(self.findings(packages.check, sound | {"core/a.cpp": ""})), 1)
+        sound["CMakeLists.txt"] = "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n"
+        self.assertEqual(len(self.findings(packages.check, sound)), 2)
 
 
 if __name__ == "__main__":
