@@ -18,6 +18,21 @@ function(stipple_module name)
     target_link_libraries(stipple_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 
+# stipple_verify_headers(FOLDER ... LIBS lib ...): where headers are compiled one at a time, those of
+# programs, tests and benchmarks are too.
+function(stipple_verify_headers)
+    cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+    list(TRANSFORM arg_UNPARSED_ARGUMENTS REPLACE "(.+)" "${CMAKE_SOURCE_DIR}/\\1/*.h")
+    file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${arg_UNPARSED_ARGUMENTS})
+    if(NOT CMAKE_VERIFY_INTERFACE_HEADER_SETS OR NOT headers)
+        return()
+    endif()
+    add_library(stipple_inner_headers INTERFACE)
+    target_sources(stipple_inner_headers INTERFACE FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR}
+                                                   FILES ${headers})
+    target_link_libraries(stipple_inner_headers INTERFACE ${arg_LIBS})
+endfunction()
+
 # stipple_test(MODULE file_test.cpp ...): one executable tests/MODULE; every TEST is a ctest entry.
 function(stipple_test module)
     add_executable(${module}_test ${ARGN})

@@ -12,14 +12,15 @@
 namespace stipple {
 namespace {
 
-constexpr int kWindow = 11;
+constexpr int kRadius = 5;
+constexpr int kWindow = 2 * kRadius + 1;
 using Weights = std::array<double, kWindow>;
 
 Weights gaussian_weights() {
     constexpr double kSigma = 1.5;
     Weights weights;
     for (int i = 0; i < kWindow; ++i) {
-        const double distance = i - kWindow / 2;
+        const double distance = i - kRadius;
         weights[static_cast<std::size_t>(i)] =
             std::exp(-distance * distance / (2 * kSigma * kSigma));
     }
