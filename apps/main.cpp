@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -66,6 +67,10 @@ int main(int argc, char** argv) {
     for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_demo})
         add(app, action);
     for (CLI::App* command : app.get_subcommands({})) add_run_options(*command, options);
+    const auto is_first = [&](const CLI::App* command) { return command->check_name(argv[1]); };
+    if (argc > 1 && argv[1][0] != '-' && std::ranges::none_of(app.get_subcommands({}), is_first))
+        return fail(kUsage,
+                    fmt::format("there is no subcommand \"{}\"; --help lists them", argv[1]));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

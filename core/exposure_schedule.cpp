@@ -132,6 +132,7 @@ std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int f
 
 ExposureSchedule random_schedule(int rows, int cols, std::span<const int> exposure_slots,
                                  std::uint64_t seed) {
+    if (exposure_slots.empty()) throw InputError(kPlace, "there is no exposure length");
     int period_slots = 0;
     for (const int length : exposure_slots) {
         if (length < 1 || length > 64)

@@ -185,6 +185,7 @@ TEST(ExposureScheduleTest, RefusesAnEmptyOrOversizedTileOrPeriod) {
     const auto tile = [](int rows, int cols) { return ExposureSchedule(rows, cols, 1, {0}, {}); };
     EXPECT_THROW(tile(0, 1), InputError);
     EXPECT_THROW(tile(1, 65536), InputError);
+    EXPECT_THROW(static_cast<void>(random_schedule(2, 2, {}, 1)), InputError);
     EXPECT_THROW(ExposureSchedule(1, 1, 0, {0, 0}, {}), InputError);
     EXPECT_THROW(ExposureSchedule(1, 1, 65536, {0, 0}, {}), InputError);
 }
