@@ -98,10 +98,12 @@ VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
                       .planes = planes}};
 }
 
-/// Decodes the cores of all tiles of a block of slots.
+/// Decodes the cores of all tiles of a block of slots. No packet is older than the block.
 Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
                    DecodeMethod method, const Stretch& slots, const Checkpoint& checkpoint) {
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), header.shape);
+    const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
+    if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
     const std::vector<Tile> tiles = frame_tiles(header.shape);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const auto tile_checkpoint = [&](double fraction) {

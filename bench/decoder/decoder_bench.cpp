@@ -107,10 +107,10 @@ void fast_colour(benchmark::State& state) {
 }
 
 BENCHMARK(fast_mono)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(fast_colour)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(motion)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(iteration)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(naive)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(fast_colour)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(motion)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(iteration)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(naive)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(copy);
 
 }  // namespace

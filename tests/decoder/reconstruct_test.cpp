@@ -191,17 +191,30 @@ TEST_F(ReconstructTest, FillsWhatALostPacketLeavesUnknown) {
               mean_square(std::span(naive).subspan(at, lost.size()), truth) / 2);
 }
 
+/// A stream of one slot, then one packet of `slot`.
+std::string with_gap(const StreamHeader& header, std::uint64_t slot) {
+    StreamBytes stream = bytes_of(header, {{0, 0, 2, 0, {1, 2, 3, 4}}});
+    PacketHeader far;
+    far.slot = slot;
+    far.rows = 2;
+    far.samples = 4;
+    return stream.bytes.substr(0, stream.begins[1]) + framed(far, "1234");
+}
+
+TEST_F(ReconstructTest, GoesOnAfterALongGapAtOnce) {
+    const FrameShape shape{2, 2, 1};
+    const StreamHeader header = record(disc(1, shape), {1, 1, 1, {0, 1}, {{0, 1}}}).header;
+    write_text(folder_ / "gap.stipple", with_gap(header, 90000));
+    const auto x = decode_all(folder_ / "gap.stipple", DecodeMethod::kFast, shape);
+    ASSERT_EQ(x.size(), 90001U * shape.sites());
+    EXPECT_EQ(x[50000 * shape.sites()], 0);
+    EXPECT_GT(x.back(), 0.2F);  // '4' is 52 DN, 0.41
+}
+
 TEST_F(ReconstructTest, RefusesAGapThatNoRecordingHas) {
     const FrameShape shape{2, 2, 1};
     const StreamHeader header = record(disc(1, shape), {1, 1, 1, {0, 1}, {{0, 1}}}).header;
-    StreamBytes stream = bytes_of(header, {});
-    PacketHeader far;
-    far.slot = std::uint64_t{1} << 40U;
-    far.rows = 2;
-    far.samples = 4;
-    stream.bytes.resize(stream.begins[0]);
-    stream.bytes += framed(far, "1234");
-    write_text(folder_ / "gap.stipple", stream.bytes);
+    write_text(folder_ / "gap.stipple", with_gap(header, std::uint64_t{1} << 40U));
     StreamReader reader(folder_ / "gap.stipple");
     expect_parts(message_of<InputError>([&] {
                      return decode(reader, DecodeMethod::kNaive,
