@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/fnv1a.h"
 
 namespace stipple {
 namespace {
@@ -68,12 +69,6 @@ void expect_visits_match_brute_force(const ExposureSchedule& schedule, int rows,
     }
 }
 
-std::uint64_t fnv1a(std::uint64_t hash, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i)
-        hash = (hash ^ ((value >> static_cast<unsigned>(8 * i)) & 0xFFU)) * 0x100000001B3U;
-    return hash;
-}
-
 TEST(ExposureScheduleTest, RandomScheduleCoversEachSlotOnceAtCompression15To4) {
     const auto schedule = random_schedule(16, 16, kPaperExposureSlots, 1);
     EXPECT_EQ(schedule.period_slots(), 15);
@@ -122,12 +117,14 @@ TEST(ExposureScheduleTest, RandomScheduleKeepsItsBits) {
     // The stream format promises these bits. Recomputed by an independent program from the
     // published algorithm of Philox4x32-10 and the text of random_schedule.
     const auto schedule = random_schedule(16, 16, kPaperExposureSlots, 1);
-    std::uint64_t hash = 0xCBF29CE484222325U;
+    Fnv1a hash;
     for (int row = 0; row < 16; ++row)
         for (int col = 0; col < 16; ++col)
-            for (const Exposure& e : schedule.exposures(row, col))
-                hash = fnv1a(fnv1a(hash, e.first_slot, 4), e.open_slots, 8);
-    EXPECT_EQ(hash, 0x7B85F3CB014C31FDU);
+            for (const Exposure& e : schedule.exposures(row, col)) {
+                hash.add(e.first_slot, 4);
+                hash.add(e.open_slots, 8);
+            }
+    EXPECT_EQ(hash.hash(), 0x7B85F3CB014C31FDU);
 }
 
 TEST(ExposureScheduleTest, RandomScheduleDependsOnTheSeed) {

@@ -9,6 +9,7 @@
 
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/fnv1a.h"
 
 namespace stipple {
 namespace {
@@ -30,14 +31,10 @@ FluxVideo discs(FrameShape shape) {
     return video;
 }
 
-std::uint64_t fnv1a(std::span<const float> values) {
-    std::uint64_t hash = 14695981039346656037U;
-    for (const float value : values)
-        for (unsigned shift = 0; shift < 32; shift += 8) {
-            hash ^= std::bit_cast<std::uint32_t>(value) >> shift & 255U;
-            hash *= 1099511628211U;
-        }
-    return hash;
+std::uint64_t hash_of(std::span<const float> values) {
+    Fnv1a hash;
+    for (const float value : values) hash.add(std::bit_cast<std::uint32_t>(value), 4);
+    return hash.hash();
 }
 
 void expect_golden(const std::string& name, FrameShape shape, DecodeMethod method) {
@@ -46,10 +43,10 @@ void expect_golden(const std::string& name, FrameShape shape, DecodeMethod metho
     const FluxVideo decoded = read_recording(folder / "clip.stipple", method);
     const std::string golden_file = STIPPLE_SOURCE_DIR "/tests/golden/decoder/" + name + ".fnv1a";
     if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
-        std::ofstream(golden_file) << std::hex << fnv1a(decoded.data()) << '\n';
+        std::ofstream(golden_file) << std::hex << hash_of(decoded.data()) << '\n';
     std::uint64_t golden = 0;
     std::ifstream(golden_file) >> std::hex >> golden;
-    EXPECT_EQ(fnv1a(decoded.data()), golden) << std::hex << fnv1a(decoded.data());
+    EXPECT_EQ(hash_of(decoded.data()), golden) << std::hex << hash_of(decoded.data());
 }
 
 constexpr FrameShape kMono{.rows = 45, .cols = 83, .planes = 1};

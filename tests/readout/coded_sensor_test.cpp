@@ -18,6 +18,7 @@
 #include "sensor_model/pixel_array.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/gapped_schedule.h"
+#include "tests/support/fnv1a.h"
 
 namespace stipple {
 namespace {
@@ -183,15 +184,13 @@ TEST(CodedSensorTest, TakesInfiniteLightAsSaturation) {
 TEST(CodedSensorTest, KeepsTheRecordedBits) {
     const FluxVideo video = footage(30, kShape);
     const auto schedule = random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
-    std::uint64_t hash = 0xCBF29CE484222325U;  // FNV-1a
+    Fnv1a hash;
     for (const auto& slot : expose_all(video, schedule))
-        for (const std::uint16_t dn : slot)
-            for (const unsigned byte : {dn % 256U, dn / 256U})
-                hash = (hash ^ byte) * 0x100000001B3U;
+        for (const std::uint16_t dn : slot) hash.add(dn, 2);
     const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "tests/golden/readout";
     std::uint64_t golden = 0;
     std::ifstream(folder / "coded_sensor_dn.fnv1a") >> std::hex >> golden;
-    EXPECT_EQ(hash, golden) << std::hex << hash;
+    EXPECT_EQ(hash.hash(), golden) << std::hex << hash.hash();
 }
 
 TEST(CodedSensorTest, RefusesInterleavedSchedulesEmptyArraysAndBadSensors) {
