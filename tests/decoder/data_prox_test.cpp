@@ -57,21 +57,23 @@ TEST(DataProxTest, FulfilsTheConditionOfOptimality) {
                 if ((m.state[i] & Measurements::kFirst) != 0) break;
             }
             for (const std::size_t i : open) {
-                sum_v += double{p.v[i]};
-                sum_x += double{x[i]};
+                sum_v += static_cast<double>(p.v[i]);
+                sum_x += static_cast<double>(x[i]);
             }
             const bool saturated = (m.state[last] & Measurements::kSaturated) != 0;
-            const bool inactive = saturated && sum_v >= double{m.sum[last]};
+            const bool inactive = saturated && sum_v >= static_cast<double>(m.sum[last]);
             exceeded += inactive;
             pulled_up += saturated && !inactive;
             for (const std::size_t i : open) {
                 const std::size_t pixel =
                     i / kShape.sites() * kShape.pixels() + i % kShape.pixels();
-                const double prior = (double{x[i]} - double{p.v[i]}) / double{p.step[pixel]};
-                const double data = (sum_x - double{m.sum[last]}) / double{m.variance[last]};
+                const double prior = (static_cast<double>(x[i]) - static_cast<double>(p.v[i])) /
+                                     static_cast<double>(p.step[pixel]);
+                const double data = (sum_x - static_cast<double>(m.sum[last])) /
+                                    static_cast<double>(m.variance[last]);
                 // Cancellation in x - v and A x - y: a few units of 2^-24 of values up to 30.
-                const double tolerance =
-                    4e-6 / double{p.step[pixel]} + 1e-5 / double{m.variance[last]};
+                const double tolerance = 4e-6 / static_cast<double>(p.step[pixel]) +
+                                         1e-5 / static_cast<double>(m.variance[last]);
                 EXPECT_NEAR(prior + (inactive ? 0 : data), 0, tolerance);
             }
         }

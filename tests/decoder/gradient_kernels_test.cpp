@@ -30,7 +30,7 @@ struct Frame {
     }
     /// The largest norm that the dual of a pixel may have.
     [[nodiscard]] double most(double weight, std::size_t pixel) const {
-        return weight * std::sqrt(0.04 / double{step[pixel]});
+        return weight * std::sqrt(0.04 / static_cast<double>(step[pixel]));
     }
     void update_spatial(float weight) {
         update_spatial_dual(shape, dual_step(weight), x.data(), {dual_col.data(), dual_row.data()},
@@ -44,8 +44,8 @@ struct Frame {
     [[nodiscard]] double norm(std::size_t pixel) const {
         double square = 0;
         for (std::size_t i = pixel; i < shape.sites(); i += shape.pixels())
-            square += double{dual_col[i]} * double{dual_col[i]} +
-                      double{dual_row[i]} * double{dual_row[i]};
+            square += static_cast<double>(dual_col[i]) * static_cast<double>(dual_col[i]) +
+                      static_cast<double>(dual_row[i]) * static_cast<double>(dual_row[i]);
         return std::sqrt(square);
     }
 
@@ -79,9 +79,11 @@ TEST(GradientKernelsTest, GradientIsTheTransposeOfTheDifferences) {
         const auto z = random_values(shape.sites(), -1, 1, 9);
         for (std::size_t i = 0; i < shape.sites(); ++i) {
             if (i % cols < cols - 1)
-                differences += (double{z[i + 1]} - double{z[i]}) * double{f.dual_col[i]};
+                differences += (static_cast<double>(z[i + 1]) - static_cast<double>(z[i])) *
+                               static_cast<double>(f.dual_col[i]);
             if (i % shape.pixels() < shape.pixels() - cols)
-                differences += (double{z[i + cols]} - double{z[i]}) * double{f.dual_row[i]};
+                differences += (static_cast<double>(z[i + cols]) - static_cast<double>(z[i])) *
+                               static_cast<double>(f.dual_row[i]);
         }
         EXPECT_NEAR(dot(z, f.gradient), differences, 1e-4);  // 300 sums of floats up to 20
     }

@@ -64,9 +64,11 @@ struct Linked {
         const float* p =
             &b[i - pixel + static_cast<std::size_t>(top) * cols + static_cast<std::size_t>(left)];
         const double right = col - left;
-        const double above = double{p[0]} * (1 - right) + double{p[1]} * right;
-        const double below = double{p[cols]} * (1 - right) + double{p[cols + 1]} * right;
-        return above * (1 - (row - top)) + below * (row - top) - double{a[i]};
+        const double above =
+            static_cast<double>(p[0]) * (1 - right) + static_cast<double>(p[1]) * right;
+        const double below =
+            static_cast<double>(p[cols]) * (1 - right) + static_cast<double>(p[cols + 1]) * right;
+        return above * (1 - (row - top)) + below * (row - top) - static_cast<double>(a[i]);
     }
 
     FrameShape shape;
@@ -80,7 +82,7 @@ TEST(MotionKernelsTest, DualsAscendAlongDifferencesToThePartner) {
         Linked f(shape, true);
         f.update(1e9F);
         for (std::size_t i = 0; i < shape.sites(); ++i) {
-            const double sigma = 1 / (16.0 * double{f.step[i % shape.pixels()]});
+            const double sigma = 1 / (16.0 * static_cast<double>(f.step[i % shape.pixels()]));
             EXPECT_NEAR(f.dual[i], sigma * f.difference(f.now, f.next, i), 1e-5) << i;
         }
     }
@@ -95,7 +97,7 @@ TEST(MotionKernelsTest, GradientsAreTheTransposeOfTheDifferences) {
         const auto b = random_values(shape.sites(), -1, 1, 6);
         double differences = 0;
         for (std::size_t i = 0; i < shape.sites(); ++i)
-            differences += f.difference(a, b, i) * double{f.dual[i]};
+            differences += f.difference(a, b, i) * static_cast<double>(f.dual[i]);
         EXPECT_NEAR(dot(a, f.gradient_now) + dot(b, f.gradient_next), differences, 1e-4);
     }
 }
@@ -110,14 +112,15 @@ TEST(MotionKernelsTest, ConfidenceLimitsTheDualOverPlanes) {
         const auto norm = [&](const Linked& f, std::size_t pixel) {
             double square = 0;
             for (std::size_t i = pixel; i < shape.sites(); i += shape.pixels())
-                square += double{f.dual[i]} * double{f.dual[i]};
+                square += static_cast<double>(f.dual[i]) * static_cast<double>(f.dual[i]);
             return std::sqrt(square);
         };
         for (std::size_t i = 0; i < shape.pixels(); ++i)
-            EXPECT_NEAR(norm(limited, i),
-                        std::min(norm(free, i), 2 * std::sqrt(0.04 / double{free.step[i]}) *
-                                                    limited.confidence[i] / 255.0),
-                        1e-5);
+            EXPECT_NEAR(
+                norm(limited, i),
+                std::min(norm(free, i), 2 * std::sqrt(0.04 / static_cast<double>(free.step[i])) *
+                                            limited.confidence[i] / 255.0),
+                1e-5);
         EXPECT_EQ(limited.dual[3], 0);
     }
 }

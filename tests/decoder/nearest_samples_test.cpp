@@ -75,7 +75,7 @@ TEST(NearestSamplesTest, RecoverALastingSceneButForNoise) {
     const FluxVideo x =
         nearest_samples(measure(video, random_schedule(20, 30, kPaperExposureSlots, 1)));
     double sum = 0;
-    for (const float light : x.data()) sum += double{light};
+    for (const float light : x.data()) sum += static_cast<double>(light);
     // Exposures of 4 and 8 slots saturate now and then and say nothing, those just below leave a
     // mean that is up to 1 percent too low.
     EXPECT_NEAR(sum / static_cast<double>(x.voxels()), 0.5, 0.005);

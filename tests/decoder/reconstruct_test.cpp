@@ -63,7 +63,8 @@ class ReconstructTest : public testing::Test {
 double mean_square(std::span<const float> a, std::span<const float> b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
-        sum += (double{a[i]} - double{b[i]}) * (double{a[i]} - double{b[i]});
+        sum += (static_cast<double>(a[i]) - static_cast<double>(b[i])) *
+               (static_cast<double>(a[i]) - static_cast<double>(b[i]));
     return sum / static_cast<double>(a.size());
 }
 

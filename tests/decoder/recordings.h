@@ -67,7 +67,8 @@ inline FluxVideo random_video(int slots, FrameShape shape, std::uint32_t seed) {
 
 inline double dot(std::span<const float> a, std::span<const float> b) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += double{a[i]} * double{b[i]};
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
     return sum;
 }
 

@@ -45,7 +45,7 @@ TEST(SamplingOperatorTest, SampleAfterSpreadCountsTheOpenSlots) {
         double open = 0;
         for (std::size_t i = 0; i < m.voxels(); ++i) {
             EXPECT_EQ(spread_ones[i], (m.state[i] & Measurements::kOpen) != 0 ? 1.0F : 0.0F);
-            open += double{count[i]};
+            open += static_cast<double>(count[i]);
         }
         EXPECT_EQ(open, dot(spread_ones, spread_ones));
     }
