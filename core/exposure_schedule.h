@@ -102,7 +102,8 @@ inline constexpr int kPaperExposureSlots[] = {1, 2, 4, 8};
 /// The paper's schedule: every pixel of a rows x cols array repeats its own random permutation
 /// of `exposure_slots` without gaps, from a random offset. The stream format defines its bits
 /// (docs/stream_format.md), so a header needs only the lengths and the seed.
-/// \throws InputError if there is no length, one is outside 1..64, or the sum of lengths exceeds 65535.
+/// \throws InputError if there is no length, one is outside 1..64, or the sum of lengths exceeds
+/// 65535.
 [[nodiscard]] ExposureSchedule random_schedule(int rows, int cols,
                                                std::span<const int> exposure_slots,
                                                std::uint64_t seed);
