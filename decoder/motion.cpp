@@ -23,18 +23,6 @@ constexpr int kGradientDescents = 12;
 constexpr int kRefinements = 3;
 constexpr double kBlurPixels = 0.7;
 
-/// Inside, OpenCV runs one thread a call: its flow depends on the number of its threads.
-class OpenCvSingleThreaded {
-  public:
-    OpenCvSingleThreaded() : threads_(cv::getNumThreads()) { cv::setNumThreads(1); }
-    ~OpenCvSingleThreaded() { cv::setNumThreads(threads_); }
-    OpenCvSingleThreaded(const OpenCvSingleThreaded&) = delete;
-    OpenCvSingleThreaded& operator=(const OpenCvSingleThreaded&) = delete;
-
-  private:
-    int threads_;
-};
-
 /// What the flow looks at: 255 sqrt(luminance), 8 bits, slightly blurred. The square root, unlike
 /// a power of 1/2.2, is the same bits everywhere.
 cv::Mat flow_image(const FluxVideo& video, int slot) {
@@ -126,7 +114,6 @@ void write_slot(const FlowPair& flow, float deviation_px, std::size_t voxel, Mot
 }  // namespace
 
 std::vector<MotionField> estimate_motion(const FluxVideo& video, const MotionOptions& options) {
-    const OpenCvSingleThreaded single_threaded;
     const auto count = [](int n) { return static_cast<std::size_t>(n); };
     std::vector<cv::Mat> image(count(video.slots()));
     parallel_for(0, video.slots(), [&](int slot) { image[count(slot)] = flow_image(video, slot); });

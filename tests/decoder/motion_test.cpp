@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "core/parallel.h"
 #include "tests/decoder/recordings.h"
@@ -112,6 +113,19 @@ TEST(MotionTest, GivesTheSameBitsForAnyNumberOfThreads) {
         EXPECT_EQ(one[i].col_shift, two[i].col_shift);
         EXPECT_EQ(one[i].confidence, two[i].confidence);
     }
+}
+
+TEST(MotionTest, DoesNotDependOnTheThreadsOfOpenCv) {
+    const FluxVideo video = moving_texture(2, kShape, 1.3, -0.6);
+    const int threads = cv::getNumThreads();
+    std::vector<std::int16_t> first;
+    for (const int count : {1, 3, 8}) {
+        cv::setNumThreads(count);
+        const auto fields = estimate_motion(video, {});
+        if (first.empty()) first = fields[0].col_shift;
+        EXPECT_EQ(fields[0].col_shift, first) << count;
+    }
+    cv::setNumThreads(threads);
 }
 
 }  // namespace
