@@ -88,7 +88,7 @@ void add_compare(CLI::App& app, Action& action) {
     add_footage_arguments(*command, options->footage);
     command->footer(
         "Examples:\n"
-        "  stipple compare decoded scene --margin 4\n"
+        "  stipple compare decoded scene --margin 4 --max-value 2\n"
         "  stipple compare decoded.npy footage.npy --max-value 2 --json figures.json");
     command->callback([options, &action] {
         action = [options](const RunOptions& run) { compare(*options, run); };

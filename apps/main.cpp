@@ -26,7 +26,7 @@ constexpr auto kExamples =
     "  stipple synth pan -o scene                        render footage\n"
     "  stipple emulate scene -o clip.stipple             through the sensor\n"
     "  stipple decode clip.stipple -o decoded            back to video\n"
-    "  stipple compare decoded scene --margin 4          how good it is\n"
+    "  stipple compare decoded scene --max-value 2       how good it is\n"
     "\"stipple SUBCOMMAND --help\" says more. Exit codes: 0 done, 1 an input cannot be used,\n"
     "2 wrong command line, 3 an output or device failed, 130 and 143 stopped by Ctrl-C or SIGTERM\n"
     "(outputs are then complete files of fewer frames).";

@@ -4,11 +4,22 @@ import os
 import pty
 import subprocess
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 from program import INPUT, OK, PROGRAM, USAGE, ProgramTest
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "demo")
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
+
+
+def read_to_the_end(screen):
+    """All that is written to a terminal until nobody has it open any more."""
+    text = b""
+    while True:
+        try:
+            text += os.read(screen, 4096)
+        except OSError:
+            return text
 
 
 class CommandLineTest(ProgramTest):
@@ -54,10 +65,12 @@ class CommandLineTest(ProgramTest):
         screen, terminal = pty.openpty()
         self.addCleanup(os.close, screen)
         longer = ["synth", "still", "--frames", "9", "--size", "320x240"]
-        with os.fdopen(terminal, "w") as stderr:
-            subprocess.run([PROGRAM, *longer, "-o", "out.npy"], cwd=self.folder, timeout=60,
-                           stdout=subprocess.DEVNULL, stderr=stderr, check=True)
-            text = os.read(screen, 100000).decode()
+        with ThreadPoolExecutor() as reader:
+            shown = reader.submit(read_to_the_end, screen)
+            with os.fdopen(terminal, "w") as stderr:
+                subprocess.run([PROGRAM, *longer, "-o", "out.npy"], cwd=self.folder, timeout=60,
+                               stdout=subprocess.DEVNULL, stderr=stderr, check=True)
+        text = shown.result().decode()
         self.assertRegex(text, r"\[#+-*\] \d/9 frames, [\d.e+]+ frames/s, \d\d:\d\d:\d\d left")
         self.assertTrue(text.endswith("\r\x1b[K"), "the bar is taken away at the end")
 
