@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "tests/pipeline/clip.h"
+#include "tests/support/footage_folder.h"
 
 namespace stipple {
 namespace {

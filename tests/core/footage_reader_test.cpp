@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include "tests/core/npy_bytes.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/core/test_images.h"
+#include "tests/support/footage_folder.h"
 
 namespace stipple {
 namespace {
@@ -130,9 +130,7 @@ TEST(FootageReaderTest, KeepsReturningFalseAtTheEnd) {
 }
 
 TEST(FootageReaderTest, ReadsRealClips) {
-    const char* folder = std::getenv("STIPPLE_FOOTAGE");
-    const fs::path footage =
-        folder != nullptr ? fs::path(folder) : fs::path(STIPPLE_SOURCE_DIR) / "../shared/footage";
+    const fs::path footage = footage_folder();
     if (!fs::is_directory(footage)) GTEST_SKIP() << "no footage in " << footage;
     int clips = 0;
     for (const auto& entry : fs::directory_iterator(footage)) {

@@ -1,7 +1,6 @@
 #include "tests/pipeline/clip.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <vector>
 
 #include "core/config.h"
@@ -10,6 +9,7 @@
 #include "readout/schedule_catalogue.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/footage_folder.h"
 
 namespace stipple {
 namespace {
@@ -26,16 +26,9 @@ NamedSchedule schedule_of(const std::string& name, FrameShape shape) {
 
 }  // namespace
 
-std::filesystem::path footage_folder() {
-    const char* folder = std::getenv("STIPPLE_FOOTAGE");
-    return folder != nullptr ? std::filesystem::path(folder)
-                             : std::filesystem::path(STIPPLE_SOURCE_DIR) / "../shared/footage";
-}
-
 std::optional<FluxVideo> luminance_clip(const std::string& name) {
     const auto folder = footage_folder() / name;
     if (!std::filesystem::exists(folder)) return {};
-    // The number of frames is that of the pictures; the folder holds a description too.
     FootageReader reader(
         folder, {.transfer = Transfer::kLinear, .luminance = true, .max_value = kBrightest});
     std::vector<std::vector<float>> frames;
@@ -45,10 +38,6 @@ std::optional<FluxVideo> luminance_clip(const std::string& name) {
     for (int slot = 0; slot < video.slots(); ++slot)
         std::ranges::copy(frames[static_cast<std::size_t>(slot)], video.frame(slot).begin());
     return video;
-}
-
-ExposureSchedule named_schedule(const std::string& name, FrameShape shape) {
-    return schedule_of(name, shape).schedule;
 }
 
 void write_recording(const FluxVideo& video, const std::string& schedule,

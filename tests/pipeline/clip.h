@@ -4,24 +4,18 @@
 #include <optional>
 #include <string>
 
-#include "core/exposure_schedule.h"
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
 
 namespace stipple {
 
-/// The folder of real footage: $STIPPLE_FOOTAGE, or shared/footage beside the project.
-[[nodiscard]] std::filesystem::path footage_folder();
-
-/// All frames of a clip of that folder, colour as luminance, light clipped at 2.0: what the
+/// All frames of a clip of the footage folder, colour as luminance, light clipped at 2.0: what the
 /// shortest exposure of the paper's sensor can hold. Nothing if the clip is absent.
 [[nodiscard]] std::optional<FluxVideo> luminance_clip(const std::string& name);
 
-/// The schedule of this name (config/schedules) for frames of this shape.
-[[nodiscard]] ExposureSchedule named_schedule(const std::string& name, FrameShape shape);
-
-/// Emulates the paper's sensor on `video` and writes the sample stream.
+/// Emulates the paper's sensor on `video` with a schedule of config/schedules and writes the sample
+/// stream.
 void write_recording(const FluxVideo& video, const std::string& schedule,
                      const std::filesystem::path& file);
 

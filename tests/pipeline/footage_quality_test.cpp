@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/clip.h"
+#include "tests/support/footage_folder.h"
 
 namespace stipple {
 namespace {
