@@ -1,11 +1,16 @@
 #include "apps/sensor_setup.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <sstream>
 #include <string_view>
 
 #include "core/config.h"
+#include "core/error.h"
+#include "core/input_file.h"
+#include "readout/program_text.h"
 #include "sensor_model/sensor_config.h"
 
 namespace stipple {
@@ -21,16 +26,40 @@ std::vector<std::string> settings_of(const SensorChoice& choice, std::string_vie
     return settings;
 }
 
+/// True for a compiled schedule (docs/sequencer_program.md).
+bool is_program(const std::filesystem::path& file) {
+    return file.extension() == ".mem" || file.extension() == ".hex";
+}
+
+NamedSchedule read_program(const SensorChoice& choice) {
+    const auto settings = settings_of(choice, "schedule.");
+    if (!settings.empty())
+        throw InputError("--set schedule." + settings.front(),
+                         fmt::format("{} is a compiled schedule, which has no keys; set them in "
+                                     "`stipple schedule compile`",
+                                     choice.schedule));
+    const auto bytes = read_file(choice.schedule);
+    const NamedProgram named =
+        parse_program({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice.schedule);
+    return {
+        .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
+}
+
 }  // namespace
+
+NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
+    if (is_program(choice.schedule)) return read_program(choice);
+    Config config(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
+    NamedSchedule schedule = read_schedule(config, shape, choice.seed);
+    config.reject_unknown_keys();
+    return schedule;
+}
 
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape) {
     Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
     const SensorParams params = read_sensor(sensor);
     sensor.reject_unknown_keys();
-    Config schedule(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
-    SensorSetup setup{params, read_schedule(schedule, shape, choice.seed), shape, choice.seed};
-    schedule.reject_unknown_keys();
-    return setup;
+    return {params, set_up_schedule(choice, shape), shape, choice.seed};
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {

@@ -13,7 +13,7 @@ namespace stipple {
 /// A sensor as the command line describes it.
 struct SensorChoice {
     std::string sensor = "paper";            ///< name or file
-    std::string schedule = "random";         ///< name or file
+    std::string schedule = "random";         ///< name, file, or compiled file (.mem, .hex)
     std::vector<std::string> settings = {};  ///< "key=value" for the sensor, "schedule.key=value"
     std::uint64_t seed = 1;                  ///< of noise and schedule
 };
@@ -25,6 +25,10 @@ struct SensorSetup {
     FrameShape shape;
     std::uint64_t seed = 1;
 };
+
+/// The chosen schedule, made for an array of `shape`. \throws InputError naming file, line and key
+/// of what cannot be used.
+[[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape);
 
 /// \throws InputError naming file, line and key of what cannot be used.
 [[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+
+namespace stipple {
+
+/// A schedule as the memory that a chip's sequencer steps through (docs/sequencer_program.md): for
+/// each slot of the period, row and column of the tile a few bits, which say what the pixel does.
+struct SequencerProgram {
+    static constexpr unsigned kRead = 1;   ///< bit 0: read the store at the end of the slot
+    static constexpr unsigned kOpen = 2;   ///< bit 1: collect light in this slot
+    static constexpr unsigned kStore = 4;  ///< bit 2: in the second charge store, not the first
+
+    int tile_rows = 0;
+    int tile_cols = 0;
+    int period_slots = 0;
+    /// 1: kRead alone, every pixel collects light in every slot; 2: kOpen too; 3: kStore too.
+    int bits_per_pixel = 1;
+    std::vector<std::uint8_t> pixels;  ///< order (slot, row, col), 0 <= value < 2^bits_per_pixel
+
+    /// Size of the memory.
+    [[nodiscard]] std::uint64_t bits() const {
+        return pixels.size() * static_cast<std::uint64_t>(bits_per_pixel);
+    }
+    bool operator==(const SequencerProgram&) const = default;
+};
+
+/// \throws InputError if the exposures of a pixel interleave so that two charge stores are too few.
+[[nodiscard]] SequencerProgram compile_schedule(const ExposureSchedule& schedule);
+
+/// The schedule that `program` steps through: an exposure of a store begins in the first open slot
+/// after its last reading. `schedule_of(compile_schedule(s)) == s`.
+/// \throws InputError naming `place`, pixel and slot: a pixel is read while it is closed, is open
+/// and never read, or is open for more than 64 slots from the first to the last.
+[[nodiscard]] ExposureSchedule schedule_of(const SequencerProgram& program,
+                                           const std::string& place);
+
+}  // namespace stipple
