@@ -74,7 +74,8 @@ std::string provenance_of(const SensorSetup& setup, const std::string& footage) 
         {"shot_noise", params.shot_noise},
         {"bit_depth", params.bit_depth},
         {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
-        {"slot_us", params.slot_us}};
+        {"slot_us", params.slot_us},
+        {"charge_stores", params.charge_stores}};
     const toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
                            {"footage", footage},
                            {"schedule", setup.schedule.name},

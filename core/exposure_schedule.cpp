@@ -17,6 +17,32 @@ std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
+/// The most of a pixel's exposures whose spans cover one slot of the period.
+int most_at_once(std::span<const Exposure> exposures, int period_slots) {
+    std::vector<int> under_way(index(period_slots), 0);
+    for (const Exposure& e : exposures)
+        for (int i = 0; i < e.span_slots(); ++i)
+            ++under_way[(e.first_slot + index(i)) % under_way.size()];
+    return *std::ranges::max_element(under_way);
+}
+
+/// Bits of `stores_` for one pixel: exposures in the order in which they begin, over some periods,
+/// each take the first free of two stores. As exposures last no longer than a period, the choice
+/// repeats from the second period on, every period or every second one.
+void choose_stores(std::span<const Exposure> exposures, int period_slots,
+                   std::span<std::uint8_t> stores) {
+    constexpr int kPeriods = 4;
+    std::int64_t end[2] = {0, 0};
+    for (int n = 0; n < kPeriods; ++n)
+        for (std::size_t i = 0; i < exposures.size(); ++i) {
+            const auto begin = std::int64_t{n} * period_slots + exposures[i].first_slot;
+            const unsigned store = end[0] <= begin ? 0 : 1;
+            end[store] = begin + exposures[i].span_slots();
+            if (n >= kPeriods - 2)
+                stores[i] = static_cast<std::uint8_t>(stores[i] | store << (n % 2));
+        }
+}
+
 }  // namespace
 
 ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slots,
@@ -36,6 +62,7 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
         first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
         throw InputError(kPlace, "the list of exposures does not match the tile");
     for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel);
+    if (most_at_once_ == 2) assign_stores();
     list_due_pixels();
 }
 
@@ -51,6 +78,7 @@ void ExposureSchedule::check_pixel(int pixel) {
     const auto period = static_cast<std::uint32_t>(period_slots_);
     std::vector<bool> open(period, false);
     std::uint32_t covered_slots = 0;
+    bool interleaved = false;
     for (auto e = begin; e != end; ++e) {
         if (e->first_slot >= period) fail(e->first_slot, "an exposure begins beyond the period");
         if ((e->open_slots & 1U) == 0)
@@ -65,9 +93,18 @@ void ExposureSchedule::check_pixel(int pixel) {
         covered_slots += static_cast<std::uint32_t>(e->span_slots());
         const auto next_begin = e + 1 == end ? begin->first_slot + period : (e + 1)->first_slot;
         if (e->first_slot + static_cast<std::uint32_t>(e->span_slots()) > next_begin)
-            interleaved_ = true;
+            interleaved = true;
     }
-    if (covered_slots > period) interleaved_ = true;
+    if (interleaved || covered_slots > period)
+        most_at_once_ = std::max(most_at_once_, most_at_once({begin, end}, period_slots_));
+}
+
+void ExposureSchedule::assign_stores() {
+    stores_.assign(exposures_.size(), 0);
+    for (int row = 0; row < tile_rows_; ++row)
+        for (int col = 0; col < tile_cols_; ++col)
+            choose_stores(exposures(row, col), period_slots_,
+                          std::span(stores_).subspan(first_[pixel(row, col)]));
 }
 
 void ExposureSchedule::list_due_pixels() {
@@ -91,8 +128,8 @@ void ExposureSchedule::list_due_pixels() {
 }
 
 std::span<const Exposure> ExposureSchedule::exposures(int tile_row, int tile_col) const {
-    const auto pixel = index(tile_row) * index(tile_cols_) + index(tile_col);
-    return std::span(exposures_).subspan(first_[pixel], first_[pixel + 1] - first_[pixel]);
+    const std::size_t p = pixel(tile_row, tile_col);
+    return std::span(exposures_).subspan(first_[p], first_[p + 1] - first_[p]);
 }
 
 std::span<const DuePixel> ExposureSchedule::due(int phase, int tile_row) const {

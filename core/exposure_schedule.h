@@ -57,20 +57,38 @@ class ExposureSchedule {
     /// True if every pixel collects light in every slot.
     [[nodiscard]] bool gapless() const;
     /// True if some pixel begins an exposure before an earlier one has ended (two-bucket pixels).
-    [[nodiscard]] bool interleaved() const { return interleaved_; }
+    [[nodiscard]] bool interleaved() const { return most_at_once_ > 1; }
+    /// The most exposures of one pixel that are under way in one slot: the charge stores it needs.
+    [[nodiscard]] int charge_stores() const { return most_at_once_; }
+    /// The charge store (0 or 1) of exposure `i` of a tile pixel, when it begins in repetition
+    /// `begin_slot / period_slots` of the period. Exposures under way at once never share one. It
+    /// alternates between repetitions where an odd number of exposures follow each other around
+    /// the period. Precondition: charge_stores() <= 2.
+    [[nodiscard]] int store(int tile_row, int tile_col, std::size_t i,
+                            std::int64_t repetition) const {
+        if (stores_.empty()) return 0;
+        return stores_[first_[pixel(tile_row, tile_col)] + i] >> (repetition & 1) & 1;
+    }
 
     bool operator==(const ExposureSchedule&) const;
 
   private:
+    [[nodiscard]] std::size_t pixel(int tile_row, int tile_col) const {
+        return static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_cols_) +
+               static_cast<std::size_t>(tile_col);
+    }
     void check_pixel(int pixel);
+    void assign_stores();
     void list_due_pixels();
 
     int tile_rows_;
     int tile_cols_;
     int period_slots_;
-    bool interleaved_ = false;
+    int most_at_once_ = 1;
     std::vector<std::uint32_t> first_;
     std::vector<Exposure> exposures_;
+    std::vector<std::uint8_t> stores_;  ///< by exposure, bit 0 in even repetitions, bit 1 in odd;
+                                        ///< empty unless there are two stores
     std::vector<std::uint32_t> first_due_;  ///< by phase * tile_rows + tile_row
     std::vector<DuePixel> due_;
 };

@@ -36,43 +36,65 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const f
             .v = v + voxel};
 }
 
+/// The chains of exposures that are looked at; the voxels of others count as unobserved.
+enum class Chain : std::uint8_t { kOnly, kFirst, kSecond };
+
+template <Chain kChain>
+std::uint8_t state_in(std::uint8_t state) {
+    if (kChain == Chain::kOnly) return state;
+    const bool second = (state & Measurements::kSecond) != 0;
+    return second == (kChain == Chain::kSecond) ? state : 0;
+}
+
 /// Adds a slot to the sums of v and step over each exposure; `correction` is (y - sum v) /
 /// (variance + sum step) where an exposure ends, else anything.
+template <Chain kChain>
 void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_step,
             float* HWY_RESTRICT correction) {
-    const std::uint8_t* HWY_RESTRICT state = s.state;
+    const std::uint8_t* HWY_RESTRICT states = s.state;
     for (std::size_t i = 0; i < s.sites; ++i) {
-        const float keep = (state[i] & Measurements::kFirst) != 0 ? 0.0F : 1.0F;
-        const float open = (state[i] & Measurements::kOpen) != 0 ? 1.0F : 0.0F;
+        const std::uint8_t state = state_in<kChain>(states[i]);
+        const float keep = (state & Measurements::kFirst) != 0 ? 0.0F : 1.0F;
+        const float open = (state & Measurements::kOpen) != 0 ? 1.0F : 0.0F;
         sum_v[i] = keep * sum_v[i] + open * s.v[i];
         sum_step[i] = keep * sum_step[i] + open * s.step[i];
         const float missing = s.y[i] - sum_v[i];
-        const bool explained = (state[i] & Measurements::kSaturated) != 0 && missing < 0;
+        const bool explained = (state & Measurements::kSaturated) != 0 && missing < 0;
         correction[i] = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
     }
 }
 
 /// Moves the open voxels of a slot; `correction` is that of the exposure each is in.
+template <Chain kChain>
 void distribute(const Slice& s, const float* HWY_RESTRICT ending, float* HWY_RESTRICT correction) {
-    const std::uint8_t* HWY_RESTRICT state = s.state;
+    const std::uint8_t* HWY_RESTRICT states = s.state;
     float* HWY_RESTRICT v = s.v;
     for (std::size_t i = 0; i < s.sites; ++i) {
-        correction[i] = (state[i] & Measurements::kLast) != 0 ? ending[i] : correction[i];
+        const std::uint8_t state = state_in<kChain>(states[i]);
+        correction[i] = (state & Measurements::kLast) != 0 ? ending[i] : correction[i];
         const float move = s.step[i] * correction[i];
-        v[i] += (state[i] & Measurements::kOpen) != 0 ? move : 0.0F;
+        v[i] += (state & Measurements::kOpen) != 0 ? move : 0.0F;
     }
 }
 
-void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
+template <Chain kChain>
+void prox_chain(const Measurements& m, const SiteRun& run, const float* step, float* v) {
     const auto slots = static_cast<std::size_t>(m.slots);
     float ending[kMaxRunSlots][kMaxRunSites];
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
+        add_up<kChain>(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
-        distribute(slice(m, run, slot, step, v), ending[slot], correction);
+        distribute<kChain>(slice(m, run, slot, step, v), ending[slot], correction);
+}
+
+/// Chains share no voxel, so one after the other is both at once.
+void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
+    if (!m.interleaved) return prox_chain<Chain::kOnly>(m, run, step, v);
+    prox_chain<Chain::kFirst>(m, run, step, v);
+    prox_chain<Chain::kSecond>(m, run, step, v);
 }
 
 }  // namespace stipple::HWY_NAMESPACE

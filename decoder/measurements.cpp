@@ -1,5 +1,7 @@
 #include "decoder/measurements.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -72,24 +74,25 @@ class Collector {
         if (window_row < 0 || window_row >= window_.shape.rows || window_col < 0 ||
             window_col >= window_.shape.cols || first < 0)
             return;
-        const std::uint64_t open = open_slots(last_slot, row, col, sample.span_slots);
+        const Span span = span_of(last_slot, row, col, sample.span_slots);
         const auto sites = window_.shape.sites();
         auto voxel = index(first) * sites + index(window_row) * index(window_.shape.cols) +
                      index(window_col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
-            write(voxel, sample.dn[plane], {open, sample.span_slots});
+            write(voxel, sample.dn[plane], span);
     }
 
     struct Span {
         std::uint64_t open_slots;
         int slots;
+        std::uint8_t open_state;  ///< kOpen, and the chain
     };
 
     void write(std::size_t first_voxel, std::uint16_t dn, const Span& span) {
         const auto sites = window_.shape.sites();
         for (int i = 0; i < span.slots; ++i)
             if ((span.open_slots >> static_cast<unsigned>(i) & 1U) != 0)
-                out_.state[first_voxel + index(i) * sites] = Measurements::kOpen;
+                out_.state[first_voxel + index(i) * sites] = span.open_state;
         const std::size_t last_voxel = first_voxel + index(span.slots - 1) * sites;
         out_.state[first_voxel] |= Measurements::kFirst;
         out_.state[last_voxel] |= Measurements::kLast;
@@ -98,15 +101,18 @@ class Collector {
         out_.variance[last_voxel] = noise_.variance(out_.sum[last_voxel]);
     }
 
-    [[nodiscard]] std::uint64_t open_slots(std::int64_t last_slot, int row, int col,
-                                           int span_slots) const {
-        const auto period = schedule_.period_slots();
-        const auto first = static_cast<std::uint32_t>((last_slot - span_slots + 1 + period) %
-                                                      period);  // span_slots <= period
-        for (const Exposure& e :
-             schedule_.exposures(row % schedule_.tile_rows(), col % schedule_.tile_cols()))
-            if (e.first_slot == first) return e.open_slots;
-        return 0;  // cannot be: the pixel is due, so it has this exposure
+    [[nodiscard]] Span span_of(std::int64_t last_slot, int row, int col, int span_slots) const {
+        const std::int64_t period = schedule_.period_slots();
+        const std::int64_t begin = last_slot - span_slots + 1;  // 0 or more, or it were not due
+        const auto first = static_cast<std::uint32_t>(begin % period);
+        const int tile_row = row % schedule_.tile_rows();
+        const int tile_col = col % schedule_.tile_cols();
+        const auto exposures = schedule_.exposures(tile_row, tile_col);
+        std::size_t i = 0;
+        while (exposures[i].first_slot != first) ++i;  // the pixel is due, so it has this exposure
+        const bool second = schedule_.store(tile_row, tile_col, i, begin / period) != 0;
+        const int open_state = Measurements::kOpen | (second ? Measurements::kSecond : 0);
+        return {exposures[i].open_slots, span_slots, static_cast<std::uint8_t>(open_state)};
     }
 
     const ExposureSchedule& schedule_;
@@ -121,16 +127,18 @@ class Collector {
 
 Measurements collect_measurements(const StreamHeader& header, std::span<const SamplePacket> packets,
                                   const VideoWindow& window) {
-    if (header.schedule.interleaved())
+    if (header.schedule.charge_stores() > 2)
         throw InputError("exposure schedule",
-                         "pixels begin an exposure before the last one has ended; this decoder "
-                         "takes schedules without such overlap");
+                         fmt::format("{} exposures of a pixel are under way at once; this decoder "
+                                     "follows two at most",
+                                     header.schedule.charge_stores()));
     Measurements result{
         .slots = window.slots,
         .shape = window.shape,
         .state = std::vector<std::uint8_t>(window.voxels()),
         .sum = std::vector<float>(window.voxels()),
         .variance = std::vector<float>(window.voxels()),
+        .interleaved = header.schedule.interleaved(),
     };
     Collector collector(header, window, result);
     parallel_for(0, static_cast<int>(packets.size()),

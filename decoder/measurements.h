@@ -27,25 +27,29 @@ struct VideoWindow {
 
 /// The samples y of a window in the units of FluxVideo, spread out so that a voxel knows its
 /// exposure: arrays of order (slot, plane, row, col). Exposures that reach beyond the window or
-/// whose sample is missing are not in it; their voxels are unobserved.
+/// whose sample is missing are not in it; their voxels are unobserved. Where the exposures of a
+/// pixel interleave (two-bucket pixels) they form two chains, in each of which one follows the
+/// other; all bits of a voxel belong to the one exposure that it is open in.
 struct Measurements {
     static constexpr std::uint8_t kOpen = 1;       ///< the voxel's light is in a sample
     static constexpr std::uint8_t kFirst = 2;      ///< first voxel of an exposure
     static constexpr std::uint8_t kLast = 4;       ///< last voxel of an exposure, where `sum` is
     static constexpr std::uint8_t kSaturated = 8;  ///< with kLast: the light is `sum` or more
+    static constexpr std::uint8_t kSecond = 16;    ///< with kOpen: the exposure is of chain 2
 
     int slots = 0;
     FrameShape shape;
     std::vector<std::uint8_t> state;
     std::vector<float> sum;       ///< y: light of the whole exposure, at its last voxel; else 0
     std::vector<float> variance;  ///< of `sum` at the same voxel; else 0
+    bool interleaved = false;     ///< there is a second chain
 
     [[nodiscard]] std::size_t voxels() const { return state.size(); }
 };
 
 /// Collects the samples of `window` from packets that may hold more. Variances are set as if each
-/// sample were its own mean. \throws InputError if the schedule is interleaved: its exposures
-/// overlap in time, which the arrays above cannot tell.
+/// sample were its own mean. \throws InputError if more than two exposures of a pixel are under way
+/// at once.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/parallel.h"
@@ -24,16 +25,19 @@ struct SiteExposure {
     int last_slot;
     int open_slots;
     bool saturated;
+    std::uint8_t chain;  ///< 0, or Measurements::kSecond
     float light_per_slot;
     float weight;
 };
 
 void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
     list.clear();
-    SiteExposure e{};
+    SiteExposure chains[2] = {};  // where exposures interleave, two are under way at once
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
-        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, false, 0, 0};
+        const auto chain = static_cast<std::uint8_t>(m.state[i] & Measurements::kSecond);
+        SiteExposure& e = chains[chain != 0 ? 1 : 0];
+        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, false, chain, 0, 0};
         e.open_slots += m.state[i] & Measurements::kOpen;
         if ((m.state[i] & Measurements::kLast) == 0) continue;
         e.saturated = (m.state[i] & Measurements::kSaturated) != 0;
@@ -77,7 +81,9 @@ void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExpo
         const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
         while (next != list.end() && next->last_slot < slot) ++next;
         const bool open = (m.state[i] & Measurements::kOpen) != 0;
-        x[i] = estimate(list, slot, open ? &*next : nullptr);
+        auto own = next;
+        while (open && own->chain != (m.state[i] & Measurements::kSecond)) ++own;
+        x[i] = estimate(list, slot, open ? &*own : nullptr);
     }
 }
 

@@ -18,17 +18,22 @@ void for_each_run(std::size_t sites, const Body& body) {
     });
 }
 
-}  // namespace
+/// Which of the sums that are under way a voxel belongs to.
+template <bool kInterleaved>
+std::size_t chain(std::uint8_t state) {
+    return kInterleaved && (state & Measurements::kSecond) != 0 ? 1 : 0;
+}
 
-void sample(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
-    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+template <bool kInterleaved>
+void sample_all(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
     const std::size_t sites = measurements.shape.sites();
     for_each_run(sites, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> light(end - begin, 0);
+        const std::size_t count = end - begin;
+        std::vector<float> light(kInterleaved ? 2 * count : count, 0);
         for (std::size_t frame = 0; frame < measurements.voxels(); frame += sites)
             for (std::size_t site = begin; site < end; ++site) {
                 const auto state = measurements.state[frame + site];
-                float& sum = light[site - begin];
+                float& sum = light[chain<kInterleaved>(state) * count + site - begin];
                 if ((state & Measurements::kFirst) != 0) sum = 0;
                 if ((state & Measurements::kOpen) != 0) sum += x[frame + site];
                 sums[frame + site] = (state & Measurements::kLast) != 0 ? sum : 0;
@@ -36,20 +41,36 @@ void sample(const Measurements& measurements, std::span<const float> x, std::spa
     });
 }
 
-void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
-    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+template <bool kInterleaved>
+void spread_all(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
     const std::size_t sites = measurements.shape.sites();
     for_each_run(sites, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> value(end - begin, 0);
+        const std::size_t count = end - begin;
+        std::vector<float> values(kInterleaved ? 2 * count : count, 0);
         for (std::size_t frame = measurements.voxels(); frame != 0;) {
             frame -= sites;
             for (std::size_t site = begin; site < end; ++site) {
                 const auto state = measurements.state[frame + site];
-                if ((state & Measurements::kLast) != 0) value[site - begin] = sums[frame + site];
-                x[frame + site] = (state & Measurements::kOpen) != 0 ? value[site - begin] : 0;
+                float& value = values[chain<kInterleaved>(state) * count + site - begin];
+                if ((state & Measurements::kLast) != 0) value = sums[frame + site];
+                x[frame + site] = (state & Measurements::kOpen) != 0 ? value : 0;
             }
         }
     });
+}
+
+}  // namespace
+
+void sample(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
+    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+    measurements.interleaved ? sample_all<true>(measurements, x, sums)
+                             : sample_all<false>(measurements, x, sums);
+}
+
+void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
+    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+    measurements.interleaved ? spread_all<true>(measurements, sums, x)
+                             : spread_all<false>(measurements, sums, x);
 }
 
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "readout/column_adc.h"
+#include "readout/schedule_check.h"
 #include "readout/sequencer.h"
 #include "sensor_model/pixel_array.h"
 
@@ -25,9 +26,17 @@ void check(FrameShape shape) {
                                                shape.rows, shape.cols, shape.planes));
 }
 
+/// The schedule, if pixels of this sensor can do what it says.
+const ExposureSchedule& checked(const ExposureSchedule& schedule, const SensorParams& params) {
+    if (const auto problem = store_problem(schedule, params.charge_stores))
+        throw InputError("exposure schedule", *problem);
+    return schedule;
+}
+
 /// The samples of a band of rows and what leads to them; kept so that no slot allocates.
 struct Band {
     std::vector<std::uint32_t> pixels;  ///< due, in scan order
+    std::vector<std::uint8_t> stores;   ///< of each, if there are two charge stores
     std::vector<std::uint16_t> dn;      ///< planes of a pixel side by side
     std::uint64_t saturated = 0;
     std::vector<std::uint8_t> open;  ///< of one row
@@ -40,9 +49,10 @@ void add(std::span<const float> frame, std::span<float> light) noexcept {
     for (std::size_t i = 0; i < light.size(); ++i) light[i] += frame[i];
 }
 
-void add_where(std::span<const std::uint8_t> open, std::span<const float> frame,
+/// Adds to charge store 1 or 2 where it is the one that is open.
+void add_where(std::span<const std::uint8_t> open, int store, std::span<const float> frame,
                std::span<float> light) noexcept {
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] += open[i] != 0 ? frame[i] : 0.0F;
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] += open[i] == store ? frame[i] : 0.0F;
 }
 
 /// Moves the light of `pixels` out of `plane`, which leaves them reset.
@@ -50,6 +60,13 @@ void take(std::span<const std::uint32_t> pixels, std::span<float> plane,
           std::span<float> light) noexcept {
     for (std::size_t i = 0; i < pixels.size(); ++i)
         light[i] = std::exchange(plane[pixels[i]], 0.0F);
+}
+
+/// The same of each pixel's store, 0 or 1; the second is `apart` values after the first.
+void take(const Band& band, std::size_t apart, std::span<float> plane,
+          std::span<float> light) noexcept {
+    for (std::size_t i = 0; i < band.pixels.size(); ++i)
+        light[i] = std::exchange(plane[band.pixels[i] + band.stores[i] * apart], 0.0F);
 }
 
 }  // namespace
@@ -68,9 +85,13 @@ Calibration calibration_of(const SensorParams& params) {
 struct CodedSensor::Impl {
     Impl(const SensorParams& params, FrameShape frame_shape, const ExposureSchedule& schedule,
          std::uint64_t seed)
-        : array(params, seed), adc(params), sequencer(schedule, frame_shape), shape(frame_shape) {
+        : array(params, seed),
+          adc(params),
+          sequencer(checked(schedule, params), frame_shape),
+          shape(frame_shape),
+          stores(schedule.charge_stores()) {
         check(shape);
-        light.resize(shape.sites());
+        light.resize(shape.sites() * static_cast<std::size_t>(stores));
         bands.resize(static_cast<std::size_t>((shape.rows + kBandRows - 1) / kBandRows));
     }
 
@@ -82,29 +103,34 @@ struct CodedSensor::Impl {
     ColumnAdc adc;
     Sequencer sequencer;
     FrameShape shape;
-    std::vector<float> light;  ///< collected since the exposure began, order (plane, row, col)
+    int stores;                ///< charge stores that the schedule uses, 1 or 2
+    std::vector<float> light;  ///< collected since the exposure began, (store, plane, row, col)
     std::vector<Band> bands;
     ReadoutStats stats;  ///< `stats.slots` is the slot to expose next
 };
 
 /// Adds the light of one row, all planes.
 void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& band) {
-    const bool all_open = sequencer.all_open(stats.slots);
+    const bool all_open = stores == 1 && sequencer.all_open(stats.slots);
     const auto cols = static_cast<std::size_t>(shape.cols);
     if (!all_open) {
         band.open.resize(cols);
         sequencer.list_open(stats.slots, row, band.open);
     }
-    for (auto at = static_cast<std::size_t>(row) * cols; at < light.size(); at += shape.pixels()) {
+    for (auto at = static_cast<std::size_t>(row) * cols; at < frame.size(); at += shape.pixels()) {
         const auto from = frame.subspan(at, cols);
         const auto to = std::span(light).subspan(at, cols);
-        all_open ? add(from, to) : add_where(band.open, from, to);
+        all_open ? add(from, to) : add_where(band.open, 1, from, to);
+        if (stores == 2)
+            add_where(band.open, 2, from, std::span(light).subspan(at + shape.sites(), cols));
     }
 }
 
 /// Light to DN of the due pixels of one plane.
 void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
-    take(band.pixels, std::span(light).subspan(plane * shape.pixels(), shape.pixels()), band.light);
+    const auto at_plane = std::span(light).subspan(plane * shape.pixels());
+    stores == 1 ? take(band.pixels, at_plane, band.light)
+                : take(band, shape.sites(), at_plane, band.light);
     array.expose(band.light, band.pixels, static_cast<std::uint32_t>(stats.slots), plane,
                  band.electrons);
     adc.convert(band.electrons, band.plane_dn);
@@ -116,9 +142,11 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
 void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row, Band& band) {
     const int end_row = std::min(first_row + kBandRows, shape.rows);
     band.pixels.clear();
+    band.stores.clear();
     for (int row = first_row; row < end_row; ++row) {
         collect(frame, row, band);
         sequencer.append_due(stats.slots, row, band.pixels);
+        if (stores == 2) sequencer.append_stores(stats.slots, row, band.stores);
     }
     const std::size_t samples = band.pixels.size();
     band.dn.resize(samples * static_cast<std::size_t>(shape.planes));

@@ -26,8 +26,8 @@ struct ReadoutStats {
 /// that are due, in scan order.
 class CodedSensor {
   public:
-    /// `schedule` must outlive the sensor. \throws InputError as `validate`, or if the shape is
-    /// empty.
+    /// `schedule` must outlive the sensor. \throws InputError as `validate`, if the shape is empty,
+    /// or if the schedule takes more charge stores than the sensor's pixels have.
     CodedSensor(const SensorParams& params, FrameShape shape, const ExposureSchedule& schedule,
                 std::uint64_t seed);
     ~CodedSensor();

@@ -20,14 +20,32 @@ bool is_open(std::span<const Exposure> exposures, std::int64_t slot, int period_
     return age < e.span_slots() && age <= slot && (e.open_slots >> age & 1U) != 0;
 }
 
+struct TilePixel {
+    int row;
+    int col;
+};
+
+/// 1 or 2 for the charge store that collects light in `slot`, or 0, exposures interleaved or not.
+std::uint8_t open_store(const ExposureSchedule& schedule, std::int64_t slot, TilePixel pixel) {
+    const auto exposures = schedule.exposures(pixel.row, pixel.col);
+    const std::int64_t period = schedule.period_slots();
+    for (std::size_t i = 0; i < exposures.size(); ++i) {
+        const Exposure& e = exposures[i];
+        const std::int64_t age = (slot - e.first_slot + period) % period;  // if slot >= 0, no less
+        if (age < e.span_slots() && age <= slot && (e.open_slots >> age & 1U) != 0) {
+            const std::int64_t repetition = (slot - age) / period;
+            return static_cast<std::uint8_t>(1 +
+                                             schedule.store(pixel.row, pixel.col, i, repetition));
+        }
+    }
+    return 0;
+}
+
 }  // namespace
 
 Sequencer::Sequencer(const ExposureSchedule& schedule, FrameShape shape)
     : schedule_(&schedule), cols_(shape.cols), gapless_(schedule.gapless()) {
-    if (schedule.interleaved())
-        throw InputError("exposure schedule",
-                         "exposures of a pixel interleave, which needs two charge stores per "
-                         "pixel; the emulated sensor has one, use a schedule without");
+    assert(schedule.charge_stores() <= 2);
     for (int row = 0; row < schedule.tile_rows(); ++row)
         for (int col = 0; col < schedule.tile_cols(); ++col)
             for (const Exposure& e : schedule.exposures(row, col))
@@ -42,9 +60,12 @@ void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> op
     assert(open.size() == static_cast<std::size_t>(cols_));
     const int tile_row = row % schedule_->tile_rows();
     const auto once = static_cast<std::size_t>(std::min(cols_, schedule_->tile_cols()));
-    for (std::size_t col = 0; col < once; ++col) {
-        const auto exposures = schedule_->exposures(tile_row, static_cast<int>(col));
-        open[col] = is_open(exposures, slot, schedule_->period_slots()) ? 1 : 0;
+    for (std::size_t i = 0; i < once; ++i) {
+        const auto col = static_cast<int>(i);
+        const auto exposures = schedule_->exposures(tile_row, col);
+        open[i] = schedule_->interleaved() ? open_store(*schedule_, slot, {tile_row, col})
+                  : is_open(exposures, slot, schedule_->period_slots()) ? 1
+                                                                        : 0;
     }
     for (std::size_t col = once; col < open.size(); ++col) open[col] = open[col - once];
 }
@@ -53,6 +74,14 @@ void Sequencer::append_due(std::int64_t slot, int row, std::vector<std::uint32_t
     const auto first = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(cols_);
     visit_due(*schedule_, slot, row, cols_,
               [&](int col, int) { pixels.push_back(first + static_cast<std::uint32_t>(col)); });
+}
+
+void Sequencer::append_stores(std::int64_t slot, int row, std::vector<std::uint8_t>& stores) const {
+    const int tile_row = row % schedule_->tile_rows();
+    visit_due(*schedule_, slot, row, cols_, [&](int col, int) {
+        const TilePixel pixel{tile_row, col % schedule_->tile_cols()};
+        stores.push_back(static_cast<std::uint8_t>(open_store(*schedule_, slot, pixel) - 1));
+    });
 }
 
 }  // namespace stipple

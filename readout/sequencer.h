@@ -15,20 +15,23 @@ namespace stipple {
 /// cycles a model gives (`earliest_cycle`) and checks (`issue`).
 class Sequencer {
   public:
-    /// `schedule` must outlive the sequencer. \throws InputError if the schedule is interleaved:
-    /// the pixels have one charge store each.
+    /// `schedule` must outlive the sequencer. Precondition: it needs two charge stores at most.
     Sequencer(const ExposureSchedule& schedule, FrameShape shape);
 
     /// True if all pixels collect light in this slot, in exposures that began in slot 0 or later.
     [[nodiscard]] bool all_open(std::int64_t slot) const noexcept;
 
-    /// `open[col]` = 1 for each pixel of `row` that does so, 0 for the others.
+    /// `open[col]` = 1 for each pixel of `row` that does so, 2 where the light goes to its second
+    /// charge store (interleaved schedules only), 0 for the others.
     /// Precondition: open.size() == columns of the array.
     void list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept;
 
     /// Appends row * cols + col of each pixel of `row` that is read at the end of `slot`, by
     /// column.
     void append_due(std::int64_t slot, int row, std::vector<std::uint32_t>& pixels) const;
+
+    /// Appends the charge store, 0 or 1, of each pixel that `append_due` appends.
+    void append_stores(std::int64_t slot, int row, std::vector<std::uint8_t>& stores) const;
 
   private:
     const ExposureSchedule* schedule_;

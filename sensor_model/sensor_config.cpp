@@ -9,6 +9,11 @@ double read(Config& config, const char* key, double fallback, ParameterRange ran
     return config.number(key, fallback, range.least, range.most);
 }
 
+std::int64_t read_integer(Config& config, const char* key, int fallback, ParameterRange range) {
+    return config.integer(key, fallback, static_cast<std::int64_t>(range.least),
+                          static_cast<std::int64_t>(range.most));
+}
+
 void require_paper_mode(Config& config) {
     if (config.choice("mode", "paper", {"paper", "physical"}) == "paper") return;
     throw InputError(config.place("mode"),
@@ -29,12 +34,13 @@ SensorParams read_sensor(Config& config) {
     params.read_noise_e =
         read(config, "read_noise_e", params.read_noise_e, SensorParams::kReadNoiseE);
     params.shot_noise = config.boolean("shot_noise", params.shot_noise);
-    params.bit_depth = static_cast<int>(config.integer(
-        "bit_depth", params.bit_depth, static_cast<std::int64_t>(SensorParams::kBitDepth.least),
-        static_cast<std::int64_t>(SensorParams::kBitDepth.most)));
+    params.bit_depth = static_cast<int>(
+        read_integer(config, "bit_depth", params.bit_depth, SensorParams::kBitDepth));
     if (config.choice("rounding", "nearest", {"nearest", "floor"}) == "floor")
         params.rounding = AdcRounding::kFloor;
     params.slot_us = read(config, "slot_us", params.slot_us, SensorParams::kSlotUs);
+    params.charge_stores = static_cast<int>(
+        read_integer(config, "charge_stores", params.charge_stores, SensorParams::kChargeStores));
     return params;
 }
 

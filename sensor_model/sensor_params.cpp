@@ -24,6 +24,7 @@ void validate(const SensorParams& params) {
     check(params, "read_noise_e", params.read_noise_e, SensorParams::kReadNoiseE);
     check(params, "bit_depth", params.bit_depth, SensorParams::kBitDepth);
     check(params, "slot_us", params.slot_us, SensorParams::kSlotUs);
+    check(params, "charge_stores", params.charge_stores, SensorParams::kChargeStores);
 }
 
 }  // namespace stipple

@@ -30,6 +30,7 @@ struct SensorParams {
     int bit_depth = 8;               ///< d: the highest DN is 2^d - 1
     AdcRounding rounding = AdcRounding::kNearest;
     double slot_us = 5000;  ///< time slot: one frame of the footage
+    int charge_stores = 1;  ///< of a pixel: exposures that can be under way at once
 
     static constexpr ParameterRange kPhotonsPerUnit{1e-3, 1e7};
     static constexpr ParameterRange kFullScaleE{1, 1e7};
@@ -37,6 +38,7 @@ struct SensorParams {
     static constexpr ParameterRange kReadNoiseE{0, 1e5};
     static constexpr ParameterRange kBitDepth{1, 16};
     static constexpr ParameterRange kSlotUs{1e-3, 1e9};
+    static constexpr ParameterRange kChargeStores{1, 2};
 
     bool operator==(const SensorParams&) const = default;
 };

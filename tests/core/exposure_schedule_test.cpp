@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/readout/gapped_schedule.h"
 #include "tests/support/fnv1a.h"
 #include "tests/support/paper_schedule.h"
 
@@ -160,6 +161,41 @@ TEST(ExposureScheduleTest, CountsLightAndSamplesOfGapsAndUnusedPixels) {
 TEST(ExposureScheduleTest, TellsInterleavedFromFluttering) {
     EXPECT_FALSE(ExposureSchedule(1, 1, 6, {0, 2}, {{0, 0b101}, {3, 0b101}}).interleaved());
     EXPECT_TRUE(ExposureSchedule(1, 1, 6, {0, 2}, {{0, 0b101}, {1, 0b101}}).interleaved());
+}
+
+/// No two exposures of a pixel that are under way in the same slot may have one store.
+void expect_stores_apart(const ExposureSchedule& schedule) {
+    ASSERT_EQ(schedule.charge_stores(), 2);
+    const auto period = static_cast<std::size_t>(schedule.period_slots());
+    constexpr std::size_t kPeriods = 6;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col) {
+            std::vector<int> used[2] = {std::vector<int>(period * (kPeriods + 1)),
+                                        std::vector<int>(period * (kPeriods + 1))};
+            const auto exposures = schedule.exposures(row, col);
+            for (std::size_t n = 0; n < kPeriods; ++n)
+                for (std::size_t i = 0; i < exposures.size(); ++i) {
+                    const int store = schedule.store(row, col, i, static_cast<std::int64_t>(n));
+                    const std::size_t begin = n * period + exposures[i].first_slot;
+                    for (int age = 0; age < exposures[i].span_slots(); ++age)
+                        ASSERT_EQ(used[store][begin + static_cast<std::size_t>(age)]++, 0);
+                }
+        }
+}
+
+TEST(ExposureScheduleTest, GivesExposuresThatInterleaveStoresOfTheirOwn) {
+    expect_stores_apart(alternating_schedule());
+    for (const std::uint32_t seed : {1U, 2U, 3U})
+        expect_stores_apart(interleaved_schedule(5, 7, 9, seed));
+    expect_stores_apart(mixed_schedule());
+}
+
+TEST(ExposureScheduleTest, CountsTheChargeStoresThatAPixelNeeds) {
+    EXPECT_EQ(ExposureSchedule(1, 1, 4, {0, 0}, {}).charge_stores(), 1);
+    EXPECT_EQ(ExposureSchedule(1, 1, 4, {0, 2}, {{0, 0b11}, {2, 0b11}}).charge_stores(), 1);
+    EXPECT_EQ(
+        ExposureSchedule(1, 1, 9, {0, 3}, {{0, 0b1001}, {1, 0b1001}, {2, 0b1001}}).charge_stores(),
+        3);
 }
 
 TEST(ExposureScheduleTest, NamesPixelAndSlotOfABrokenRule) {

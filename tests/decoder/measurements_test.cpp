@@ -91,7 +91,8 @@ void expect_definition(const ExposureSchedule& schedule, const VideoWindow& wind
             }
     ASSERT_GT(exposures, 50U);
     for (std::size_t i = 0; i < m.voxels(); ++i) {
-        ASSERT_EQ(m.state[i] & ~Measurements::kSaturated, state[i]) << "voxel " << i;
+        constexpr int kNotListed = Measurements::kSaturated | Measurements::kSecond;
+        ASSERT_EQ(m.state[i] & ~kNotListed, state[i]) << "voxel " << i;
         if ((state[i] & Measurements::kLast) == 0) {
             ASSERT_EQ(m.sum[i], 0);
             ASSERT_EQ(m.variance[i], 0);
@@ -129,10 +130,31 @@ TEST(MeasurementsTest, LeaveVoxelsOfMissingAndDroppedSamplesUnobserved) {
     }
 }
 
-TEST(MeasurementsTest, RefuseInterleavedExposures) {
-    const ExposureSchedule two_buckets(1, 1, 4, {0, 2}, {{0, 0b0101}, {1, 0b0101}});
-    const StreamHeader header{{1, 1, 1}, 5000, {}, two_buckets, {}, "", ""};
-    EXPECT_THROW(static_cast<void>(collect_measurements(header, {}, {0, 8, 0, 0, {1, 1, 1}})),
+TEST(MeasurementsTest, KeepExposuresThatInterleaveInChainsOfTheirOwn) {
+    const FluxVideo video = random_video(40, kShape, 5);
+    for (const auto& schedule : {interleaved_schedule(4, 5, 6, 8), alternating_schedule()}) {
+        expect_definition(schedule, {0, 40, 0, 0, kShape});
+        expect_definition(schedule, {5, 30, 1, 3, {9, 8, 3}});
+        const Measurements m = measure(video, schedule);
+        EXPECT_TRUE(m.interleaved);
+        for (std::size_t site = 0; site < kShape.sites(); ++site)
+            for (const std::uint8_t chain : {std::uint8_t{0}, Measurements::kSecond}) {
+                bool under_way = false;  // first and last voxels take turns
+                for (std::size_t i = site; i < m.voxels(); i += kShape.sites()) {
+                    if ((m.state[i] & Measurements::kOpen) == 0) continue;
+                    if ((m.state[i] & Measurements::kSecond) != chain) continue;
+                    ASSERT_EQ((m.state[i] & Measurements::kFirst) != 0, !under_way);
+                    under_way = (m.state[i] & Measurements::kLast) == 0;
+                }
+                ASSERT_FALSE(under_way);
+            }
+    }
+}
+
+TEST(MeasurementsTest, RefuseThreeExposuresAtOnce) {
+    const ExposureSchedule three(1, 1, 9, {0, 3}, {{0, 0b1001}, {1, 0b1001}, {2, 0b1001}});
+    const StreamHeader header{{1, 1, 1}, 5000, {}, three, {}, "", ""};
+    EXPECT_THROW(static_cast<void>(collect_measurements(header, {}, {0, 18, 0, 0, {1, 1, 1}})),
                  InputError);
 }
 

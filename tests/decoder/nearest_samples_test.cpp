@@ -25,7 +25,8 @@ std::vector<float> estimate(int slots, const std::vector<Sample>& samples) {
                    {1, 1, 1},
                    std::vector<std::uint8_t>(count),
                    std::vector<float>(count),
-                   std::vector<float>(count)};
+                   std::vector<float>(count),
+                   false};
     for (const Sample& s : samples) {
         const auto first = static_cast<std::size_t>(s.first_slot);
         const std::size_t last = first + static_cast<std::size_t>(s.slots) - 1;
@@ -67,6 +68,17 @@ TEST(NearestSamplesTest, TakeSaturatedSamplesAsBounds) {
 
 TEST(NearestSamplesTest, AreZeroForAPixelWithoutSamples) {
     EXPECT_EQ(estimate(3, {}), (std::vector<float>{0, 0, 0}));
+}
+
+// One store is open in even slots, the other in odd ones; each tells of its own slots alone.
+TEST(NearestSamplesTest, HoldEachOfTwoBucketsInItsOwnSlots) {
+    FluxVideo video(8, {.rows = 1, .cols = 1, .planes = 1});
+    for (int slot = 0; slot < 8; ++slot)
+        video.plane(slot, 0)(0, 0) = slot % 2 == 0 ? 0.125F : 0.375F;
+    const ExposureSchedule two_buckets(1, 1, 8, {0, 2}, {{0, 0b1010101}, {1, 0b1010101}});
+    const FluxVideo x = nearest_samples(measure(video, two_buckets, {.shot_noise = false}));
+    for (int slot = 0; slot < 8; ++slot)  // one DN is 0.008, read noise 0.01 in a sum of 4 slots
+        EXPECT_NEAR(x.plane(slot, 0)(0, 0), slot % 2 == 0 ? 0.125 : 0.375, 0.02) << slot;
 }
 
 TEST(NearestSamplesTest, RecoverALastingSceneButForNoise) {

@@ -19,7 +19,8 @@ struct Recorded {
 };
 
 inline Recorded record(const FluxVideo& video, const ExposureSchedule& schedule,
-                       const SensorParams& params = {}, std::uint64_t seed = 1) {
+                       SensorParams params = {}, std::uint64_t seed = 1) {
+    params.charge_stores = schedule.charge_stores();
     Recorded recorded{{.shape = video.shape(),
                        .slot_us = 5000,
                        .calibration = calibration_of(params),

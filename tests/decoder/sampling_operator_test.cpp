@@ -13,7 +13,8 @@ namespace {
 constexpr FrameShape kShape{.rows = 13, .cols = 29, .planes = 3};
 
 std::vector<ExposureSchedule> schedules() {
-    return {random_schedule(13, 29, kPaperExposureSlots, 2), gapped_schedule(5, 7, 31, 4)};
+    return {random_schedule(13, 29, kPaperExposureSlots, 2), gapped_schedule(5, 7, 31, 4),
+            interleaved_schedule(5, 7, 9, 4), alternating_schedule()};
 }
 
 TEST(SamplingOperatorTest, SpreadIsTheAdjointOfSample) {

@@ -105,6 +105,15 @@ TEST(CodedSensorTest, IsTheSlowSensorWithGapsBetweenAndWithinExposures) {
     EXPECT_EQ(expose_all(video, large_tile), expose_one_by_one(video, large_tile));
 }
 
+TEST(CodedSensorTest, IsTheSlowSensorWithTwoChargeStores) {
+    const FluxVideo video = footage(70, {.rows = 19, .cols = 23, .planes = 2});
+    const SensorParams two_bucket{.charge_stores = 2};
+    for (const auto& schedule : {alternating_schedule(), interleaved_schedule(3, 5, 8, 1),
+                                 interleaved_schedule(32, 40, 5, 2)})
+        EXPECT_EQ(expose_all(video, schedule, two_bucket),
+                  expose_one_by_one(video, schedule, two_bucket));
+}
+
 TEST(CodedSensorTest, KeepsLongExposuresThatFillTheMask) {
     const FluxVideo video = footage(200, {.rows = 5, .cols = 7, .planes = 1});
     const int lengths[] = {64, 1, 33};
@@ -193,11 +202,18 @@ TEST(CodedSensorTest, KeepsTheRecordedBits) {
     EXPECT_EQ(hash.hash(), golden) << std::hex << hash.hash();
 }
 
-TEST(CodedSensorTest, RefusesInterleavedSchedulesEmptyArraysAndBadSensors) {
-    const ExposureSchedule interleaved(1, 1, 6, {0, 2}, {{0, 0b101}, {1, 0b101}});
+TEST(CodedSensorTest, RefusesSchedulesThatTakeMoreChargeStoresThanItsPixelsHave) {
+    const ExposureSchedule two(1, 2, 6, {0, 1, 3}, {{0, 1}, {0, 0b101}, {1, 0b101}});
+    expect_parts(message_of<InputError>([&] { CodedSensor({}, kShape, two, kSeed); }),
+                 {"pixel (0, 1) slot 1", "interleave", "charge_stores=2"});
+    const ExposureSchedule three(1, 1, 9, {0, 3}, {{0, 0b1001}, {1, 0b1001}, {2, 0b1001}});
+    const SensorParams two_bucket{.charge_stores = 2};
+    expect_parts(message_of<InputError>([&] { CodedSensor(two_bucket, kShape, three, kSeed); }),
+                 {"pixel (0, 0) slot 2", "takes 3", "the sensor has 2"});
+}
+
+TEST(CodedSensorTest, RefusesEmptyArraysAndBadSensors) {
     const auto full = full_schedule(4, 4);
-    expect_parts(message_of<InputError>([&] { CodedSensor({}, kShape, interleaved, kSeed); }),
-                 {"interleave"});
     expect_parts(message_of<InputError>([&] {
                      CodedSensor({}, {0, 8, 1}, full, kSeed);
                  }),
@@ -205,6 +221,7 @@ TEST(CodedSensorTest, RefusesInterleavedSchedulesEmptyArraysAndBadSensors) {
     EXPECT_THROW(CodedSensor({}, {8, -1, 1}, full, kSeed), InputError);
     EXPECT_THROW(CodedSensor({}, {8, 8, 0}, full, kSeed), InputError);
     EXPECT_THROW(CodedSensor({.bit_depth = 0}, kShape, full, kSeed), InputError);
+    EXPECT_THROW(CodedSensor({.charge_stores = 0}, kShape, full, kSeed), InputError);
 }
 
 TEST(CalibrationOfTest, SaysTheGainNoiseAndWellOfEquationOne) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <random>
 #include <vector>
 
@@ -29,6 +30,40 @@ inline ExposureSchedule gapped_schedule(int tile_rows, int tile_cols, int period
         first.push_back(static_cast<std::uint32_t>(exposures.size()));
     }
     return {tile_rows, tile_cols, period_slots, first, exposures};
+}
+
+/// A schedule of two-bucket pixels: every slot of a code belongs to one exposure or the other, or
+/// to none; a code goes around the period, so exposures begin anywhere. Where it holds an odd
+/// number of exposures that all overlap their neighbours, stores change sides from period to
+/// period.
+inline ExposureSchedule interleaved_schedule(int tile_rows, int tile_cols, int code_slots,
+                                             std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto period = static_cast<std::uint32_t>(3 * code_slots);
+    std::vector<std::uint32_t> first = {0};
+    std::vector<Exposure> exposures;
+    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) {
+        const auto offset = static_cast<std::uint32_t>(random() % period);
+        for (int code = 0; code < 3; ++code) {
+            std::uint64_t masks[2] = {0, 0};  // of the code's slots
+            for (int slot = 0; slot < code_slots; ++slot)
+                if (const auto store = random() % 5; store < 4)
+                    masks[store % 2] |= std::uint64_t{1} << static_cast<unsigned>(slot);
+            for (const std::uint64_t mask : masks) {
+                if (mask == 0 || pixel % 7 == 3) continue;
+                const auto closed = static_cast<std::uint32_t>(std::countr_zero(mask));
+                const auto begin = offset + static_cast<std::uint32_t>(code * code_slots) + closed;
+                exposures.push_back({begin % period, mask >> closed});
+            }
+        }
+        first.push_back(static_cast<std::uint32_t>(exposures.size()));
+    }
+    return {tile_rows, tile_cols, static_cast<int>(period), first, exposures};
+}
+
+/// Three exposures of four slots, each begun two slots after the last: the stores alternate.
+inline ExposureSchedule alternating_schedule() {
+    return {1, 1, 6, {0, 3}, {{0, 0b1001}, {2, 0b1001}, {4, 0b1001}}};
 }
 
 /// One exposure of a pixel as it happened.

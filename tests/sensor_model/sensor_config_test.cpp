@@ -40,10 +40,11 @@ TEST(SensorConfigTest, ReadsEveryKey) {
                                 .shot_noise = false,
                                 .bit_depth = 12,
                                 .rounding = AdcRounding::kFloor,
-                                .slot_us = 1000};
+                                .slot_us = 1000,
+                                .charge_stores = 2};
     EXPECT_EQ(read({"name=mine", "photons_per_unit=500", "full_scale_e=1000", "full_well_e=9000",
                     "read_noise_e=2.5", "shot_noise=false", "bit_depth=12", "rounding=floor",
-                    "slot_us=1000"}),
+                    "slot_us=1000", "charge_stores=2"}),
               expected);
 }
 
@@ -51,6 +52,7 @@ TEST(SensorConfigTest, NamesTheKeyThatIsOutOfRange) {
     EXPECT_THAT(message_of("read_noise_e=-1"), testing::HasSubstr("read_noise_e"));
     EXPECT_THAT(message_of("full_well_e=0"), testing::HasSubstr("full_well_e"));
     EXPECT_THAT(message_of("bit_depth=17"), testing::HasSubstr("bit_depth"));
+    EXPECT_THAT(message_of("charge_stores=3"), testing::HasSubstr("charge_stores"));
     EXPECT_THAT(message_of("rounding=up"), testing::HasSubstr("rounding"));
 }
 
