@@ -58,8 +58,9 @@ NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape) {
     Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
     const SensorParams params = read_sensor(sensor);
+    const std::optional<ReadoutTiming> timing = read_timing(sensor, params.bit_depth);
     sensor.reject_unknown_keys();
-    return {params, set_up_schedule(choice, shape), shape, choice.seed};
+    return {params, set_up_schedule(choice, shape), shape, timing, choice.seed};
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry.h"
+#include "readout/readout_timing.h"
 #include "readout/schedule_catalogue.h"
 #include "sensor_model/sensor_params.h"
 
@@ -23,6 +25,7 @@ struct SensorSetup {
     SensorParams params;
     NamedSchedule schedule;
     FrameShape shape;
+    std::optional<ReadoutTiming> timing = {};  ///< if the sensor file has a section [timing]
     std::uint64_t seed = 1;
 };
 

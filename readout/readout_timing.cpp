@@ -64,12 +64,12 @@ void check_clocks(const ReadoutTiming& timing, std::string_view sensor) {
           std::int64_t{timing.dark_rows}, std::int64_t{timing.overhead_rows},
           timing.overhead_clocks, timing.code_load_clocks})
         require(clocks >= 0, sensor, fmt::format("{} clocks; none can be negative", clocks));
-    const int all = timing.cols / timing.addressing.channels;
-    require(transfer_clocks(timing, all) >= 1 && transfer_clocks(timing, 1) >= 1, sensor,
-            "the transfer of a row takes 0 clocks; set clocks_per_column or io_clocks");
     require((timing.link_lanes == 0) == (timing.link_bps == 0), sensor,
             fmt::format("{} link_lanes at {} link_bps; give both or none", timing.link_lanes,
                         timing.link_bps));
+    const int all = timing.cols / timing.addressing.channels;
+    require(transfer_clocks(timing, all) >= 1 && transfer_clocks(timing, 1) >= 1, sensor,
+            "the transfer of a row takes 0 clocks; set clocks_per_column or io_clocks");
     require(timing.settle_clocks.empty() ||
                 (timing.settle_clocks.front() >= 0 && rises(timing.settle_clocks)),
             sensor, "settle_clocks does not rise from 0 on");

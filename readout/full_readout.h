@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry.h"
+#include "readout/readout_timing.h"
+
+namespace stipple {
+
+/// The readout of equal rows, by formula. All in clocks but `channel_columns`.
+struct UniformReadout {
+    int channel_columns = 0;   ///< of the busiest channel
+    int settle = 0;            ///< time of settling that the sensor chooses
+    std::int64_t convert = 0;  ///< of a row, its selection included
+    std::int64_t transfer = 0;
+    std::int64_t row = 0;    ///< from row to row
+    std::int64_t lead = 0;   ///< before the first transfer, or, where conversion and transfer take
+                             ///< turns, before the first row
+    std::int64_t total = 0;  ///< lead + rows, dark ones included
+};
+
+/// The readout of a whole window of `shape` (its planes are read side by side):
+///     overhead + [convert +] rows x row,    row as the sensor's law says.
+/// \throws InputError if the array is smaller.
+[[nodiscard]] UniformReadout full_readout(const ReadoutTiming& timing, FrameShape shape);
+
+/// The same if every row is read but only `share` of its columns, spread evenly over channels and
+/// ADCs: with codes for single pixels that leave no row out, no schedule of as many samples is
+/// read faster. Dark rows and overhead are as in full. Precondition: 0 < share <= 1.
+[[nodiscard]] UniformReadout even_readout(const ReadoutTiming& timing, FrameShape shape,
+                                          double share);
+
+}  // namespace stipple
