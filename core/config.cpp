@@ -202,14 +202,30 @@ std::vector<int> Config::integers(std::string_view key, std::vector<int> fallbac
                                   int most) {
     const toml::node* node = impl_->find(key);
     if (node == nullptr) return fallback;
-    const toml::array* list = node->as_array();
-    if (list == nullptr) impl_->fail_type(key, *node, "a list of integers");
     std::vector<int> values;
-    for (const toml::node& item : *list) {
+    const auto take = [&](const toml::node& item) {
         if (!item.is_integer()) impl_->fail_type(key, item, "a list of integers");
         const std::int64_t value = *item.value<std::int64_t>();
         if (value < least || value > most) impl_->fail_range<std::int64_t>(key, value, least, most);
         values.push_back(static_cast<int>(value));
+    };
+    if (const toml::array* list = node->as_array())
+        for (const toml::node& item : *list) take(item);
+    else
+        take(*node);
+    return values;
+}
+
+std::vector<std::string> Config::texts(std::string_view key) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return {};
+    const toml::array* list = node->as_array();
+    if (list == nullptr) impl_->fail_type(key, *node, "a list of texts");
+    std::vector<std::string> values;
+    values.reserve(list->size());
+    for (const toml::node& item : *list) {
+        if (!item.is_string()) impl_->fail_type(key, item, "a list of texts");
+        values.push_back(*item.value<std::string>());
     }
     return values;
 }

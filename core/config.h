@@ -31,8 +31,12 @@ class Config {
     /// One of `choices`. \throws InputError listing them.
     [[nodiscard]] std::string choice(std::string_view key, std::string_view fallback,
                                      const std::vector<std::string>& choices);
+    /// One integer or a list of integers.
     [[nodiscard]] std::vector<int> integers(std::string_view key, std::vector<int> fallback,
                                             int least, int most);
+
+    /// A list of texts; empty if absent.
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key);
 
     /// \throws InputError for a key that was given but never asked for, with the nearest known
     /// key as a suggestion.

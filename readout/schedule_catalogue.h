@@ -18,9 +18,9 @@ struct NamedSchedule {
     ExposureSchedule schedule;
 };
 
-/// The schedule that a file of config/schedules describes (key `kind`: random, tiled, full),
-/// made for an array of `shape` with `seed`. Other keys are left for the caller's
-/// `reject_unknown_keys`. \throws InputError naming file, line and key.
+/// The schedule that a file of config/schedules describes (key `kind`, docs/schedules.md), made for
+/// an array of `shape` with `seed`. Other keys are left for the caller's `reject_unknown_keys`.
+/// \throws InputError naming file, line and key.
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed);
 
 /// A seeded tile in which every pixel repeats its own permutation of `exposure_slots` without

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "core/philox.h"
 #include "readout/schedule_catalogue.h"
+#include "readout/schedules/draws.h"
 
 namespace stipple {
 namespace {
@@ -16,26 +16,6 @@ constexpr int kLargestTileSide = 256;  ///< with 255 lengths within 2^24 exposur
 constexpr std::size_t kMostLengths = 255;
 constexpr std::size_t kMostDrawn = 1U << 23U;  ///< well under a second
 constexpr std::uint32_t kTilePlane = 1;        ///< apart from the draws of `random_schedule`
-
-/// Random numbers one after the other.
-class Draws {
-  public:
-    explicit Draws(std::uint64_t seed) : seed_(seed) {}
-
-    /// An integer in [0, range).
-    std::uint32_t below(std::size_t range) {
-        const auto address = random_address(static_cast<std::uint32_t>(count_),
-                                            static_cast<std::uint32_t>(count_ >> 32U),
-                                            RandomPurpose::kSchedule, kTilePlane);
-        ++count_;
-        const std::uint64_t word = philox4x32(address, seed_)[0];
-        return static_cast<std::uint32_t>((word * range) >> 32U);
-    }
-
-  private:
-    std::uint64_t seed_;
-    std::uint64_t count_ = 0;
-};
 
 int period_of(std::span<const int> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), 0);
@@ -150,7 +130,7 @@ ExposureSchedule tiled_schedule(int tile_rows, int tile_cols, std::span<const in
     const int period_slots = period_of(exposure_slots);
     Tile tile{exposure_slots.size(), std::vector<Exposure>(pixels * exposure_slots.size())};
     SlotCounts counts(static_cast<std::size_t>(period_slots));
-    Draws draws(seed);
+    Draws draws(seed, kTilePlane);
     for (std::size_t p = 0; p < pixels; ++p) {
         draw_pixel(draws, exposure_slots, tile.pixel(p));
         counts.add(tile.pixel(p));

@@ -49,6 +49,16 @@ TEST_F(ConfigTest, FallsBackForAbsentKeys) {
     EXPECT_EQ(config.integers("f", {3}, 0, 9), std::vector<int>{3});
 }
 
+TEST_F(ConfigTest, TakesOneIntegerAsAListAndListsOfTexts) {
+    Config config = parse("one = 3\ncode = ['A.', 'Aa']\nmixed = ['A', 1]\n");
+    EXPECT_EQ(config.integers("one", {}, 1, 9), std::vector<int>{3});
+    EXPECT_EQ(config.texts("code"), (Texts{"A.", "Aa"}));
+    EXPECT_TRUE(config.texts("absent").empty());
+    expect_parts(message_of<InputError>([&] { return config.texts("mixed"); }),
+                 {"sensor.toml:3: mixed", "list of texts"});
+    expect_parts(message_of<InputError>([&] { return config.texts("one"); }), {"list of texts"});
+}
+
 TEST_F(ConfigTest, TakesAnIntegerWhereANumberIsNeeded) {
     Config config = parse("gain = 3");
     EXPECT_EQ(number(config), 3.0);
@@ -123,7 +133,7 @@ TEST_F(ConfigTest, RefusesValuesOutOfRangeAndTakesTheEnds) {
     expect_parts(message_of<InputError>([&] { return config.integers("list", {}, 0, 9); }),
                  {"sensor.toml:2: list: -1 is outside 0..9"});
     expect_parts(message_of<InputError>([&] { return config.integers("big", {}, 0, 9); }),
-                 {"needs a"});
+                 {"sensor.toml:3: big: ", "is outside 0..9"});
     EXPECT_EQ(config.integer("big", 0, 0, std::numeric_limits<std::int64_t>::max()),
               std::numeric_limits<std::int64_t>::max());
 }

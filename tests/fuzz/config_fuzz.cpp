@@ -1,6 +1,3 @@
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -8,27 +5,10 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "tests/fuzz/memory_file.h"
 
 namespace stipple {
 namespace {
-
-/// A file in memory that is read through a path.
-class MemoryFile {
-  public:
-    explicit MemoryFile(const std::string& content) : descriptor_(memfd_create("config", 0)) {
-        if (write(descriptor_, content.data(), content.size()) < 0) descriptor_ = -1;
-    }
-    ~MemoryFile() { close(descriptor_); }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-
-    [[nodiscard]] std::string path() const {
-        return "/proc/self/fd/" + std::to_string(descriptor_);
-    }
-
-  private:
-    int descriptor_;
-};
 
 void read_all_keys(Config& config) {
     static_cast<void>(config.number("gain", 1, 0, 100));

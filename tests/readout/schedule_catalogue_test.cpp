@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "readout/schedules/cell_schedule.h"
+#include "readout/schedules/random_codes.h"
 #include "tests/core/temporary_folder.h"
 
 namespace stipple {
@@ -111,6 +113,71 @@ TEST(ScheduleCatalogueTest, NamesTheKeyThatIsWrong) {
     expect_parts(problem_of("full4x", {"open_slots=65"}), {"open_slots", "1..64"});
     expect_parts(problem_of("full4x", {"period_slots=65536"}), {"period_slots", "1..65535"});
     expect_parts(problem_of("full4x", {"name=" + std::string(65, 'x')}), {"name", "64"});
+}
+
+/// Name, compression (period / samples), light throughput, charge stores of each file, by hand.
+TEST(ScheduleCatalogueTest, HoldsThePublishedSchedulesWithTheirFigures) {
+    struct Published {
+        const char* name;
+        double samples_per_slot;
+        double light;
+        int stores;
+    };
+    for (const auto& [name, samples, light, stores] : {
+             Published{"coded_rolling_shutter_exposure", 1 / 4.0, 7 / 12.0, 1},
+             Published{"coded_rolling_shutter_staggered", 1 / 4.0, 1, 1},
+             Published{"flexible_voxels", 1 / 16.0, 1 / 16.0, 1},
+             Published{"full1x", 1 / 4.0, 1 / 4.0, 1},
+             Published{"full4x", 1 / 4.0, 1, 1},
+             Published{"global_flutter", 1 / 8.0, 1 / 2.0, 1},
+             Published{"multi_phase_2x2", (1 / 2.0 + 1 / 4.0 + 1 / 4.0 + 1 / 8.0) / 4, 1, 1},
+             Published{"nd_mosaic", 1 / 4.0, 1, 1},
+             Published{"pixel_flutter", 1 / 8.0, 1 / 2.0, 1},
+             Published{"random", 4 / 15.0, 1, 1},
+             Published{"random_subset", 4 / 16.0, 4 / 16.0, 1},
+             Published{"rolling", 1 / 4.0, 1, 1},
+             Published{"single_bump", 1 / 8.0, 3 / 8.0, 1},
+             Published{"spatially_varying_exposure", 1 / 8.0, 15 / 32.0, 1},
+             Published{"tiled", 4 / 15.0, 1, 1},
+             Published{"two_bucket", 2 / 8.0, 1, 2},
+         }) {
+        const NamedSchedule found = read(name);
+        EXPECT_EQ(found.name, name);
+        EXPECT_DOUBLE_EQ(found.schedule.samples_per_pixel_slot(), samples) << name;
+        EXPECT_DOUBLE_EQ(found.schedule.light_throughput(), light) << name;
+        EXPECT_EQ(found.schedule.charge_stores(), stores) << name;
+    }
+}
+
+TEST(ScheduleCatalogueTest, ReadsTheKeysOfEveryKind) {
+    EXPECT_EQ(read("flexible_voxels", {"tile_rows=1", "tile_cols=2", "exposure_slots=[1,2]",
+                                       "every_slots=3", "first_slots=[0,1]"})
+                  .schedule,
+              ExposureSchedule(1, 2, 3, {0, 1, 2}, {{0, 1}, {1, 0b11}}));
+    EXPECT_EQ(read("rolling", {"exposure_slots=2", "period_slots=3", "rows_per_slot=5"}).schedule,
+              rolling_schedule({2, 3, 5}, 12));
+    EXPECT_EQ(read("rolling").schedule, rolling_schedule({4, 4, 3}, 12));  // 12 rows in 4 slots
+    const int lengths[] = {1, 5};
+    EXPECT_EQ(read("single_bump", {"tile_rows=2", "tile_cols=3", "exposure_slots=[1,5]",
+                                   "period_slots=9", "wrap=true"})
+                  .schedule,
+              scattered_schedule({2, 3, 9, true}, lengths, kSeed));
+    EXPECT_EQ(read("global_flutter", {"tile_rows=2", "tile_cols=3", "code_slots=9", "open_slots=2",
+                                      "codes=2", "complement=true"})
+                  .schedule,
+              flutter_schedule({2, 3, 9, 2, 2, true}, kSeed));
+}
+
+TEST(ScheduleCatalogueTest, NamesTheKeyOfASettingThatNoPixelCanDo) {
+    expect_parts(problem_of("flexible_voxels", {"first_slots=[1,2]"}),
+                 {"first_slots", "2 values", "16 pixels"});
+    expect_parts(problem_of("multi_phase_2x2", {"exposure_slots=[2,4,5,8]"}),
+                 {"every_slots", "pixel (1, 0)", "5 slots every 4"});
+    expect_parts(problem_of("rolling", {"exposure_slots=5"}), {"exposure_slots", "5 slots of 4"});
+    expect_parts(problem_of("single_bump", {"exposure_slots=[9]"}), {"exposure_slots", "period"});
+    expect_parts(problem_of("two_bucket", {"open_slots=8"}), {"open_slots", "complement"});
+    expect_parts(problem_of("pixel_flutter", {"tile_rows=256", "tile_cols=256", "codes=8000"}),
+                 {"codes", "2^24"});
 }
 
 TEST(ScheduleCatalogueTest, RefusesKeysOfAnotherKind) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/exposure_schedule.h"
+
+namespace stipple {
+
+/// A cell of pixels that each repeat one exposure at a rate and an offset of their own. Lists have
+/// one value per pixel, row by row.
+struct Cell {
+    int rows = 1;
+    int cols = 1;
+    std::vector<int> exposure_slots;  ///< 1..64
+    std::vector<int> every_slots;     ///< from the begin of one exposure to that of the next
+    std::vector<int> first_slots;     ///< begin of the first one, 0 or more
+};
+
+/// The period is the least common multiple of all `every_slots`. \throws InputError naming the
+/// pixel whose exposure is longer than its `every_slots`, or if the period is beyond 65535
+/// slots or 2^24 exposures.
+[[nodiscard]] ExposureSchedule cell_schedule(const Cell& cell);
+
+/// A rolling shutter: `rows_per_slot` rows begin an exposure of `exposure_slots` in each slot, the
+/// next ones a slot later, and all again every `period_slots`. Rows of the tile: those that begin
+/// within a period, but no more than `array_rows`. \throws InputError if an argument is not
+/// positive, the exposure is longer than 64 or the period, or the period than 65535.
+struct RollingShutter {
+    int exposure_slots = 1;
+    int period_slots = 1;
+    int rows_per_slot = 1;
+};
+[[nodiscard]] ExposureSchedule rolling_schedule(const RollingShutter& shutter, int array_rows);
+
+}  // namespace stipple
