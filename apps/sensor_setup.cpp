@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "readout/program_text.h"
+#include "sensor_model/physical_keys.h"
 #include "sensor_model/sensor_config.h"
 
 namespace stipple {
@@ -45,6 +46,40 @@ NamedSchedule read_program(const SensorChoice& choice) {
         .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
 }
 
+toml::array array_of(const std::vector<double>& values) {
+    toml::array array;
+    for (const double value : values) array.push_back(value);
+    return array;
+}
+
+void add_physical_terms(const PhysicalTerms& terms, toml::table& sensor) {
+    for (const PhysicalKey& key : kPhysicalKeys) sensor.insert(key.name, terms.*key.term);
+    sensor.insert("row_noise_e", array_of(terms.row_noise_e));
+    sensor.insert("device_id", std::int64_t{terms.device_id});
+    sensor.insert("map_rows", terms.map_rows);
+    sensor.insert("map_cols", terms.map_cols);
+    sensor.insert("transmittance", array_of(terms.transmittance));
+    sensor.insert("gain_map", array_of(terms.gain_map));
+}
+
+/// All parameters of the sensor's mode, as in a file of config/sensors.
+toml::table sensor_table(const SensorParams& params) {
+    const bool physical = params.mode == SensorMode::kPhysical;
+    toml::table sensor{{"mode", physical ? "physical" : "paper"},
+                       {"name", params.name},
+                       {"photons_per_unit", params.photons_per_unit},
+                       {"full_scale_e", params.full_scale_e},
+                       {"full_well_e", params.full_well_e},
+                       {"read_noise_e", params.read_noise_e},
+                       {"shot_noise", params.shot_noise},
+                       {"bit_depth", params.bit_depth},
+                       {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
+                       {"slot_us", params.slot_us},
+                       {"charge_stores", params.charge_stores}};
+    if (physical) add_physical_terms(params.physical, sensor);
+    return sensor;
+}
+
 }  // namespace
 
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
@@ -64,19 +99,7 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape) {
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {
-    const SensorParams& params = setup.params;
-    const toml::table sensor{
-        {"mode", "paper"},
-        {"name", params.name},
-        {"photons_per_unit", params.photons_per_unit},
-        {"full_scale_e", params.full_scale_e},
-        {"full_well_e", params.full_well_e},
-        {"read_noise_e", params.read_noise_e},
-        {"shot_noise", params.shot_noise},
-        {"bit_depth", params.bit_depth},
-        {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
-        {"slot_us", params.slot_us},
-        {"charge_stores", params.charge_stores}};
+    const toml::table sensor = sensor_table(setup.params);
     const toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
                            {"footage", footage},
                            {"schedule", setup.schedule.name},

@@ -230,6 +230,28 @@ std::vector<std::string> Config::texts(std::string_view key) {
     return values;
 }
 
+std::vector<double> Config::numbers(std::string_view key, std::vector<double> fallback,
+                                    double least, double most) {
+    const toml::node* node = impl_->find(key);
+    if (node == nullptr) return fallback;
+    std::vector<double> values;
+    const auto take = [&](const toml::node& item) {
+        if (!item.is_number()) impl_->fail_type(key, item, "a number or a list of numbers");
+        const double value = *item.value<double>();
+        if (!(value >= least && value <= most)) impl_->fail_range(key, value, least, most);
+        values.push_back(value);
+    };
+    if (const toml::array* list = node->as_array())
+        for (const toml::node& item : *list) take(item);
+    else
+        take(*node);
+    return values;
+}
+
+bool Config::contains(std::string_view key) const {
+    return impl_->entries.find(key) != impl_->entries.end();
+}
+
 void Config::reject_unknown_keys() const {
     const auto& asked = impl_->asked;
     for (const auto& [key, entry] : impl_->entries) {

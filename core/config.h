@@ -34,6 +34,11 @@ class Config {
     /// One integer or a list of integers.
     [[nodiscard]] std::vector<int> integers(std::string_view key, std::vector<int> fallback,
                                             int least, int most);
+    /// One number or a list of numbers.
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback,
+                                              double least, double most);
+    /// Whether the key is given; asking does not make it known.
+    [[nodiscard]] bool contains(std::string_view key) const;
 
     /// A list of texts; empty if absent.
     [[nodiscard]] std::vector<std::string> texts(std::string_view key);

@@ -33,7 +33,10 @@ enum class RandomPurpose : std::uint32_t {
     kSample = 0,
     kSchedule = 1,
     kFixedPattern = 2,
-    kScene = 3
+    kScene = 3,
+    kColumnPattern = 4,
+    kConverterPattern = 5,
+    kRowNoise = 6
 };
 
 /// Version of the counter layout, counter word 3. It defines the bits of every random draw.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "readout/column_adc.h"
 #include "readout/schedule_check.h"
 #include "readout/sequencer.h"
+#include "sensor_model/physical_pixels.h"
 #include "sensor_model/pixel_array.h"
 
 namespace stipple {
@@ -35,9 +37,10 @@ const ExposureSchedule& checked(const ExposureSchedule& schedule, const SensorPa
 
 /// The samples of a band of rows and what leads to them; kept so that no slot allocates.
 struct Band {
-    std::vector<std::uint32_t> pixels;  ///< due, in scan order
-    std::vector<std::uint8_t> stores;   ///< of each, if there are two charge stores
-    std::vector<std::uint16_t> dn;      ///< planes of a pixel side by side
+    std::vector<std::uint32_t> pixels;      ///< due, in scan order
+    std::vector<std::uint8_t> stores;       ///< of each, if there are two charge stores
+    std::vector<std::uint16_t> dn;          ///< planes of a pixel side by side
+    std::vector<std::uint16_t> open_slots;  ///< of each due pixel, in physical mode
     std::uint64_t saturated = 0;
     std::vector<std::uint8_t> open;  ///< of one row
     std::vector<float> light;        ///< of one plane, as the next two
@@ -75,11 +78,11 @@ Calibration calibration_of(const SensorParams& params) {
     return {
         .bit_depth = params.bit_depth,
         .rounding = params.rounding == AdcRounding::kFloor ? Rounding::kFloor : Rounding::kNearest,
-        .black_level_dn = 0,
-        .gain_e_per_dn = params.full_scale_e / ((1 << params.bit_depth) - 1),
-        .read_noise_e = params.read_noise_e,
+        .black_level_dn = params.physical.black_level_dn,
+        .gain_e_per_dn = params.gain_e_per_dn(),
+        .read_noise_e = params.temporal_read_noise_e(),
         .full_well_e = params.full_well_e,
-        .electrons_per_unit = params.photons_per_unit};
+        .electrons_per_unit = params.electrons_per_unit()};
 }
 
 struct CodedSensor::Impl {
@@ -91,6 +94,7 @@ struct CodedSensor::Impl {
           shape(frame_shape),
           stores(schedule.charge_stores()) {
         check(shape);
+        if (params.mode == SensorMode::kPhysical) physical.emplace(params, shape, seed);
         light.resize(shape.sites() * static_cast<std::size_t>(stores));
         bands.resize(static_cast<std::size_t>((shape.rows + kBandRows - 1) / kBandRows));
     }
@@ -99,7 +103,10 @@ struct CodedSensor::Impl {
     void collect(std::span<const float> frame, int row, Band& band);
     void read(std::uint32_t plane, Band& band);
 
+    void charge(std::uint32_t plane, Band& band) const;
+
     PixelArray array;
+    std::optional<PhysicalPixels> physical;  ///< in place of `array` in physical mode
     ColumnAdc adc;
     Sequencer sequencer;
     FrameShape shape;
@@ -126,13 +133,21 @@ void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& ban
     }
 }
 
+/// Light to electrons of the due pixels of one plane.
+void CodedSensor::Impl::charge(std::uint32_t plane, Band& band) const {
+    const auto slot = static_cast<std::uint32_t>(stats.slots);
+    if (physical)
+        physical->expose({band.pixels, band.light, band.open_slots}, slot, plane, band.electrons);
+    else
+        array.expose(band.light, band.pixels, slot, plane, band.electrons);
+}
+
 /// Light to DN of the due pixels of one plane.
 void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     stores == 1 ? take(band.pixels, at_plane, band.light)
                 : take(band, shape.sites(), at_plane, band.light);
-    array.expose(band.light, band.pixels, static_cast<std::uint32_t>(stats.slots), plane,
-                 band.electrons);
+    charge(plane, band);
     adc.convert(band.electrons, band.plane_dn);
     const auto planes = static_cast<std::size_t>(shape.planes);
     for (std::size_t i = 0; i < band.pixels.size(); ++i)
@@ -143,10 +158,12 @@ void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row,
     const int end_row = std::min(first_row + kBandRows, shape.rows);
     band.pixels.clear();
     band.stores.clear();
+    band.open_slots.clear();
     for (int row = first_row; row < end_row; ++row) {
         collect(frame, row, band);
         sequencer.append_due(stats.slots, row, band.pixels);
         if (stores == 2) sequencer.append_stores(stats.slots, row, band.stores);
+        if (physical) sequencer.append_open_slots(stats.slots, row, band.open_slots);
     }
     const std::size_t samples = band.pixels.size();
     band.dn.resize(samples * static_cast<std::size_t>(shape.planes));

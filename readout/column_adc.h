@@ -2,42 +2,64 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {
 
-/// The converter at the foot of the columns: the outside of the paper's Eq. 1,
+/// The converter at the foot of the columns. In paper mode the outside of Eq. 1,
 ///
-///     DN = [(2^d - 1) clamp(q / s, 0, 1)],   q the electrons of a sample, s the full scale,
+///     DN = [clamp(q (2^d - 1) / s, 0, 2^d - 1)],   q the electrons of a sample, s the full scale,
 ///
 /// where the bracket is the nearest integer (halves up) or the integer below. Evaluated as
 /// q (2^d - 1) / s in double, whose product is exact, so that halves are halves; the same bits on
-/// every machine. `convert` is `convert_one`, many at a time.
+/// every machine. In physical mode the level y = q (2^d - 1) / s + black level is bent first, by
+/// 4 i x (1 - x) with x = y / (2^d - 1) and i the peak `inl_dn`, and the step to each DN lies up to
+/// dnl_dn / 2 beside its place, drawn once for `device_id`: so no step is off by more than dnl_dn.
+/// `convert` is `convert_one`, many at a time.
 ///
-/// Not modelled: black level, non-linearity, dither, conversion time.
+/// Not modelled: dither, differences between the columns' converters, conversion time, noise of the
+/// converter's own (part of the read noise).
 class ColumnAdc {
   public:
     /// Precondition: `validate(params)` passes.
     explicit ColumnAdc(const SensorParams& params);
 
-    [[nodiscard]] std::uint16_t most_dn() const { return static_cast<std::uint16_t>(most_dn_); }
+    [[nodiscard]] std::uint16_t most_dn() const { return static_cast<std::uint16_t>(law_.most_dn); }
 
     /// Precondition: not NaN.
     [[nodiscard]] std::uint16_t convert_one(float electrons) const noexcept {
-        const double level = static_cast<double>(electrons) * most_dn_ / full_scale_e_;
-        const double above = level > 0 ? level : 0;
-        const double within = above < most_dn_ ? above : most_dn_;
-        return static_cast<std::uint16_t>(static_cast<std::int32_t>(within + to_round_));
+        return plain_ ? law_.convert(electrons) : convert_physical(electrons);
     }
 
     /// Precondition: equal lengths; no electrons are NaN.
     void convert(std::span<const float> electrons, std::span<std::uint16_t> dn) const noexcept;
 
   private:
-    double full_scale_e_;
-    double most_dn_;   ///< 2^d - 1
-    double to_round_;  ///< added before the fraction is cut off
+    /// Eq. 1.
+    struct Law {
+        double full_scale_e;
+        double most_dn;   ///< 2^d - 1
+        double to_round;  ///< added before the fraction is cut off
+
+        [[nodiscard]] double clamped(double level) const noexcept {
+            const double above = level > 0 ? level : 0;
+            return above < most_dn ? above : most_dn;
+        }
+        [[nodiscard]] std::uint16_t convert(float electrons) const noexcept {
+            const double level = static_cast<double>(electrons) * most_dn / full_scale_e;
+            return static_cast<std::uint16_t>(static_cast<std::int32_t>(clamped(level) + to_round));
+        }
+    };
+
+    [[nodiscard]] std::uint16_t convert_physical(float electrons) const noexcept;
+
+    Law law_;
+    bool plain_;  ///< Eq. 1 only
+    double black_level_dn_;
+    double inl_dn_;
+    std::vector<float> step_error_;  ///< by the DN above the step; empty: none
 };
 
 }  // namespace stipple

@@ -33,6 +33,9 @@ class Sequencer {
     /// Appends the charge store, 0 or 1, of each pixel that `append_due` appends.
     void append_stores(std::int64_t slot, int row, std::vector<std::uint8_t>& stores) const;
 
+    /// Appends the number of slots in which each of these pixels collected light.
+    void append_open_slots(std::int64_t slot, int row, std::vector<std::uint16_t>& slots) const;
+
   private:
     const ExposureSchedule* schedule_;
     int cols_;

@@ -8,7 +8,7 @@ namespace stipple {
 /// The sensor that a file of config/sensors describes; an absent key keeps its default. Other
 /// keys are left for the caller's `reject_unknown_keys`.
 /// \throws InputError naming file, line and key for a wrong type, a value outside its range, or a
-/// mode other than "paper".
+/// key of the physical mode in paper mode; as `validate` for values that do not go together.
 [[nodiscard]] SensorParams read_sensor(Config& config);
 
 }  // namespace stipple

@@ -2,20 +2,98 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 
 #include "core/error.h"
+#include "sensor_model/physical_keys.h"
+#include "sensor_model/power_of_two.h"
 
 namespace stipple {
 namespace {
 
+[[noreturn]] void fail(const SensorParams& params, std::string_view key, std::string_view problem) {
+    throw InputError(fmt::format("sensor '{}': {}", params.name, key), problem);
+}
+
 void check(const SensorParams& params, std::string_view key, double value, ParameterRange range) {
     if (value >= range.least && value <= range.most) return;  // false for NaN
-    throw InputError(fmt::format("sensor '{}': {}", params.name, key),
-                     fmt::format("{} is outside {} .. {}", value, range.least, range.most));
+    fail(params, key, fmt::format("{} is outside {} .. {}", value, range.least, range.most));
+}
+
+void check_map(const SensorParams& params, std::string_view key, const std::vector<double>& map,
+               ParameterRange range) {
+    const PhysicalTerms& terms = params.physical;
+    const auto pixels =
+        static_cast<std::size_t>(terms.map_rows) * static_cast<std::size_t>(terms.map_cols);
+    if (!map.empty() && map.size() != pixels)
+        fail(params, key,
+             fmt::format("has {} values, but its tile has map_rows x map_cols = {} x {} pixels",
+                         map.size(), terms.map_rows, terms.map_cols));
+    for (const double value : map) check(params, key, value, range);
+}
+
+/// What must hold between the terms of the physical mode.
+void check_together(const SensorParams& params) {
+    const PhysicalTerms& terms = params.physical;
+    const int most_dn = (1 << params.bit_depth) - 1;
+    if (terms.black_level_dn >= most_dn)
+        fail(params, "black_level_dn",
+             fmt::format("{} leaves nothing of the converter's {} DN for light; take more bits or "
+                         "a larger full_scale_e",
+                         terms.black_level_dn, most_dn));
+    if (4 * std::abs(terms.inl_dn) >= most_dn)
+        fail(
+            params, "inl_dn",
+            fmt::format("{} makes the converter's curve fall; it has {} DN, so less than a quarter "
+                        "of them",
+                        terms.inl_dn, most_dn));
+    if (!(params.dark_e_per_slot() <= 1e9))
+        fail(params, "dark_current_e_per_s",
+             fmt::format("{:.3g} electrons in a slot at {} degrees; more than 1e9",
+                         params.dark_e_per_slot(), terms.temperature_c));
+    if (terms.hot_pixel_fraction + terms.dead_pixel_fraction > 0.5)
+        fail(params, "hot_pixel_fraction", "more than half of the pixels are hot or dead");
+}
+
+void check_physical(const SensorParams& params) {
+    const PhysicalTerms& terms = params.physical;
+    for (const PhysicalKey& key : kPhysicalKeys)
+        check(params, key.name, terms.*key.term, key.range);
+    if (terms.row_noise_e.size() > std::size_t{kMostTaps})
+        fail(params, "row_noise_e", fmt::format("has more than {} values", kMostTaps));
+    for (const double noise : terms.row_noise_e) check(params, "row_noise_e", noise, kRowNoiseE);
+    check(params, "map_rows", terms.map_rows, {1, kMostMapSide});
+    check(params, "map_cols", terms.map_cols, {1, kMostMapSide});
+    check_map(params, "transmittance", terms.transmittance, kTransmittance);
+    check_map(params, "gain_map", terms.gain_map, kRelativeGain);
+    check_together(params);
 }
 
 }  // namespace
+
+double SensorParams::dark_e_per_slot() const {
+    const double warmer_c = physical.temperature_c - physical.dark_reference_c;
+    return physical.dark_current_e_per_s * power_of_two(warmer_c / physical.dark_doubling_c) *
+           (slot_us * 1e-6);
+}
+
+double SensorParams::temporal_read_noise_e() const {
+    if (mode == SensorMode::kPaper) return read_noise_e;
+    double row2 = 0;
+    for (const double noise : physical.row_noise_e) row2 += noise * noise;
+    if (!physical.row_noise_e.empty()) row2 /= static_cast<double>(physical.row_noise_e.size());
+    return std::sqrt(read_noise_e * read_noise_e + physical.reset_noise_e * physical.reset_noise_e +
+                     row2);
+}
+
+double default_black_level_dn(const SensorParams& params) {
+    const PhysicalTerms& terms = params.physical;
+    const double temporal_e = params.temporal_read_noise_e();
+    const double all_e = std::sqrt(temporal_e * temporal_e + terms.dsnu_e * terms.dsnu_e +
+                                   terms.column_noise_e * terms.column_noise_e);
+    return std::ceil(4 * all_e / params.gain_e_per_dn());
+}
 
 void validate(const SensorParams& params) {
     check(params, "photons_per_unit", params.photons_per_unit, SensorParams::kPhotonsPerUnit);
@@ -25,6 +103,9 @@ void validate(const SensorParams& params) {
     check(params, "bit_depth", params.bit_depth, SensorParams::kBitDepth);
     check(params, "slot_us", params.slot_us, SensorParams::kSlotUs);
     check(params, "charge_stores", params.charge_stores, SensorParams::kChargeStores);
+    if (params.mode == SensorMode::kPhysical) return check_physical(params);
+    if (params.physical != PhysicalTerms{})
+        fail(params, "mode", "\"paper\" has the terms of Eq. 1 only; take \"physical\"");
 }
 
 }  // namespace stipple

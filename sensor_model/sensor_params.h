@@ -3,10 +3,15 @@
 #include <cstdint>
 #include <string>
 
+#include "sensor_model/physical_terms.h"
+
 namespace stipple {
 
 /// How the converter maps a level between two digital numbers.
 enum class AdcRounding : std::uint8_t { kNearest, kFloor };
+
+/// Which terms the model has: those of Eq. 1, or those of EMVA 1288 as well.
+enum class SensorMode : std::uint8_t { kPaper, kPhysical };
 
 /// Closed interval of accepted values of a parameter.
 struct ParameterRange {
@@ -14,23 +19,24 @@ struct ParameterRange {
     double most;
 };
 
-/// The sensor of the paper's Eq. 1 (docs/sensor_model.md): shot noise, full well, read noise and
-/// converter of an array of equal pixels. Photons and electrons are the same thing here: the
-/// quantum efficiency is in `photons_per_unit`.
+/// A sensor (docs/sensor_model.md). In paper mode Eq. 1: shot noise, full well, read noise and
+/// converter of an array of equal pixels, where photons and electrons are the same thing and
+/// `physical` stays at its defaults. In physical mode all terms count.
 ///
-/// Not modelled: dark current, fixed pattern, defects, row and column noise, crosstalk, blooming,
-/// non-linearity, black level.
+/// Not modelled: see PhysicalTerms.
 struct SensorParams {
     std::string name = "paper";
-    double photons_per_unit = 1000;  ///< r: mean electrons per slot at flux 1.0
-    double full_scale_e = 2000;      ///< s: electrons mapped to the highest DN
+    double photons_per_unit = 1000;  ///< r: mean photons per slot at flux 1.0
+    double full_scale_e = 2000;      ///< s: electrons of 2^d - 1 DN
     double full_well_e = 20000;      ///< w: charge beyond it is lost
-    double read_noise_e = 10;        ///< sigma: standard deviation of each reading
+    double read_noise_e = 10;        ///< sigma: rms of each reading's noise
     bool shot_noise = true;          ///< false: the charge is its mean, not a Poisson draw
     int bit_depth = 8;               ///< d: the highest DN is 2^d - 1
     AdcRounding rounding = AdcRounding::kNearest;
     double slot_us = 5000;  ///< time slot: one frame of the footage
     int charge_stores = 1;  ///< of a pixel: exposures that can be under way at once
+    SensorMode mode = SensorMode::kPaper;
+    PhysicalTerms physical = {};
 
     static constexpr ParameterRange kPhotonsPerUnit{1e-3, 1e7};
     static constexpr ParameterRange kFullScaleE{1, 1e7};
@@ -40,11 +46,22 @@ struct SensorParams {
     static constexpr ParameterRange kSlotUs{1e-3, 1e9};
     static constexpr ParameterRange kChargeStores{1, 2};
 
+    /// K: electrons that raise the output by one DN.
+    [[nodiscard]] double gain_e_per_dn() const { return full_scale_e / ((1 << bit_depth) - 1); }
+    /// Mean electrons that flux 1.0 collects in one slot.
+    [[nodiscard]] double electrons_per_unit() const {
+        return photons_per_unit * physical.quantum_efficiency;
+    }
+    /// Mean dark electrons of an ordinary pixel in one open slot.
+    [[nodiscard]] double dark_e_per_slot() const;
+    /// Temporal noise of one reading, standard deviation: read, reset and row noise (rms of taps).
+    [[nodiscard]] double temporal_read_noise_e() const;
+
     bool operator==(const SensorParams&) const = default;
 };
 
 /// \throws InputError naming the sensor, the parameter and its range, for the first parameter
-/// outside its range or not a number.
+/// outside its range or not a number, and for terms of the physical mode in paper mode.
 void validate(const SensorParams& params);
 
 }  // namespace stipple

@@ -24,6 +24,14 @@ class BadSettingsTest(ProgramTest):
         self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[65]")
         self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[]")
 
+    def test_a_key_of_the_physical_mode_in_paper_mode(self):
+        self.refuse(["--set dsnu_e", 'mode = "physical"'], "--set", "dsnu_e=1")
+        self.refuse(["prnu", "0..0.5"], "--sensor", "grasshopper", "--set", "prnu=2")
+        self.refuse(["gain_map", "map_rows x map_cols = 1 x 1"], "--sensor", "ideal",
+                    "--set", "gain_map=[1, 2]")
+        self.refuse(["black_level_dn", "leaves nothing"], "--set", "mode=physical",
+                    "--set", "read_noise_e=900")
+
     def test_a_value_of_another_type(self):
         self.refuse(["bit_depth", "integer"], "--set", "bit_depth=many")
         self.refuse(["rounding", "nearest", "floor"], "--set", "rounding=up")

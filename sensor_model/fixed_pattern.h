@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.h"
+#include "sensor_model/sensor_params.h"
+
+namespace stipple {
+
+/// What is peculiar to one site of one chip, for good.
+struct SiteTraits {
+    float responsivity_e = 0;   ///< electrons that flux 1.0 makes in a slot
+    float dark_e_per_slot = 0;  ///< mean dark electrons of an open slot
+    float offset_e = 0;         ///< added to every reading
+    float read_noise_e = 0;     ///< read and reset noise, standard deviation
+    float gain = 1;             ///< relative conversion gain
+};
+
+/// The sites of the chip `device_id`: the same at every run, whatever the seed of the noise.
+///
+///     responsivity = r QE T (1 + prnu z0)          T transmittance of the tile, 0 at the least
+///     dark         = t_slot I 2^((T_c - T_ref) / T_double),  I + I_hot in hot pixels
+///     offset       = dsnu z1 + column_noise z(column)
+///     noise        = sqrt((sigma (1 + s z2))^2 / (1 + s^2) + sigma_reset^2)
+///
+/// z are normal deviates of the words of the Philox block at (pixel, device id, kFixedPattern,
+/// plane) with key 0, z(column) of (column, device id, kColumnPattern, plane); word 3 says which
+/// pixels are dead (its lowest values) or hot (its highest). Dead pixels have no responsivity, dark
+/// current, DSNU or noise of their own.
+///
+/// Not modelled: patterns that change with temperature or time, correlation of neighbours, a
+/// distribution of dark currents.
+class FixedPattern {
+  public:
+    /// Precondition: `validate(params)` passes.
+    FixedPattern(const SensorParams& params, FrameShape shape);
+
+    /// Sites of one plane by row * cols + col. Precondition: plane < planes of the shape.
+    [[nodiscard]] const SiteTraits* plane(std::uint32_t plane) const noexcept {
+        return &sites_[plane * pixels_];
+    }
+
+  private:
+    std::size_t pixels_;
+    std::vector<SiteTraits> sites_;  ///< order (plane, row, col)
+};
+
+}  // namespace stipple
