@@ -37,7 +37,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     JsonFile json(run);
     std::optional<FrameWriter> truth;
     if (!options.truth.empty())
-        truth.emplace(options.truth, setup.shape, FrameWriterOptions{.force = run.force});
+        truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
     Recording recording(options.output, run.force, setup, name_of(options.footage));
     Progress progress(run, "emulating", footage.slots());
     for (auto frame = footage.next(); !frame.empty() && stop_signal() == 0;

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sensor_model/colour_mosaic.h"
+
 namespace stipple {
 namespace {
 
@@ -14,7 +16,8 @@ StreamHeader header_of(const SensorSetup& setup, const std::string& footage) {
             .schedule = setup.schedule.schedule,
             .schedule_source = setup.schedule.source,
             .schedule_name = setup.schedule.name,
-            .provenance = provenance_of(setup, footage)};
+            .provenance = provenance_of(setup, footage),
+            .cfa = setup.params.physical.cfa};
 }
 
 }  // namespace
@@ -27,6 +30,12 @@ Recording::Recording(const std::filesystem::path& file, bool force, const Sensor
       writer_(output_.partial(), header_of(setup, footage), output_.final_path().string()) {}
 
 void Recording::expose(std::span<const float> frame) {
+    const ColourFilter filter = setup_.params.physical.cfa;
+    if (filter != ColourFilter::kNone) {
+        mosaic_.resize(setup_.shape.pixels());
+        take_mosaic(filter, setup_.footage, frame, mosaic_);
+        frame = mosaic_;
+    }
     sensor_.expose(frame, packet_);
     writer_.write(packet_);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/sensor_setup.h"
 #include "core/pending_output.h"
@@ -20,8 +21,8 @@ class Recording {
     Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
               const std::string& footage);
 
-    /// Exposes the next slot to `frame` (order (plane, row, col)) and writes its samples.
-    /// \throws DeviceError.
+    /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
+    /// writes its samples. \throws DeviceError.
     void expose(std::span<const float> frame);
     /// Puts the file in place. \throws DeviceError.
     void finish();
@@ -40,6 +41,7 @@ class Recording {
     CodedSensor sensor_;
     StreamWriter writer_;
     SamplePacket packet_;
+    std::vector<float> mosaic_;  ///< the light behind the colour filters, if there are any
 };
 
 /// What was recorded, for programs: the keys of `emulate` in docs/cli.md.

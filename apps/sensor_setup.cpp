@@ -46,7 +46,7 @@ NamedSchedule read_program(const SensorChoice& choice) {
         .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
 }
 
-toml::array array_of(const std::vector<double>& values) {
+toml::array toml_array(const std::vector<double>& values) {
     toml::array array;
     for (const double value : values) array.push_back(value);
     return array;
@@ -54,12 +54,13 @@ toml::array array_of(const std::vector<double>& values) {
 
 void add_physical_terms(const PhysicalTerms& terms, toml::table& sensor) {
     for (const PhysicalKey& key : kPhysicalKeys) sensor.insert(key.name, terms.*key.term);
-    sensor.insert("row_noise_e", array_of(terms.row_noise_e));
+    sensor.insert("row_noise_e", toml_array(terms.row_noise_e));
     sensor.insert("device_id", std::int64_t{terms.device_id});
+    sensor.insert("cfa", name_of(terms.cfa));
     sensor.insert("map_rows", terms.map_rows);
     sensor.insert("map_cols", terms.map_cols);
-    sensor.insert("transmittance", array_of(terms.transmittance));
-    sensor.insert("gain_map", array_of(terms.gain_map));
+    sensor.insert("transmittance", toml_array(terms.transmittance));
+    sensor.insert("gain_map", toml_array(terms.gain_map));
 }
 
 /// All parameters of the sensor's mode, as in a file of config/sensors.
@@ -80,6 +81,17 @@ toml::table sensor_table(const SensorParams& params) {
     return sensor;
 }
 
+/// The array that footage of this shape falls on.
+FrameShape array_of(const SensorParams& params, FrameShape footage) {
+    if (params.physical.cfa == ColourFilter::kNone) return footage;
+    if (footage.planes != 3)
+        throw InputError(fmt::format("sensor '{}': cfa", params.name),
+                         fmt::format("a colour filter array ({}) needs colour footage, this has {} "
+                                     "plane; set cfa=none",
+                                     name_of(params.physical.cfa), footage.planes));
+    return {footage.rows, footage.cols, 1};
+}
+
 }  // namespace
 
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
@@ -90,12 +102,13 @@ NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
     return schedule;
 }
 
-SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape) {
+SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {
     Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
     const SensorParams params = read_sensor(sensor);
     const std::optional<ReadoutTiming> timing = read_timing(sensor, params.bit_depth);
     sensor.reject_unknown_keys();
-    return {params, set_up_schedule(choice, shape), shape, timing, choice.seed};
+    const FrameShape shape = array_of(params, footage);
+    return {params, set_up_schedule(choice, shape), shape, footage, timing, choice.seed};
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {

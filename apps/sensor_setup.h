@@ -24,7 +24,8 @@ struct SensorChoice {
 struct SensorSetup {
     SensorParams params;
     NamedSchedule schedule;
-    FrameShape shape;
+    FrameShape shape;    ///< of the array: one plane if it has a colour filter array
+    FrameShape footage;  ///< of the light
     std::optional<ReadoutTiming> timing = {};  ///< if the sensor file has a section [timing]
     std::uint64_t seed = 1;
 };
@@ -33,8 +34,9 @@ struct SensorSetup {
 /// of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape);
 
-/// \throws InputError naming file, line and key of what cannot be used.
-[[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape shape);
+/// A sensor for this footage. \throws InputError naming file, line and key of what cannot be used,
+/// or if there is a colour filter array but no colour.
+[[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage);
 
 /// The text that a stream carries of where it comes from (TOML): emulator, `footage`, all sensor
 /// parameters, schedule, seed. No time and no path, so that the same run gives the same bytes.

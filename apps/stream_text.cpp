@@ -14,13 +14,23 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json calibration_json(const Calibration& calibration) {
+    ordered_json responsivity = ordered_json::array(), conversion_gain = ordered_json::array();
+    for (const CalibrationPixel& pixel : calibration.tile.pixels) {
+        responsivity.push_back(pixel.responsivity);
+        conversion_gain.push_back(pixel.conversion_gain);
+    }
     return {{"bit_depth", calibration.bit_depth},
             {"rounding", calibration.rounding == Rounding::kFloor ? "floor" : "nearest"},
             {"black_level_dn", calibration.black_level_dn},
             {"gain_e_per_dn", calibration.gain_e_per_dn},
             {"read_noise_e", calibration.read_noise_e},
             {"full_well_e", calibration.full_well_e},
-            {"electrons_per_unit", calibration.electrons_per_unit}};
+            {"electrons_per_unit", calibration.electrons_per_unit},
+            {"dark_e_per_slot", calibration.dark_e_per_slot},
+            {"tile_rows", calibration.tile.rows},
+            {"tile_cols", calibration.tile.cols},
+            {"responsivity", responsivity},
+            {"conversion_gain", conversion_gain}};
 }
 
 ordered_json schedule_json(const StreamHeader& header) {
@@ -40,6 +50,20 @@ ordered_json schedule_json(const StreamHeader& header) {
     return json;
 }
 
+/// What only some sensors have, a line each.
+std::string special_text(const StreamHeader& header) {
+    const Calibration& calibration = header.calibration;
+    std::string text;
+    if (header.cfa != ColourFilter::kNone)
+        text += fmt::format("colours      filter array {}\n", name_of(header.cfa));
+    if (calibration.dark_e_per_slot != 0)
+        text += fmt::format("dark signal  {:.4g} e per slot\n", calibration.dark_e_per_slot);
+    if (!calibration.tile.pixels.empty())
+        text += fmt::format("pixels       differ, tile {} x {}\n", calibration.tile.rows,
+                            calibration.tile.cols);
+    return text;
+}
+
 }  // namespace
 
 ordered_json stream_json(const StreamHeader& header, const StreamReport& report) {
@@ -50,6 +74,7 @@ ordered_json stream_json(const StreamHeader& header, const StreamReport& report)
     return {{"rows", header.shape.rows},
             {"cols", header.shape.cols},
             {"planes", header.shape.planes},
+            {"cfa", name_of(header.cfa)},
             {"slot_us", header.slot_us},
             {"calibration", calibration_json(header.calibration)},
             {"schedule", schedule_json(header)},
@@ -71,15 +96,17 @@ std::string stream_text(const StreamHeader& header, const StreamReport& report) 
         "frames       {} x {} x {} (width x height x planes), a slot is {} us\n"
         "samples      {} bits, {:.5g} e/DN, black level {} DN, read noise {} e, full well {} e\n"
         "light 1.0    {} e per slot\n"
+        "{}"
         "schedule     {}: tile {} x {}, period {} slots, {:.4g} samples per pixel and slot,\n"
         "             light throughput {:.1f} %\n"
         "holds        {} slots, {} packets, {} samples, {} payload bits",
         header.shape.cols, header.shape.rows, header.shape.planes, header.slot_us,
         calibration.bit_depth, calibration.gain_e_per_dn, calibration.black_level_dn,
         calibration.read_noise_e, calibration.full_well_e, calibration.electrons_per_unit,
-        header.schedule_name, schedule.tile_rows(), schedule.tile_cols(), schedule.period_slots(),
-        schedule.samples_per_pixel_slot(), 100 * schedule.light_throughput(), report.slots,
-        report.packets, report.samples, report.payload_bits);
+        special_text(header), header.schedule_name, schedule.tile_rows(), schedule.tile_cols(),
+        schedule.period_slots(), schedule.samples_per_pixel_slot(),
+        100 * schedule.light_throughput(), report.slots, report.packets, report.samples,
+        report.payload_bits);
 }
 
 bool undamaged(const StreamReport& report) {

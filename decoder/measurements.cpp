@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -10,29 +11,56 @@
 namespace stipple {
 namespace {
 
-/// DN to light, and which DN say only "at least".
+/// DN of one pixel of the calibration tile to light, which DN say only "at least", and the noise.
+struct PixelLaw {
+    double unit_per_dn;
+    double dark_per_slot;  ///< light that the dark electrons of an open slot look like
+    double saturation_dn;
+    SampleNoise noise;
+    float dark_variance_per_slot;
+};
+
+PixelLaw law_of(const Calibration& whole, const CalibrationPixel& pixel) {
+    Calibration c = whole;
+    c.gain_e_per_dn /= pixel.conversion_gain;
+    c.electrons_per_unit *= pixel.responsivity;
+    // A sample within two standard deviations of the full well may have been clipped by it.
+    const double well_dn =
+        c.black_level_dn + (c.full_well_e - 2 * c.read_noise_e) / c.gain_e_per_dn;
+    const double full_scale_dn = static_cast<double>((1U << c.bit_depth) - 1);
+    const double dark = c.dark_e_per_slot / c.electrons_per_unit;
+    return {.unit_per_dn = c.gain_e_per_dn / c.electrons_per_unit,
+            .dark_per_slot = dark,
+            .saturation_dn = std::min(full_scale_dn, well_dn),
+            .noise = SampleNoise(c),
+            .dark_variance_per_slot = static_cast<float>(dark / c.electrons_per_unit)};
+}
+
+/// The laws of all pixels.
 class Converter {
   public:
     explicit Converter(const Calibration& calibration)
-        : unit_per_dn_(calibration.gain_e_per_dn / calibration.electrons_per_unit),
+        : tile_(calibration.tile),
           black_level_dn_(calibration.black_level_dn -
                           (calibration.rounding == Rounding::kFloor ? 0.5 : 0.0)) {
-        // A sample within two standard deviations of the full well may have been clipped by it.
-        const double well_dn =
-            calibration.black_level_dn +
-            (calibration.full_well_e - 2 * calibration.read_noise_e) / calibration.gain_e_per_dn;
-        const double full_scale_dn = static_cast<double>((1U << calibration.bit_depth) - 1);
-        saturation_dn_ = std::min(full_scale_dn, well_dn);
+        if (tile_.pixels.empty()) tile_ = {1, 1, {CalibrationPixel{}}};
+        for (const CalibrationPixel& pixel : tile_.pixels)
+            laws_.push_back(law_of(calibration, pixel));
     }
-    [[nodiscard]] float light(std::uint16_t dn) const {
-        return static_cast<float>((dn - black_level_dn_) * unit_per_dn_);
+    [[nodiscard]] const PixelLaw& law(int row, int col) const {
+        return laws_[static_cast<std::size_t>(row % tile_.rows) *
+                         static_cast<std::size_t>(tile_.cols) +
+                     static_cast<std::size_t>(col % tile_.cols)];
     }
-    [[nodiscard]] bool saturated(std::uint16_t dn) const { return dn >= saturation_dn_; }
+    [[nodiscard]] float light(const PixelLaw& law, std::uint16_t dn, int open_slots) const {
+        return static_cast<float>((dn - black_level_dn_) * law.unit_per_dn -
+                                  law.dark_per_slot * open_slots);
+    }
 
   private:
-    double unit_per_dn_;
+    CalibrationTile tile_;
     double black_level_dn_;
-    double saturation_dn_;
+    std::vector<PixelLaw> laws_;
 };
 
 std::size_t index(std::int64_t value) {
@@ -45,7 +73,6 @@ class Collector {
         : schedule_(header.schedule),
           array_(header.shape),
           converter_(header.calibration),
-          noise_(header.calibration),
           window_(window),
           out_(measurements) {}
 
@@ -78,8 +105,9 @@ class Collector {
         const auto sites = window_.shape.sites();
         auto voxel = index(first) * sites + index(window_row) * index(window_.shape.cols) +
                      index(window_col);
+        const PixelLaw& law = converter_.law(row, col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
-            write(voxel, sample.dn[plane], span);
+            write(voxel, sample.dn[plane], span, law);
     }
 
     struct Span {
@@ -88,7 +116,7 @@ class Collector {
         std::uint8_t open_state;  ///< kOpen, and the chain
     };
 
-    void write(std::size_t first_voxel, std::uint16_t dn, const Span& span) {
+    void write(std::size_t first_voxel, std::uint16_t dn, const Span& span, const PixelLaw& law) {
         const auto sites = window_.shape.sites();
         for (int i = 0; i < span.slots; ++i)
             if ((span.open_slots >> static_cast<unsigned>(i) & 1U) != 0)
@@ -96,9 +124,15 @@ class Collector {
         const std::size_t last_voxel = first_voxel + index(span.slots - 1) * sites;
         out_.state[first_voxel] |= Measurements::kFirst;
         out_.state[last_voxel] |= Measurements::kLast;
-        if (converter_.saturated(dn)) out_.state[last_voxel] |= Measurements::kSaturated;
-        out_.sum[last_voxel] = converter_.light(dn);
-        out_.variance[last_voxel] = noise_.variance(out_.sum[last_voxel]);
+        if (dn >= law.saturation_dn) out_.state[last_voxel] |= Measurements::kSaturated;
+        const int open_slots = std::popcount(span.open_slots);
+        out_.sum[last_voxel] = converter_.light(law, dn, open_slots);
+        out_.variance[last_voxel] = law.noise.variance(out_.sum[last_voxel]);
+        if (out_.dark_variance.empty()) return;
+        out_.dark_variance[last_voxel] =
+            law.noise.variance(0) + law.dark_variance_per_slot * static_cast<float>(open_slots);
+        out_.variance_per_light[last_voxel] = law.noise.per_light();
+        out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
     }
 
     [[nodiscard]] Span span_of(std::int64_t last_slot, int row, int col, int span_slots) const {
@@ -118,7 +152,6 @@ class Collector {
     const ExposureSchedule& schedule_;
     FrameShape array_;
     Converter converter_;
-    SampleNoise noise_;
     VideoWindow window_;
     Measurements& out_;
 };
@@ -139,7 +172,14 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
         .sum = std::vector<float>(window.voxels()),
         .variance = std::vector<float>(window.voxels()),
         .interleaved = header.schedule.interleaved(),
+        .dark_variance = {},
+        .variance_per_light = {},
     };
+    const Calibration& calibration = header.calibration;
+    if (calibration.dark_e_per_slot != 0 || !calibration.tile.pixels.empty()) {
+        result.dark_variance.resize(window.voxels());
+        result.variance_per_light.resize(window.voxels());
+    }
     Collector collector(header, window, result);
     parallel_for(0, static_cast<int>(packets.size()),
                  [&](int i) { collector.add(packets[index(i)]); });

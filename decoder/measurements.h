@@ -44,12 +44,27 @@ struct Measurements {
     std::vector<float> variance;  ///< of `sum` at the same voxel; else 0
     bool interleaved = false;     ///< there is a second chain
 
+    /// Where pixels differ or have dark current, their own noise at the last voxels: variance of
+    /// an exposure without light, and what each unit of light adds. Else empty.
+    std::vector<float> dark_variance = {};
+    std::vector<float> variance_per_light = {};
+
+    /// Precondition: dark_variance is not empty, voxel is the last of an exposure.
+    [[nodiscard]] float variance_at(std::size_t voxel, float light) const {
+        return dark_variance[voxel] + variance_per_light[voxel] * (light > 0 ? light : 0);
+    }
+
     [[nodiscard]] std::size_t voxels() const { return state.size(); }
 };
 
-/// Collects the samples of `window` from packets that may hold more. Variances are set as if each
-/// sample were its own mean. \throws InputError if more than two exposures of a pixel are under way
-/// at once.
+/// Collects the samples of `window` from packets that may hold more, each converted by its pixel of
+/// the calibration tile:
+///
+///     light = ((DN - black level) K^-1 / g - D n) / (r R),
+///
+/// g relative gain, R relative responsivity, D dark electrons a slot, n open slots. Variances are
+/// set as if each sample were its own mean. \throws InputError if more than two exposures of a
+/// pixel are under way at once.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);
@@ -63,6 +78,9 @@ class SampleNoise {
     [[nodiscard]] float variance(float light) const {
         return constant_ + per_unit_ * (light > 0 ? light : 0);
     }
+
+    /// What a unit of light adds to the variance: 1 / r.
+    [[nodiscard]] float per_light() const { return per_unit_; }
 
   private:
     float per_unit_;

@@ -131,6 +131,12 @@ DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& 
                     const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
+    if (header.cfa != ColourFilter::kNone)
+        throw InputError(
+            "colour filter array",
+            fmt::format("the stream is a mosaic ({}), which this version cannot decode "
+                        "to colour; record with cfa = \"none\"",
+                        name_of(header.cfa)));
     PacketBuffer buffer(reader);
     DecodeReport report;
     for (bool more = true; more;) {

@@ -34,7 +34,8 @@ struct DecodeReport {
 /// Decodes a stream from where its reader stands (its beginning), block by block: memory does not
 /// grow with the length of the stream. The same bits for any thread count. Samples that are
 /// missing or damaged count as unobserved; `reader.report()` says which.
-/// \throws InputError as StreamReader::next, if the method cannot decode the schedule, or if 100000
+/// \throws InputError as StreamReader::next, if the method cannot decode the schedule,
+/// if the stream is a mosaic of colours, or if 100000
 /// slots in succession have no sample.
 DecodeReport decode(
     StreamReader& reader, DecodeMethod method, const FrameSink& sink,

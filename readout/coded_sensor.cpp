@@ -72,6 +72,19 @@ void take(const Band& band, std::size_t apart, std::span<float> plane,
         light[i] = std::exchange(plane[band.pixels[i] + band.stores[i] * apart], 0.0F);
 }
 
+/// The maps as a calibration tile; none if there are none.
+CalibrationTile tile_of(const PhysicalTerms& terms) {
+    if (terms.transmittance.empty() && terms.gain_map.empty()) return {};
+    const auto pixels =
+        static_cast<std::size_t>(terms.map_rows) * static_cast<std::size_t>(terms.map_cols);
+    CalibrationTile tile{terms.map_rows, terms.map_cols, std::vector<CalibrationPixel>(pixels)};
+    for (std::size_t i = 0; i < terms.transmittance.size(); ++i)
+        tile.pixels[i].responsivity = terms.transmittance[i];
+    for (std::size_t i = 0; i < terms.gain_map.size(); ++i)
+        tile.pixels[i].conversion_gain = terms.gain_map[i];
+    return tile;
+}
+
 }  // namespace
 
 Calibration calibration_of(const SensorParams& params) {
@@ -82,7 +95,9 @@ Calibration calibration_of(const SensorParams& params) {
         .gain_e_per_dn = params.gain_e_per_dn(),
         .read_noise_e = params.temporal_read_noise_e(),
         .full_well_e = params.full_well_e,
-        .electrons_per_unit = params.electrons_per_unit()};
+        .electrons_per_unit = params.electrons_per_unit(),
+        .dark_e_per_slot = params.dark_e_per_slot(),
+        .tile = tile_of(params.physical)};
 }
 
 struct CodedSensor::Impl {

@@ -10,7 +10,7 @@ namespace stipple {
 namespace {
 
 /// Keys of the physical mode that are not single numbers.
-constexpr const char* kOtherPhysicalKeys[] = {"row_noise_e", "device_id",     "map_rows",
+constexpr const char* kOtherPhysicalKeys[] = {"row_noise_e", "device_id",     "cfa",     "map_rows",
                                               "map_cols",    "transmittance", "gain_map"};
 
 double read(Config& config, const char* key, double fallback, ParameterRange range) {
@@ -45,6 +45,9 @@ PhysicalTerms read_terms(Config& config) {
     terms.row_noise_e = read_list(config, "row_noise_e", kRowNoiseE);
     terms.device_id =
         static_cast<std::uint32_t>(config.integer("device_id", terms.device_id, 0, UINT32_MAX));
+    const std::vector<std::string> names(kColourFilterNames.begin(), kColourFilterNames.end());
+    const auto filter = std::ranges::find(names, config.choice("cfa", names.front(), names));
+    terms.cfa = static_cast<ColourFilter>(filter - names.begin());
     terms.map_rows = read_integer(config, "map_rows", terms.map_rows, {1, kMostMapSide});
     terms.map_cols = read_integer(config, "map_cols", terms.map_cols, {1, kMostMapSide});
     terms.transmittance = read_list(config, "transmittance", kTransmittance);

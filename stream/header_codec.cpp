@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "stream/calibration_codec.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"
@@ -24,8 +25,9 @@ constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxProvenanceBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
-constexpr std::size_t kMaxHeaderBytes =
-    kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes + kMaxScheduleBytes + kCrcBytes;
+constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;
+constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes +
+                                        kMaxScheduleBytes + kMaxCalibrationBytes + kCrcBytes;
 
 [[noreturn]] void fail_at(std::string_view place, std::size_t offset, std::string_view problem) {
     throw InputError(fmt::format("{}: byte {}", place, offset), problem);
@@ -44,7 +46,7 @@ constexpr Field kRows{16, "rows", 1, 65535};
 constexpr Field kCols{18, "columns", 1, 65535};
 constexpr Field kPlanes{20, "planes", 1, 4};
 constexpr Field kSites{16, "rows x columns x planes", 1, 1U << 28U};
-constexpr Field kColourFilter{21, "colour filter array", 0, 0};
+constexpr Field kColourFilter{21, "colour filter array", 0, 4};
 constexpr Field kBitDepth{22, "bit depth", 1, 16};
 constexpr Field kRounding{23, "rounding", 0, 1};
 constexpr Field kSlotDuration{24, "slot duration in us", 1e-12, 1e12};
@@ -57,10 +59,11 @@ constexpr Field kNameBytes{72, "bytes of the schedule name", 0, kMaxNameBytes};
 constexpr Field kProvenanceBytes{76, "bytes of the provenance text", 0, kMaxProvenanceBytes};
 constexpr Field kScheduleBytes{80, "bytes of the schedule section", 1, kMaxScheduleBytes};
 constexpr Field kScheduleKind{84, "schedule kind", 0, 1};
+constexpr Field kCalibrationSection{85, "calibration section", 0, 1};
 constexpr std::size_t kScheduleCrc = 88;
 
 /// Bytes that must be zero.
-constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {85, 3}};
+constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {86, 2}};
 
 void check(const Field& field, double value, std::string_view place) {
     if (value >= field.least && value <= field.most) return;  // false for NaN
@@ -74,14 +77,19 @@ struct Numbers {
     FrameShape shape;
     double slot_us = 0;
     Calibration calibration;
+    ColourFilter cfa = ColourFilter::kNone;
 };
 
 void check(const Numbers& numbers, std::string_view place) {
-    const auto& [shape, slot_us, calibration] = numbers;
+    const auto& [shape, slot_us, calibration, cfa] = numbers;
     check(kRows, shape.rows, place);
     check(kCols, shape.cols, place);
     check(kPlanes, shape.planes, place);
     check(kSites, static_cast<double>(shape.sites()), place);
+    check(kColourFilter, static_cast<int>(cfa), place);
+    if (cfa != ColourFilter::kNone && shape.planes != 1)
+        fail_at(place, kColourFilter.offset,
+                fmt::format("a colour filter array has one plane, not {}", shape.planes));
     check(kBitDepth, calibration.bit_depth, place);
     check(kRounding, static_cast<int>(calibration.rounding), place);
     check(kSlotDuration, slot_us, place);
@@ -112,6 +120,7 @@ Numbers load_numbers(Bytes header) {
     numbers.shape = {load_at<std::uint16_t>(header, kRows), load_at<std::uint16_t>(header, kCols),
                      load_at<std::uint8_t>(header, kPlanes)};
     numbers.slot_us = load_at<double>(header, kSlotDuration);
+    numbers.cfa = static_cast<ColourFilter>(load_at<std::uint8_t>(header, kColourFilter));
     Calibration& calibration = numbers.calibration;
     calibration.bit_depth = load_at<std::uint8_t>(header, kBitDepth);
     calibration.rounding = static_cast<Rounding>(load_at<std::uint8_t>(header, kRounding));
@@ -125,11 +134,11 @@ Numbers load_numbers(Bytes header) {
 
 /// Appends bytes 16..71.
 void append_numbers(std::vector<std::uint8_t>& bytes, const Numbers& numbers) {
-    const auto& [shape, slot_us, calibration] = numbers;
+    const auto& [shape, slot_us, calibration, cfa] = numbers;
     append(bytes, static_cast<std::uint16_t>(shape.rows));
     append(bytes, static_cast<std::uint16_t>(shape.cols));
     append(bytes, static_cast<std::uint8_t>(shape.planes));
-    append(bytes, std::uint8_t{0});
+    append(bytes, static_cast<std::uint8_t>(cfa));
     append(bytes, static_cast<std::uint8_t>(calibration.bit_depth));
     append(bytes, static_cast<std::uint8_t>(calibration.rounding));
     for (const double value :
@@ -139,17 +148,17 @@ void append_numbers(std::vector<std::uint8_t>& bytes, const Numbers& numbers) {
 }
 
 void check_reserved(Bytes header, std::string_view place) {
-    check(kColourFilter, load_at<std::uint8_t>(header, kColourFilter), place);
     for (const auto& [offset, bytes] : kReserved)
         for (std::size_t at = offset; at < offset + bytes; ++at)
             if (header[at] != 0) fail_at(place, at, "reserved byte is not zero");
 }
 
-/// The three parts after the fixed one.
+/// The parts after the fixed one.
 struct Parts {
     std::string_view name;
     std::string_view provenance;
     Bytes schedule;
+    Bytes calibration;  ///< empty: none
 };
 
 Parts split(Bytes header, std::string_view place) {
@@ -169,35 +178,42 @@ Parts split(Bytes header, std::string_view place) {
     const std::string_view name = text(part(kNameBytes));
     const std::string_view provenance = text(part(kProvenanceBytes));
     const Bytes schedule = part(kScheduleBytes);
-    if (at != header.size() - kCrcBytes)
+    const Bytes calibration = header.subspan(at, header.size() - kCrcBytes - at);
+    if (calibration.empty() != (load_at<std::uint8_t>(header, kCalibrationSection) == 0))
         fail_at(place, kHeaderLength.offset, "header bytes are not the sum of its parts");
-    return {name, provenance, schedule};
+    return {name, provenance, schedule, calibration};
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view place) {
-    const Numbers numbers{header.shape, header.slot_us, header.calibration};
+    const Numbers numbers{header.shape, header.slot_us, header.calibration, header.cfa};
     check(numbers, place);
     check_texts(header.schedule_name, header.provenance, place);
     const auto schedule = encode_schedule(header, place);
     check(kScheduleBytes, static_cast<double>(schedule.size()), place);
+    const bool calibrated = needs_calibration_section(header.calibration);
+    const auto calibration =
+        calibrated ? encode_calibration(header.calibration, place) : std::vector<std::uint8_t>{};
 
     std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
     append(bytes, kVersion);
     append(bytes, std::uint16_t{0});
-    append(bytes,
-           static_cast<std::uint32_t>(kFixedBytes + header.schedule_name.size() +
-                                      header.provenance.size() + schedule.size() + kCrcBytes));
+    append(bytes, static_cast<std::uint32_t>(kFixedBytes + header.schedule_name.size() +
+                                             header.provenance.size() + schedule.size() +
+                                             calibration.size() + kCrcBytes));
     append_numbers(bytes, numbers);
     append(bytes, static_cast<std::uint32_t>(header.schedule_name.size()));
     append(bytes, static_cast<std::uint32_t>(header.provenance.size()));
     append(bytes, static_cast<std::uint32_t>(schedule.size()));
-    append(bytes, static_cast<std::uint32_t>(header.schedule_source.kind));  // and 3 reserved
+    append(bytes, static_cast<std::uint8_t>(header.schedule_source.kind));
+    append(bytes, static_cast<std::uint8_t>(calibrated ? 1 : 0));
+    append(bytes, std::uint16_t{0});
     append(bytes, schedule_crc(header.schedule));
     bytes.insert(bytes.end(), header.schedule_name.begin(), header.schedule_name.end());
     bytes.insert(bytes.end(), header.provenance.begin(), header.provenance.end());
     bytes.insert(bytes.end(), schedule.begin(), schedule.end());
+    bytes.insert(bytes.end(), calibration.begin(), calibration.end());
     append(bytes, crc32c(bytes));
     return bytes;
 }
@@ -228,23 +244,29 @@ StreamHeader decode_header(Bytes header, std::string_view place) {
     if (crc32c(header.first(crc_offset)) != load<std::uint32_t>(&header[crc_offset]))
         fail_at(place, crc_offset, "the header is damaged (CRC mismatch); get another copy");
     check_reserved(header, place);
-    const Numbers numbers = load_numbers(header);
+    Numbers numbers = load_numbers(header);
     check(numbers, place);
+    check(kCalibrationSection, load_at<std::uint8_t>(header, kCalibrationSection), place);
     const auto kind = load_at<std::uint8_t>(header, kScheduleKind);
     check(kScheduleKind, kind, place);
     const Parts parts = split(header, place);
     check_texts(parts.name, parts.provenance, place);
-    auto stored = decode_schedule(ScheduleSource::Kind{kind}, parts.schedule, numbers.shape,
-                                  crc_offset - parts.schedule.size(), place);
+    auto stored =
+        decode_schedule(ScheduleSource::Kind{kind}, parts.schedule, numbers.shape,
+                        crc_offset - parts.calibration.size() - parts.schedule.size(), place);
     if (schedule_crc(stored.schedule) != load<std::uint32_t>(&header[kScheduleCrc]))
         fail_at(place, kScheduleCrc, "the schedule is not the one that was recorded");
+    if (!parts.calibration.empty())
+        decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), place,
+                           numbers.calibration);
     return {numbers.shape,
             numbers.slot_us,
-            numbers.calibration,
+            std::move(numbers.calibration),
             std::move(stored.schedule),
             std::move(stored.source),
             std::string(parts.name),
-            std::string(parts.provenance)};
+            std::string(parts.provenance),
+            numbers.cfa};
 }
 
 }  // namespace stipple

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "core/colour_filter.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
 
@@ -10,6 +12,23 @@ namespace stipple {
 
 /// How the converter maps a level between two digital numbers (DN).
 enum class Rounding : std::uint8_t { kNearest = 0, kFloor = 1 };
+
+/// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
+struct CalibrationPixel {
+    double responsivity = 1;     ///< of `electrons_per_unit`: a neutral-density mosaic
+    double conversion_gain = 1;  ///< DN per electron, relative to 1 / `gain_e_per_dn`: dual gain
+
+    bool operator==(const CalibrationPixel&) const = default;
+};
+
+/// A tile that is repeated over the array from pixel (0, 0); by default there is none.
+struct CalibrationTile {
+    int rows = 0;
+    int cols = 0;
+    std::vector<CalibrationPixel> pixels;  ///< by row and column
+
+    bool operator==(const CalibrationTile&) const = default;
+};
 
 /// What a decoder needs to turn DN into electrons and to know how far to trust them.
 /// Terms as in EMVA 1288.
@@ -21,6 +40,8 @@ struct Calibration {
     double read_noise_e = 10;  ///< standard deviation
     double full_well_e = 20000;
     double electrons_per_unit = 1000;  ///< electrons that flux 1.0 collects in one slot
+    double dark_e_per_slot = 0;        ///< electrons that an open slot without light collects
+    CalibrationTile tile = {};
 
     bool operator==(const Calibration&) const = default;
 };
@@ -44,6 +65,7 @@ struct StreamHeader {
     ScheduleSource schedule_source;
     std::string schedule_name;  ///< for people, at most 64 bytes of UTF-8
     std::string provenance;     ///< TOML text: emulator parameters, seed, footage; may be empty
+    ColourFilter cfa = ColourFilter::kNone;  ///< of the one plane, if it is a mosaic
 
     bool operator==(const StreamHeader&) const = default;
 };

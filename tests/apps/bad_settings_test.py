@@ -32,6 +32,10 @@ class BadSettingsTest(ProgramTest):
         self.refuse(["black_level_dn", "leaves nothing"], "--set", "mode=physical",
                     "--set", "read_noise_e=900")
 
+    def test_a_colour_filter_array_without_colour(self):
+        self.refuse(["cfa", "needs colour footage"], "--sensor", "ideal", "--set", "cfa=rggb")
+        self.refuse(["cfa", "gbrg"], "--sensor", "ideal", "--set", "cfa=rgbg")
+
     def test_a_value_of_another_type(self):
         self.refuse(["bit_depth", "integer"], "--set", "bit_depth=many")
         self.refuse(["rounding", "nearest", "floor"], "--set", "rounding=up")

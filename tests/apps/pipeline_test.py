@@ -39,6 +39,30 @@ class PipelineTest(ProgramTest):
         self.assertIn("light.npy", report["provenance"])
         self.assertIn("undamaged", self.succeed("info", "a.stipple"))
 
+    def test_a_mosaic_of_colours_is_recorded_but_not_decoded(self):
+        light = np.zeros((6, 4, 4, 3), np.float32) + [0.25, 0.5, 1]
+        self.write_array("light.npy", light)
+        figures = self.figures("emulate", "light.npy", "-o", "a.stipple", "--sensor", "ideal",
+                               "--set", "cfa=gbrg", "--truth", "truth.npy")
+        self.assertEqual(figures["samples"] * figures["compression_ratio"], 6 * 16)
+        np.testing.assert_allclose(self.array("truth.npy"), light)
+        report = self.figures("info", "a.stipple")
+        self.assertEqual((report["planes"], report["cfa"]), (1, "gbrg"))
+        self.assertIn("gbrg", self.succeed("info", "a.stipple"))
+        self.fails(1, ["colour filter array", "gbrg"], "decode", "a.stipple", "-o", "out.npy")
+
+    def test_pixels_that_differ_come_back_alike(self):
+        light = self.write_flat("light.npy", slots=40, light=0.2)
+        self.succeed("emulate", light, "-o", "a.stipple", "--sensor", "ideal", "--set", "map_cols=2",
+                     "--set", "transmittance=[1, 0.125]", "--set", "gain_map=[1, 4]",
+                     "--set", "dark_current_e_per_s=2000")
+        calibration = self.figures("info", "a.stipple")["calibration"]
+        self.assertEqual(calibration["responsivity"], [1, 0.125])
+        self.assertEqual(calibration["dark_e_per_slot"], 10)
+        self.succeed("decode", "a.stipple", "-o", "out.npy", "--method", "naive")
+        # Steps of 1/4 electron at 1000 electrons, and at 125 with the gain 4: 0.0005 at most.
+        np.testing.assert_allclose(self.array("out.npy")[15:-15], 0.2, atol=0.0003)
+
     def test_still_light_comes_back_up_to_half_a_step(self):
         """The shortest exposure is one slot long, so light is off by STEP / 2 at most."""
         light = self.write_flat("light.npy", slots=40, light=0.2)

@@ -33,6 +33,14 @@ std::string addressed_packet() {
     return bytes.insert(stream.begins[2], framed(packet, sample));
 }
 
+std::string calibrated_mosaic() {
+    StreamHeader header = varied_header({4, 6, 1}, 12);
+    header.cfa = ColourFilter::kGrbg;
+    header.calibration.dark_e_per_slot = 1.5;
+    header.calibration.tile = {2, 1, {{1, 1}, {0.25, 4}}};
+    return feature(header, 4, 4);
+}
+
 std::vector<GoldenCase> features() {
     return {{"example", example_stream()},
             {"mono_10_bits", feature(varied_header({4, 5, 1}, 10), 6, 4)},
@@ -42,6 +50,7 @@ std::vector<GoldenCase> features() {
             {"bands_of_rows", feature(varied_header({5, 4, 1}), 3, 2)},
             {"random_schedule", feature(random_header({3, 4, 1}, 20260101), 16, 3)},
             {"no_slots", feature(varied_header(), 0, 4)},
+            {"calibrated_mosaic", calibrated_mosaic()},
             {"flags", flags()},
             {"addressed_packet", addressed_packet()}};
 }
@@ -82,7 +91,7 @@ std::vector<GoldenCase> damages() {
 std::string example_stream() {
     const ExposureSchedule schedule(1, 2, 2, {0, 2, 3}, {{0, 0b1}, {1, 0b1}, {0, 0b11}});
     StreamHeader header{{2, 2, 1}, 5000, {}, schedule, {}, "example", "seed = 1\n"};
-    header.calibration = {10, Rounding::kNearest, 64, 20, 10, 20000, 1000};
+    header.calibration = {.bit_depth = 10, .black_level_dn = 64, .gain_e_per_dn = 20};
     return bytes_of(header, {{0, 0, 2, 0, {1023, 1}}, {1, 0, 2, 0, {512, 3, 4, 0}}}).bytes;
 }
 

@@ -38,20 +38,28 @@ Json to_json(const ExposureSchedule& schedule) {
 
 Json to_json(const StreamHeader& header) {
     const Calibration& c = header.calibration;
-    return {{"rows", header.shape.rows},
-            {"cols", header.shape.cols},
-            {"planes", header.shape.planes},
-            {"slot_us", header.slot_us},
-            {"bit_depth", c.bit_depth},
-            {"rounding", c.rounding == Rounding::kNearest ? "nearest" : "floor"},
-            {"black_level_dn", c.black_level_dn},
-            {"gain_e_per_dn", c.gain_e_per_dn},
-            {"read_noise_e", c.read_noise_e},
-            {"full_well_e", c.full_well_e},
-            {"electrons_per_unit", c.electrons_per_unit},
-            {"schedule_name", header.schedule_name},
-            {"provenance", header.provenance},
-            {"schedule", to_json(header.schedule)}};
+    Json json{{"rows", header.shape.rows},
+              {"cols", header.shape.cols},
+              {"planes", header.shape.planes},
+              {"slot_us", header.slot_us},
+              {"bit_depth", c.bit_depth},
+              {"rounding", c.rounding == Rounding::kNearest ? "nearest" : "floor"},
+              {"black_level_dn", c.black_level_dn},
+              {"gain_e_per_dn", c.gain_e_per_dn},
+              {"read_noise_e", c.read_noise_e},
+              {"full_well_e", c.full_well_e},
+              {"electrons_per_unit", c.electrons_per_unit},
+              {"schedule_name", header.schedule_name},
+              {"provenance", header.provenance},
+              {"schedule", to_json(header.schedule)}};
+    if (c.dark_e_per_slot != 0 || c.tile.rows != 0) {
+        json["dark_e_per_slot"] = c.dark_e_per_slot;
+        json["calibration_tile"] = {c.tile.rows, c.tile.cols};
+        for (const CalibrationPixel& pixel : c.tile.pixels)
+            json["calibration_tile"].push_back({pixel.responsivity, pixel.conversion_gain});
+    }
+    if (header.cfa != ColourFilter::kNone) json["cfa"] = name_of(header.cfa);
+    return json;
 }
 
 Json to_json(const SamplePacket& packet) {

@@ -52,14 +52,92 @@ TEST(HeaderCodecTest, IntegersOutsideTheirLimitsAreRefused) {
     expect_refused(18, U16{0}, "columns 0 is outside 1..65535");
     expect_refused(20, U8{0}, "planes 0 is outside 1..4");
     expect_refused(20, U8{5}, "planes 5 is outside 1..4");
-    expect_refused(21, U8{1}, "colour filter array 1 is outside 0..0");
+    expect_refused(21, U8{5}, "colour filter array 5 is outside 0..4");
+    expect_refused(85, U8{2}, "calibration section 2 is outside 0..1");
     expect_refused(22, U8{0}, "bit depth 0 is outside 1..16");
     expect_refused(22, U8{17}, "bit depth 17 is outside 1..16");
     expect_refused(23, U8{2}, "rounding 2 is outside 0..1");
     expect_refused(84, U8{2}, "schedule kind 2 is outside 0..1");
     expect_refused(16, std::uint32_t{0xFFFFFFFF}, "rows x columns x planes 4294836225 is outside");
-    for (const std::size_t reserved : {10U, 11U, 85U, 86U, 87U})
+    for (const std::size_t reserved : {10U, 11U, 86U, 87U})
         expect_refused(reserved, U8{1}, "reserved byte is not zero");
+}
+
+StreamHeader calibrated_header() {
+    StreamHeader header = varied_header({4, 5, 1}, 12);
+    header.cfa = ColourFilter::kGbrg;
+    header.calibration.dark_e_per_slot = 0.25;
+    header.calibration.tile = {1, 2, {{1, 1}, {0.125, 8}}};
+    return header;
+}
+
+TEST(HeaderCodecTest, DecodesACalibrationSectionAndAColourFilterArray) {
+    StreamHeader header = calibrated_header();
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    header.calibration.tile = {};
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    header = calibrated_header();
+    header.calibration.dark_e_per_slot = 0;
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    // 8 bytes of dark signal, 4 of the tile's size, 16 a pixel.
+    const auto bytes = encode_header(header, "");
+    header.calibration.tile = {};
+    EXPECT_EQ(encode_header(header, "").size() + 12 + 2 * 16, bytes.size());
+}
+
+TEST(HeaderCodecTest, AColourFilterArrayHasOnePlane) {
+    StreamHeader header = varied_header({4, 5, 3}, 8);
+    header.cfa = ColourFilter::kRggb;
+    expect_parts(message_of<InputError>([&] { return encode_header(header, "a"); }),
+                 {"a: byte 21: a colour filter array has one plane, not 3"});
+}
+
+TEST(HeaderCodecTest, CalibrationOutsideItsLimitsIsNotWritten) {
+    const auto refusal = [](double dark, CalibrationTile tile) {
+        StreamHeader header = calibrated_header();
+        header.calibration.dark_e_per_slot = dark;
+        header.calibration.tile = std::move(tile);
+        return message_of<InputError>([&] { return encode_header(header, "a"); });
+    };
+    expect_parts(refusal(-1, {}), {"dark electrons per slot -1"});
+    expect_parts(refusal(std::nan(""), {}), {"dark electrons per slot nan"});
+    expect_parts(refusal(1, {1, 1, {{0, 1}}}), {"relative responsivity or gain 0"});
+    expect_parts(refusal(1, {1, 1, {{1, 1e7}}}), {"relative responsivity or gain 10000000"});
+    expect_parts(refusal(1, {1, 0, {}}), {"calibration tile of 1 x 0"});
+    expect_parts(refusal(1, {70000, 1, {}}), {"calibration tile of 70000 x 1"});
+    expect_parts(refusal(1, {2, 2, {{1, 1}}}), {"do not match"});
+}
+
+TEST(HeaderCodecTest, ACalibrationSectionThatIsDamagedIsRefusedAtItsPlace) {
+    const Bytes good = encode_header(calibrated_header(), "");
+    const std::size_t section = good.size() - 4 - 12 - 32;
+    const auto refusal = [&](std::size_t offset, auto value) {
+        Bytes bytes = good;
+        store(&bytes[offset], value);
+        seal(bytes);
+        return message_of<InputError>([&] { return decode(bytes); });
+    };
+    const auto at = [](std::size_t offset) { return "byte " + std::to_string(offset) + ": "; };
+    expect_parts(refusal(section, -1.0), {at(section + 8) + "dark electrons"});
+    expect_parts(refusal(section + 8, std::uint16_t{0}),
+                 {at(section + 12) + "calibration tile of 0"});
+    expect_parts(refusal(section + 10, std::uint16_t{3}), {"does not fill its section"});
+    expect_parts(refusal(section + 12, 0.0), {at(section + 28) + "relative responsivity"});
+    expect_parts(refusal(85, std::uint8_t{0}), {"not the sum of its parts"});
+    Bytes nothing = encode_header(varied_header(), "");
+    nothing[85] = 1;
+    seal(nothing);
+    expect_parts(message_of<InputError>([&] { return decode(nothing); }),
+                 {"not the sum of its parts"});
+}
+
+TEST(HeaderCodecTest, ACalibrationSectionThatSaysNothingIsRefused) {
+    StreamHeader header = calibrated_header();
+    header.calibration.tile = {};
+    Bytes bytes = encode_header(header, "");
+    store(&bytes[bytes.size() - 16], 0.0);
+    seal(bytes);
+    expect_parts(message_of<InputError>([&] { return decode(bytes); }), {"says nothing"});
 }
 
 TEST(HeaderCodecTest, NumbersThatAreNotPhysicalAreRefused) {

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// Most pixels of a calibration tile.
+inline constexpr std::size_t kMaxCalibrationPixels = std::size_t{1} << 22U;
+
+/// Whether the calibration says more than the fixed part of a header can.
+[[nodiscard]] bool needs_calibration_section(const Calibration& calibration);
+
+/// The calibration section of a header. \throws InputError at `place` if a value is outside its
+/// limits. Precondition: needs_calibration_section(calibration).
+[[nodiscard]] std::vector<std::uint8_t> encode_calibration(const Calibration& calibration,
+                                                           std::string_view place);
+
+/// The inverse: fills in what the section says. `section` begins at `offset` of the file that
+/// messages call `place`. \throws InputError naming file and offset.
+void decode_calibration(std::span<const std::uint8_t> section, std::size_t offset,
+                        std::string_view place, Calibration& calibration);
+
+}  // namespace stipple
