@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,6 +13,8 @@
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
 #include "apps/subcommands.h"
+#include "apps/timing_arguments.h"
+#include "apps/waveform_file.h"
 #include "core/frame_writer.h"
 
 namespace stipple {
@@ -21,6 +24,7 @@ struct EmulateOptions {
     std::string footage;
     std::string output;
     std::string truth;  ///< empty: none
+    WaveformOptions waveform;
     FootageOptions reading;
     SensorChoice sensor;
 };
@@ -35,6 +39,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape());
     JsonFile json(run);
+    auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
     if (!options.truth.empty())
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
@@ -49,6 +54,9 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (progress.done() == 0) throw_if_stopped();
     if (truth) truth->finish();
     recording.finish();
+    if (waveform)
+        waveform->write(*recording.account(), setup.params.name, 0,
+                        std::min<std::int64_t>(options.waveform.slots, progress.done()));
     json.write(recording_json(recording, progress.seconds()));
     run.say(fmt::format("{}: {}", options.output, recording_text(recording, progress.seconds())));
 }
@@ -83,6 +91,8 @@ void add_emulate(CLI::App& app, Action& action) {
     add_max_value(*command, options->reading.max_value);
     command->add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
         ->type_name("OUT");
+    add_overrun(*command, options->sensor.overrun);
+    add_waveform_arguments(*command, options->waveform);
     command->footer(
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"

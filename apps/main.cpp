@@ -64,7 +64,8 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "stipple " STIPPLE_VERSION);
     app.footer(kExamples);
     app.require_subcommand(1);
-    for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_demo})
+    for (const auto add :
+         {add_synth, add_emulate, add_decode, add_compare, add_info, add_timing, add_demo})
         add(app, action);
     for (CLI::App* command : app.get_subcommands({})) add_run_options(*command, options);
     const auto is_first = [&](const CLI::App* command) { return command->check_name(argv[1]); };

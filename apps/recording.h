@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "apps/sensor_setup.h"
 #include "core/pending_output.h"
 #include "readout/coded_sensor.h"
+#include "readout/readout_account.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {
@@ -22,24 +24,33 @@ class Recording {
               const std::string& footage);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
-    /// writes its samples. \throws DeviceError.
+    /// writes its samples: those that the readout has time for, if rows are dropped.
+    /// \throws DeviceError.
     void expose(std::span<const float> frame);
     /// Puts the file in place. \throws DeviceError.
     void finish();
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    /// Samples in the stream.
+    [[nodiscard]] std::uint64_t samples() const;
     [[nodiscard]] std::uint64_t payload_bits() const;
     /// Light values per sample, both counted. Infinite before the first sample.
     [[nodiscard]] double compression_ratio() const;
-    /// Samples at full scale. NaN before the first sample.
+    /// Share of the samples at full scale, dropped ones too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
+    /// Of the readout; null if the sensor has no timing.
+    [[nodiscard]] ReadoutAccount* account() { return account_ ? &*account_ : nullptr; }
+    [[nodiscard]] const ReadoutAccount* account() const { return account_ ? &*account_ : nullptr; }
 
   private:
+    void write_what_fits(const SlotAccount& slot);
+
     const SensorSetup& setup_;
     PendingOutput output_;
     CodedSensor sensor_;
     StreamWriter writer_;
+    std::optional<ReadoutAccount> account_;
     SamplePacket packet_;
     std::vector<float> mosaic_;  ///< the light behind the colour filters, if there are any
 };

@@ -102,13 +102,25 @@ NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
     return schedule;
 }
 
+SensorDescription read_sensor_file(const SensorChoice& choice) {
+    Config config(find_config("sensors", choice.sensor), settings_of(choice, ""));
+    SensorDescription sensor{.params = read_sensor(config), .timing = {}};
+    sensor.timing = read_timing(config, sensor.params.bit_depth);
+    config.reject_unknown_keys();
+    return sensor;
+}
+
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {
-    Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
-    const SensorParams params = read_sensor(sensor);
-    const std::optional<ReadoutTiming> timing = read_timing(sensor, params.bit_depth);
-    sensor.reject_unknown_keys();
-    const FrameShape shape = array_of(params, footage);
-    return {params, set_up_schedule(choice, shape), shape, footage, timing, choice.seed};
+    const SensorDescription sensor = read_sensor_file(choice);
+    const FrameShape shape = array_of(sensor.params, footage);
+    if (sensor.timing) check_window(*sensor.timing, shape);
+    return {.params = sensor.params,
+            .schedule = set_up_schedule(choice, shape),
+            .shape = shape,
+            .footage = footage,
+            .seed = choice.seed,
+            .timing = sensor.timing,
+            .overrun = choice.overrun};
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {

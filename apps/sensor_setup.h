@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "readout/readout_account.h"
 #include "readout/readout_timing.h"
 #include "readout/schedule_catalogue.h"
 #include "sensor_model/sensor_params.h"
@@ -18,6 +19,13 @@ struct SensorChoice {
     std::string schedule = "random";         ///< name, file, or compiled file (.mem, .hex)
     std::vector<std::string> settings = {};  ///< "key=value" for the sensor, "schedule.key=value"
     std::uint64_t seed = 1;                  ///< of noise and schedule
+    OverrunPolicy overrun = OverrunPolicy::kStretch;
+};
+
+/// What a sensor file says.
+struct SensorDescription {
+    SensorParams params;
+    std::optional<ReadoutTiming> timing;  ///< if it has a section [timing]
 };
 
 /// All that decides what a sensor makes of light.
@@ -26,9 +34,13 @@ struct SensorSetup {
     NamedSchedule schedule;
     FrameShape shape;    ///< of the array: one plane if it has a colour filter array
     FrameShape footage;  ///< of the light
-    std::optional<ReadoutTiming> timing = {};  ///< if the sensor file has a section [timing]
     std::uint64_t seed = 1;
+    std::optional<ReadoutTiming> timing = {};
+    OverrunPolicy overrun = OverrunPolicy::kStretch;
 };
+
+/// The chosen sensor. \throws InputError naming file, line and key of what cannot be used.
+[[nodiscard]] SensorDescription read_sensor_file(const SensorChoice& choice);
 
 /// The chosen schedule, made for an array of `shape`. \throws InputError naming file, line and key
 /// of what cannot be used.

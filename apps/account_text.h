@@ -1,0 +1,24 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "readout/readout_account.h"
+#include "readout/readout_rate.h"
+
+namespace stipple {
+
+/// What a recording cost the chip, for programs: the key `readout` of `emulate` in docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json account_json(const ReadoutAccount& account);
+
+/// The same in a few lines for people.
+[[nodiscard]] std::string account_text(const ReadoutAccount& account);
+
+/// How fast a sensor reads, for programs: the keys of `timing` in docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json rate_json(const ReadoutRate& rate,
+                                               const ReadoutAccount& account);
+
+/// The same as a table for people.
+[[nodiscard]] std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account);
+
+}  // namespace stipple

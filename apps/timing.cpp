@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "apps/account_text.h"
+#include "apps/json_file.h"
+#include "apps/sensor_setup.h"
+#include "apps/size_argument.h"
+#include "apps/subcommands.h"
+#include "apps/timing_arguments.h"
+#include "core/config.h"
+#include "core/error.h"
+#include "core/joined.h"
+
+namespace stipple {
+namespace {
+
+struct TimingOptions {
+    SensorChoice sensor;
+    FrameShape roi{.rows = 0, .cols = 0, .planes = 1};  ///< 0: the whole array
+    WaveformOptions waveform;
+};
+
+/// Names of the sensors beside the default one whose files have a section [timing].
+std::set<std::string> sensors_with_timing() {
+    std::set<std::string> names;
+    const auto folder = find_config("sensors", SensorChoice().sensor).parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() != ".toml") continue;
+        Config config(entry.path(), {});
+        if (read_timing(config, 1)) names.insert(entry.path().stem().string());
+    }
+    return names;
+}
+
+SensorDescription read_timed_sensor(const SensorChoice& choice) {
+    SensorDescription sensor = read_sensor_file(choice);
+    if (!sensor.timing)
+        throw InputError(fmt::format("sensor '{}'", choice.sensor),
+                         fmt::format("has no section [timing]; these have one: {}",
+                                     joined(sensors_with_timing())));
+    return sensor;
+}
+
+void time_readout(const TimingOptions& options, const RunOptions& run) {
+    const SensorDescription sensor = read_timed_sensor(options.sensor);
+    const ReadoutTiming& timing = *sensor.timing;
+    FrameShape shape = options.roi;
+    if (shape.rows == 0) shape = {.rows = timing.rows, .cols = timing.cols, .planes = 1};
+    check_window(timing, shape);
+    JsonFile json(run);
+    auto waveform = waveform_file(options.waveform, run.force, true);
+    const NamedSchedule named = set_up_schedule(options.sensor, shape);
+    const SlotBudget budget{slot_clocks(timing, sensor.params.slot_us), OverrunPolicy::kStretch};
+    ReadoutAccount account(timing, named.schedule, shape, budget);
+    const ReadoutRate rate = rate_of(timing, named.schedule, shape);
+    if (waveform)
+        waveform->write(account, sensor.params.name, account.first_steady_slot(),
+                        std::min(options.waveform.slots, named.schedule.period_slots()));
+    nlohmann::ordered_json figures{{"sensor", sensor.params.name}, {"schedule", named.name}};
+    figures.update(rate_json(rate, account));
+    json.write(figures);
+    run.say(fmt::format("sensor       {}, schedule {}\n{}", sensor.params.name, named.name,
+                        rate_text(rate, account)));
+}
+
+}  // namespace
+
+void add_timing(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("timing", "How fast a sensor reads, in full and coded");
+    const auto options = std::make_shared<TimingOptions>();
+    command->add_option("--sensor", options->sensor.sensor, "sensor with a section [timing]")
+        ->type_name("NAME|FILE")
+        ->required();
+    command->add_option("--schedule", options->sensor.schedule, "who is read when (random)")
+        ->type_name("NAME|FILE");
+    command
+        ->add_option_function<std::string>(
+            "--roi",
+            [options](const std::string& text) {
+                parse_size("--roi", text, 1, 65535, options->roi);
+            },
+            "width and height of what is read (the whole array)")
+        ->type_name("WxH");
+    command
+        ->add_option("--set", options->sensor.settings,
+                     "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command->add_option("--seed", options->sensor.seed, "of the schedule (1)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
+    add_waveform_arguments(*command, options->waveform);
+    command->footer(
+        "Examples:\n"
+        "  stipple timing --sensor lux1310\n"
+        "  stipple timing --sensor vita --roi 640x480 --schedule tiled --json -\n"
+        "  stipple timing --sensor lux1310 --set timing.addressing=group --vcd readout.vcd");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { time_readout(*options, run); };
+    });
+}
+
+}  // namespace stipple

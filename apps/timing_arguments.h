@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/waveform_file.h"
+#include "readout/readout_account.h"
+
+namespace CLI {
+class App;
+}
+
+namespace stipple {
+
+/// `--vcd` and `--vcd-slots`.
+struct WaveformOptions {
+    std::string file;  ///< empty: none
+    int slots = 16;
+};
+void add_waveform_arguments(CLI::App& command, WaveformOptions& options);
+
+/// The waveform file that is asked for, if any. \throws InputError as WaveformFile, or if the
+/// sensor has no timing to show.
+[[nodiscard]] std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
+                                                        bool has_timing);
+
+/// `--overrun stretch|drop`.
+void add_overrun(CLI::App& command, OverrunPolicy& policy);
+
+}  // namespace stipple

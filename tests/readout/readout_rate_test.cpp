@@ -1,0 +1,97 @@
+#include "readout/readout_rate.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "readout/schedule_catalogue.h"
+#include "tests/readout/random_readout.h"
+#include "tests/readout/sensor_timing.h"
+
+namespace stipple {
+namespace {
+
+TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
+    const auto timing = sensor_timing("lux1310");
+    const auto rate = rate_of(timing, full_schedule(4, 4), {1024, 1280, 1});
+    EXPECT_EQ(rate.full.total, 84143);
+    EXPECT_EQ(rate.slowest.clocks, 84143);
+    EXPECT_EQ(rate.slowest_phase, 3);
+    EXPECT_DOUBLE_EQ(rate.gain, 1);
+    EXPECT_NEAR(rate.full_hz, 1069.6, 0.1);
+    // In the other three slots, only the exposure code is loaded.
+    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 2700) / 4.0);
+    EXPECT_NEAR(rate.full_energy_pj, 1024 * (100 + 1280 * (100 + 12 * 10.0)),
+                1);  // config/sensors/lux1310.toml
+}
+
+// docs/readout_timing.md: per-pixel random codes on a LUX1310 with channels that skip columns take
+// about 31 of the 82 clocks of a row, evenly spread ones 24.
+TEST(ReadoutRateTest, RandomCodesOnLux1310) {
+    const auto timing = sensor_timing("lux1310");
+    const FrameShape shape{256, 1280, 1};
+    const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
+    EXPECT_EQ(rate.even.row, 24);
+    EXPECT_NEAR(rate.gain, 82 / 31.0, 0.1);
+    EXPECT_GT(rate.even_gain, 3.3);
+    EXPECT_LT(rate.gain, rate.even_gain);
+}
+
+// With groups of 16 x 2 pixels, nearly every group has some pixel due: all is transferred.
+TEST(ReadoutRateTest, RandomCodesGainNothingInGroupsOf16By2) {
+    const auto timing = sensor_timing("lux1310", {"timing.addressing=group"});
+    const FrameShape shape{128, 1280, 1};
+    const auto rate = rate_of(timing, random_schedule(128, 1280, kPaperExposureSlots, 1), shape);
+    EXPECT_NEAR(rate.gain, 1, 0.01);
+}
+
+// A tile of one row and 15 columns on 3 channels, where pixel c is due in slot c: in each slot a
+// single channel has all the columns to read. With 4 channels they share them.
+TEST(ReadoutRateTest, ATileInStepWithTheChannelsIsSlow) {
+    std::vector<Exposure> exposures;
+    std::vector<std::uint32_t> first{0};
+    for (std::uint32_t col = 0; col < 15; ++col) {
+        exposures.push_back({col, 1});
+        first.push_back(col + 1);
+    }
+    const ExposureSchedule schedule(1, 15, 15, first, exposures);
+    ReadoutTiming timing;
+    timing.clock_hz = 1000;
+    timing.rows = 1;
+    timing.cols = 60;
+    timing.addressing.channels = 3;
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 4);
+    timing.addressing.channels = 4;
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 1);
+}
+
+TEST(ReadoutRateTest, NoScheduleThatReadsEveryRowBeatsTheBound) {
+    int tested = 0;
+    for (std::uint32_t seed = 0; seed < 300; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        const FrameShape shape{draw(1, timing.rows), timing.cols, 1};
+        const auto schedule = random_schedule(draw(1, 5), timing.cols, std::vector{1, 2, 1}, seed);
+        std::vector<RowLoad> loads;
+        const auto all_rows = static_cast<std::size_t>(shape.rows + timing.dark_rows);
+        RowLoads row_loads(timing, schedule, shape);
+        bool every_row = true;
+        for (int slot = 4; slot < 8; ++slot) {
+            row_loads.list(slot, loads);
+            every_row = every_row && loads.size() == all_rows;
+        }
+        // A chip that settles less for fewer columns may gain by uneven rows.
+        if (!every_row || !timing.settle_clocks.empty()) continue;
+        const auto rate = rate_of(timing, schedule, shape);
+        EXPECT_LE(rate.gain, rate.even_gain * (1 + 1e-12)) << "seed " << seed;
+        ++tested;
+    }
+    EXPECT_GT(tested, 30);
+}
+
+TEST(ReadoutRateTest, AScheduleThatReadsNothingIsRefused) {
+    const ExposureSchedule nothing(1, 1, 1, {0, 0}, {});
+    EXPECT_THROW(static_cast<void>(rate_of(sensor_timing("vita"), nothing, {4, 4, 1})), InputError);
+}
+
+}  // namespace
+}  // namespace stipple
