@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from program import INPUT, OK, PROGRAM, USAGE, ProgramTest
 
-COMMANDS = ("synth", "emulate", "decode", "compare", "info", "demo")
+COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
 
 

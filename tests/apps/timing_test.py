@@ -1,0 +1,164 @@
+"""How fast sensors read: `timing`, and the readout's account and waveform of `emulate`."""
+
+import re
+import shutil
+import subprocess
+import unittest
+
+import numpy as np
+from program import INPUT, USAGE, ProgramTest
+
+SENSORS = ("cmv4000", "imx273", "imx296", "lux1310", "lux2100", "plc720", "sp5000", "vita")
+SMALL = ["--roi", "64x32"]
+
+
+class TimingTest(ProgramTest):
+    def test_figures_of_a_conventional_camera_are_the_published_ones(self):
+        for sensor, clocks, hertz in (("lux1310", 84143, 90e6), ("imx296", 1118 * 1100, 74.25e6),
+                                      ("vita", 1024 * 392, 62e6)):
+            figures = self.figures("timing", "--sensor", sensor, "--schedule", "full4x")
+            self.assertEqual(figures["frame_clocks"], clocks)
+            self.assertAlmostEqual(figures["frame_time_s"], clocks / hertz, places=12)
+            self.assertAlmostEqual(figures["full_readout_hz"], hertz / clocks, places=6)
+            self.assertAlmostEqual(figures["coded_readout_hz"], hertz / clocks, places=6)
+            self.assertEqual(figures["gain"], 1)
+
+    def test_every_sensor_has_figures_that_agree_with_one_another(self):
+        for sensor in SENSORS:
+            it = self.figures("timing", "--sensor", sensor, *SMALL)
+            self.assertAlmostEqual(it["gain"], it["coded_readout_hz"] / it["full_readout_hz"])
+            self.assertLessEqual(it["gain"], it["even_gain"] * 1.000001)
+            self.assertIn(it["limited_by"], ("adc", "link", "row_overhead", "code_load"))
+            self.assertLessEqual(it["mean_slot_clocks"], it["slowest_slot_clocks"])
+            self.assertEqual(it["fits_slot"], it["slowest_slot_clocks"] <= it["slot_clocks"])
+            self.assertEqual(it["schedule_memory_bits"], 64 * 32 * 15)
+            for share in ("row_utilisation", "adc_utilisation", "link_utilisation"):
+                self.assertTrue(0 < it[share] <= 1, (sensor, share))
+            for energy in ("full_energy_uj", "slot_energy_uj"):
+                self.assertGreater(it[energy], 0)
+
+    def test_a_sensor_without_timing_is_refused_with_those_that_have_it(self):
+        message = self.fails(INPUT, ["paper", "[timing]"], "timing", "--sensor", "paper")
+        for sensor in SENSORS:
+            self.assertIn(sensor, message)
+
+    def test_impossible_timing_names_the_constraint(self):
+        for parts, arguments in (
+                (["2000 x 100", "1280 x 1024"], ["--roi", "2000x100"]),
+                (["7 channels", "1280 columns"], ["--set", "timing.channels=7"]),
+                (["timing.clock_hz", "1.."], ["--set", "timing.clock_hz=0"]),
+                (["0 clocks"], ["--set", "timing.io_clocks=0", "--set",
+                                "timing.clocks_per_column=0"]),
+                (["slot_us", "clock"], ["--set", "slot_us=0.001", "--set", "timing.clock_hz=1"])):
+            self.fails(INPUT, parts, "timing", "--sensor", "lux1310", *arguments)
+        for roi in ("12", "0x5", "5x", "axb"):
+            self.fails(USAGE, ["--roi"], "timing", "--sensor", "lux1310", "--roi", roi)
+        self.fails(USAGE, ["--sensor"], "timing")
+
+
+class ReadoutOfARecordingTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write_flat("light.npy", slots=20, rows=32, cols=64)
+
+    def emulate(self, *arguments):
+        return self.figures("emulate", "light.npy", "-o", "clip.stipple", "--force", "--sensor",
+                            "lux1310", *arguments)
+
+    def test_the_account_is_that_of_all_slots(self):
+        figures = self.emulate()
+        readout = figures["readout"]
+        self.assertEqual(readout["slot_clocks"], 45000)  # 500 us at 90 MHz
+        self.assertEqual(readout["clocks"], 20 * 45000)
+        self.assertEqual((readout["overrun_slots"], readout["dropped_samples"]), (0, 0))
+        self.assertEqual(readout["transferred_samples"], figures["samples"])
+        self.assertEqual(readout["link_bits"], figures["payload_bits"])
+        self.assertAlmostEqual(readout["sensor_slots_hz"], 2000)
+        self.assertGreater(readout["energy_uj"], 0)
+
+    def test_a_sensor_without_timing_has_no_account(self):
+        self.assertNotIn("readout", self.figures("emulate", "light.npy", "-o", "a.stipple"))
+
+    def test_rows_that_do_not_fit_are_dropped_and_the_rest_decodes(self):
+        whole = self.emulate("--set", "timing.code_load_clocks=0")
+        cut = self.emulate("--set", "timing.code_load_clocks=0", "--set", "slot_us=6",
+                           "--overrun", "drop")
+        readout = cut["readout"]
+        self.assertGreater(readout["overrun_slots"], 0)
+        self.assertEqual(readout["clocks"], 20 * 540)
+        self.assertEqual(cut["samples"] + readout["dropped_samples"], whole["samples"])
+        self.assertEqual(cut["payload_bits"], 12 * cut["samples"])
+        report = self.figures("info", "clip.stipple")
+        self.assertEqual(report["samples"], cut["samples"])
+        self.assertEqual((report["slots"], report["missing_slots"], report["damage"]), (20, 0, []))
+        self.assertGreater(report["packets"], 20)
+        for method in ("naive", "fast"):
+            self.succeed("decode", "clip.stipple", "-o", "out.npy", "--method", method, "--force",
+                         "--strict")
+            video = self.array("out.npy")
+            self.assertEqual(video.shape, (20, 32, 64))
+            self.assertTrue(np.isfinite(video).all())
+            np.testing.assert_allclose(video[8:, :8].mean(), 0.2, rtol=0.05)
+
+    def test_overruns_stretch_their_slots_and_lose_nothing(self):
+        whole = self.emulate()
+        stretched = self.emulate("--set", "slot_us=6", "--overrun", "stretch")
+        self.assertEqual(stretched["samples"], whole["samples"])
+        readout = stretched["readout"]
+        self.assertEqual(readout["overrun_slots"], 20)  # the code takes 30 us to load
+        self.assertEqual(readout["clocks"], 20 * 2700)
+        text = self.succeed("emulate", "light.npy", "-o", "b.stipple", "--sensor", "lux1310",
+                            "--set", "slot_us=6")
+        self.assertIn("--overrun drop", text)
+
+    def test_what_dropping_cannot_help_is_refused(self):
+        self.fails(INPUT, ["slot_us", "exposure code"], "emulate", "light.npy", "-o", "x.stipple",
+                   "--sensor", "lux1310", "--set", "slot_us=6", "--overrun", "drop")
+        self.fails(INPUT, ["1280 x 1024"], "emulate",
+                   self.write_flat("tall.npy", slots=1, rows=1025), "-o", "x.stipple", "--sensor",
+                   "lux1310")
+        self.fails(USAGE, ["--overrun"], "emulate", "light.npy", "-o", "x.stipple", "--overrun",
+                   "ignore")
+
+
+class WaveformTest(ProgramTest):
+    def changes(self, name):
+        """Number of times, and the signals, of a VCD file."""
+        text = (self.folder / name).read_text()
+        return (len(re.findall(r"^#\d+$", text, re.M)),
+                re.findall(r"^\$var wire \d+ \S+ (\w+)", text, re.M))
+
+    def test_a_waveform_reader_takes_the_file(self):
+        for tool in ("vcd2fst", "fst2vcd"):
+            if shutil.which(tool) is None:
+                self.skipTest(f"there is no {tool}; it is in the Debian package gtkwave")
+        self.succeed("timing", "--sensor", "lux1310", *SMALL, "--vcd", "readout.vcd")
+        for command in (["vcd2fst", "readout.vcd", "readout.fst"],
+                        ["fst2vcd", "readout.fst", "-o", "back.vcd"]):
+            subprocess.run(command, cwd=self.folder, check=True, capture_output=True, timeout=60)
+        times, signals = self.changes("readout.vcd")
+        self.assertEqual(self.changes("back.vcd"), (times, signals))
+        self.assertGreater(times, 100)
+        for signal in ("slot_start", "row_select", "adc_busy", "link_valid", "channel_busy",
+                       "code_load"):
+            self.assertIn(signal, signals)
+
+    def test_a_waveform_ends_after_the_slots_asked_for(self):
+        self.write_flat("light.npy", slots=6, rows=32, cols=64)
+        for slots, expected in ((2, 2), (16, 6)):
+            self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--sensor", "lux1310",
+                         "--vcd", "readout.vcd", "--vcd-slots", slots, "--force")
+            last = (self.folder / "readout.vcd").read_text().split("#")[-1]
+            self.assertEqual(int(last), expected * 500 * 10**6)  # ps
+
+    def test_files_that_cannot_be_written_are_refused_before_the_work(self):
+        self.write_flat("light.npy", slots=2)
+        self.fails(INPUT, ["--vcd", "[timing]"], "emulate", "light.npy", "-o", "a.stipple", "--vcd",
+                   "readout.vcd")
+        self.succeed("timing", "--sensor", "vita", *SMALL, "--vcd", "readout.vcd")
+        self.fails(INPUT, ["readout.vcd", "--force"], "timing", "--sensor", "vita", *SMALL,
+                   "--vcd", "readout.vcd")
+
+
+if __name__ == "__main__":
+    unittest.main()
