@@ -10,9 +10,7 @@
 namespace stipple {
 
 /// Tells the chip what to do in each slot: which pixels collect light and which are read at its
-/// end, row by row in scan order. It says nothing of time within a slot. A timing model belongs
-/// between it and CodedSensor: each row's list is what one row of readout commands carries, whose
-/// cycles a model gives (`earliest_cycle`) and checks (`issue`).
+/// end, row by row in scan order. When, within the slot, is the matter of slot_readout.h.
 class Sequencer {
   public:
     /// `schedule` must outlive the sequencer. Precondition: it needs two charge stores at most.
