@@ -92,12 +92,20 @@ FrameShape array_of(const SensorParams& params, FrameShape footage) {
     return {footage.rows, footage.cols, 1};
 }
 
+/// How the chosen sensor addresses columns, if its file says.
+ColumnAddressing addressing_of(const SensorChoice& choice) {
+    Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
+    constexpr int kAnyBits = 8;
+    const std::optional<ReadoutTiming> timing = read_timing(sensor, kAnyBits);
+    return timing ? timing->addressing : ColumnAddressing{};
+}
+
 }  // namespace
 
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
     if (is_program(choice.schedule)) return read_program(choice);
     Config config(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
-    NamedSchedule schedule = read_schedule(config, shape, choice.seed);
+    NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing_of(choice));
     config.reject_unknown_keys();
     return schedule;
 }

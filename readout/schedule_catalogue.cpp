@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "readout/hardware_tiled.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/random_codes.h"
@@ -20,6 +21,7 @@ constexpr std::size_t kLongestName = 64;                 ///< bytes in a stream 
 constexpr std::size_t kMostRandomExposures = 1U << 25U;  ///< of a stream (docs/stream_format.md)
 constexpr std::size_t kMostTileExposures = 1U << 24U;    ///< the same
 constexpr int kLargestTileSide = 256;
+constexpr int kMostChannels = 4096;  ///< of a sensor
 
 std::vector<int> read_exposure_slots(Config& config) {
     constexpr char kKey[] = "exposure_slots";
@@ -163,36 +165,75 @@ NamedSchedule read_code(Config& config) {
     return {"code", {}, code_schedule(size, code, config.place("code"))};
 }
 
+/// What a schedule is made for.
+struct Made {
+    FrameShape shape;
+    std::uint64_t seed;
+    ColumnAddressing addressing;
+};
+
+ColumnAddressing read_addressing(Config& config, ColumnAddressing addressing) {
+    using enum ColumnAddressing::Kind;
+    const std::string kind =
+        config.choice("addressing", addressing.kind == kGroup ? "group" : "skip_channel",
+                      {"skip_channel", "group"});
+    addressing.kind = kind == "group" ? kGroup : kSkipChannel;
+    addressing.channels = read_int(config, "channels", addressing.channels, kMostChannels);
+    addressing.group_cols = read_int(config, "group_cols", addressing.group_cols, kLongestPeriod);
+    addressing.group_rows = read_int(config, "group_rows", addressing.group_rows, kLongestPeriod);
+    return addressing;
+}
+
+NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
+    using enum TileArrangement;
+    const auto side = [&](const char* key) {
+        return static_cast<int>(config.integer(key, 0, 0, kLongestHardwareSide));
+    };
+    HardwareTile tile{.addressing = read_addressing(config, made.addressing),
+                      .tile_rows = side("tile_rows"),
+                      .tile_cols = side("tile_cols"),
+                      .array_cols = made.shape.cols};
+    const std::string arrangement =
+        config.choice("arrangement", "auto", {"auto", "lattice", "scatter", "random"});
+    tile.arrangement = arrangement == "lattice"   ? kLattice
+                       : arrangement == "scatter" ? kScatter
+                       : arrangement == "random"  ? kRandom
+                                                  : kAuto;
+    const std::vector<int> lengths = read_exposure_slots(config);
+    return {"hardware_tiled", {}, at_key(config, "kind", [&] {
+                return hardware_tiled_schedule(tile, lengths, made.seed);
+            })};
+}
+
 struct Kind {
     const char* name;
-    std::function<NamedSchedule(Config&, FrameShape, std::uint64_t)> read;
+    std::function<NamedSchedule(Config&, const Made&)> read;
 };
 
 const std::vector<Kind>& kinds() {
     static const std::vector<Kind> all = {
-        {"random", read_random},
-        {"tiled", [](Config& c, FrameShape, std::uint64_t seed) { return read_tiled(c, seed); }},
-        {"full", [](Config& c, FrameShape, std::uint64_t) { return read_full(c); }},
-        {"cell", [](Config& c, FrameShape, std::uint64_t) { return read_cell(c); }},
-        {"rolling",
-         [](Config& c, FrameShape shape, std::uint64_t) { return read_rolling(c, shape); }},
-        {"scattered",
-         [](Config& c, FrameShape, std::uint64_t seed) { return read_scattered(c, seed); }},
-        {"flutter",
-         [](Config& c, FrameShape, std::uint64_t seed) { return read_flutter(c, seed); }},
-        {"code", [](Config& c, FrameShape, std::uint64_t) { return read_code(c); }},
+        {"random", [](Config& c, const Made& m) { return read_random(c, m.shape, m.seed); }},
+        {"tiled", [](Config& c, const Made& m) { return read_tiled(c, m.seed); }},
+        {"hardware_tiled", read_hardware_tiled},
+        {"full", [](Config& c, const Made&) { return read_full(c); }},
+        {"cell", [](Config& c, const Made&) { return read_cell(c); }},
+        {"rolling", [](Config& c, const Made& m) { return read_rolling(c, m.shape); }},
+        {"scattered", [](Config& c, const Made& m) { return read_scattered(c, m.seed); }},
+        {"flutter", [](Config& c, const Made& m) { return read_flutter(c, m.seed); }},
+        {"code", [](Config& c, const Made&) { return read_code(c); }},
     };
     return all;
 }
 
 }  // namespace
 
-NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed) {
+NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
+                            const ColumnAddressing& addressing) {
     std::vector<std::string> names;
     for (const Kind& kind : kinds()) names.emplace_back(kind.name);
     const std::string kind = config.choice("kind", "random", names);
     const auto found = std::ranges::find(kinds(), kind, &Kind::name);
-    NamedSchedule result = found->read(config, shape, seed);
+    NamedSchedule result = found->read(config, {shape, seed, addressing});
     result.name = config.text("name", kind);
     if (result.name.size() > kLongestName)
         throw InputError(config.place("name"), fmt::format("has {} bytes; at most {} fit a stream",

@@ -7,6 +7,7 @@
 #include "core/config.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "readout/column_addressing.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -20,8 +21,10 @@ struct NamedSchedule {
 
 /// The schedule that a file of config/schedules describes (key `kind`, docs/schedules.md), made for
 /// an array of `shape` with `seed`. Other keys are left for the caller's `reject_unknown_keys`.
-/// \throws InputError naming file, line and key.
-[[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed);
+/// Schedules made for the hardware suit `addressing`, the sensor's, where the file says nothing
+/// else. \throws InputError naming file, line and key.
+[[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
+                                          const ColumnAddressing& addressing = {});
 
 /// A seeded tile in which every pixel repeats its own permutation of `exposure_slots` without
 /// gaps, and the number of pixels due per slot is as even as possible over the period.

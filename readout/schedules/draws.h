@@ -9,7 +9,7 @@ namespace stipple {
 
 /// Random numbers one after the other, for the making of schedules. Each generator has a `plane` of
 /// its own: 0 is `random_schedule`, 1 `tiled_schedule`, 2 `scattered_schedule`, 3
-/// `flutter_schedule`.
+/// `flutter_schedule`, 4 `hardware_tiled_schedule`.
 class Draws {
   public:
     Draws(std::uint64_t seed, std::uint32_t plane) : seed_(seed), plane_(plane) {}

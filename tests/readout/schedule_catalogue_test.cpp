@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "readout/hardware_tiled.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/random_codes.h"
 #include "tests/core/temporary_folder.h"
@@ -102,6 +103,33 @@ TEST(ScheduleCatalogueTest, ReadsEveryKey) {
     EXPECT_EQ(read("full4x", {"open_slots=2", "period_slots=7"}).schedule, full_schedule(2, 7));
 }
 
+TEST(ScheduleCatalogueTest, HardwareTiledSuitsTheSensorUnlessTheFileSaysElse) {
+    const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "config/schedules";
+    const ColumnAddressing sensor{ColumnAddressing::Kind::kGroup, 16, 8, 2};
+    const auto made = [&](const std::vector<std::string>& overrides) {
+        Config config(folder / "hardware_tiled.toml", overrides);
+        NamedSchedule schedule = read_schedule(config, kShape, kSeed, sensor);
+        config.reject_unknown_keys();
+        return schedule;
+    };
+    const auto designed = [](HardwareTile tile) {
+        tile.array_cols = kShape.cols;
+        return hardware_tiled_schedule(tile, kPaperExposureSlots, kSeed);
+    };
+    EXPECT_EQ(made({}).name, "hardware_tiled");
+    EXPECT_EQ(made({}).schedule, designed({.addressing = sensor}));
+    EXPECT_EQ(made({"addressing=skip_channel"}).schedule,
+              designed({.addressing = {.channels = 16}}));
+    EXPECT_EQ(made({"channels=4", "group_cols=2", "group_rows=1"}).schedule,
+              designed({.addressing = {ColumnAddressing::Kind::kGroup, 4, 2, 1}}));
+    EXPECT_EQ(made({"arrangement=scatter", "tile_rows=4", "tile_cols=16"}).schedule,
+              designed({.addressing = sensor,
+                        .tile_rows = 4,
+                        .tile_cols = 16,
+                        .arrangement = TileArrangement::kScatter}));
+    EXPECT_EQ(read("hardware_tiled").schedule, designed({}));
+}
+
 TEST(ScheduleCatalogueTest, NamesTheKeyThatIsWrong) {
     expect_parts(problem_of("random", {"kind=radnom"}), {"kind", "radnom", "tiled"});
     expect_parts(problem_of("random", {"exposure_slots=[1,65]"}), {"exposure_slots", "65"});
@@ -109,6 +137,13 @@ TEST(ScheduleCatalogueTest, NamesTheKeyThatIsWrong) {
     expect_parts(problem_of("tiled", {"exposure_slots=[]"}), {"exposure_slots", "give 1 to 255"});
     expect_parts(problem_of("tiled", {"tile_rows=0"}), {"tile_rows", "1..256"});
     expect_parts(problem_of("tiled", {"tile_cols=257"}), {"tile_cols", "1..256"});
+    expect_parts(problem_of("hardware_tiled", {"addressing=skip"}), {"addressing", "group"});
+    expect_parts(problem_of("hardware_tiled", {"channels=0"}), {"channels", "1..4096"});
+    expect_parts(problem_of("hardware_tiled", {"group_cols=0"}), {"group_cols", "1..65535"});
+    expect_parts(problem_of("hardware_tiled", {"tile_rows=-1"}), {"tile_rows", "0..16384"});
+    expect_parts(problem_of("hardware_tiled", {"arrangement=even"}), {"arrangement", "lattice"});
+    expect_parts(problem_of("hardware_tiled", {"exposure_slots=[64,64,64,64,64,64,64,64,64]"}),
+                 {"exposure_slots", "576", "512"});
     expect_parts(problem_of("full4x", {"open_slots=5"}), {"open_slots", "period_slots"});
     expect_parts(problem_of("full4x", {"open_slots=65"}), {"open_slots", "1..64"});
     expect_parts(problem_of("full4x", {"period_slots=65536"}), {"period_slots", "1..65535"});

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+#include "readout/schedules/draws.h"
+
+namespace stipple {
+
+/// What one group of pixels repeats: a cyclic order of the lengths, from a slot on.
+struct GroupCode {
+    std::uint16_t order = 0;
+    std::uint16_t first_slot = 0;
+
+    bool operator==(const GroupCode&) const = default;
+};
+
+/// Codes of the groups of a tile, row by row.
+struct GroupTile {
+    int rows = 0;
+    int cols = 0;
+    std::vector<GroupCode> codes;
+
+    GroupTile(int tile_rows, int tile_cols)
+        : rows(tile_rows),
+          cols(tile_cols),
+          codes(static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_cols)) {}
+    [[nodiscard]] GroupCode& at(int row, int col) {
+        return codes[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
+                     static_cast<std::size_t>(col)];
+    }
+    [[nodiscard]] const GroupCode& at(int row, int col) const {
+        return codes[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
+                     static_cast<std::size_t>(col)];
+    }
+};
+
+/// The codes that lengths allow: up to kMostOrders cyclic orders of them, each from every slot of
+/// the period. Orders are sorted so that those in which long and short exposures alternate come
+/// first (least sum of products of neighbours): then no time is far from a short exposure.
+class CodeSet {
+  public:
+    static constexpr std::size_t kMostOrders = 6;  ///< all there are of four different lengths
+    /// `likeness` of equal codes without repeated lengths is this times the number of lengths.
+    static constexpr std::int32_t kUnit = 1024;
+
+    /// Precondition: 1..16 lengths of 1..64 slots. `draws` choose orders where there are very many.
+    CodeSet(std::span<const int> exposure_slots, Draws& draws);
+
+    [[nodiscard]] int period() const { return period_; }
+    [[nodiscard]] int orders() const { return static_cast<int>(orders_.size()); }
+    /// Orders in which the lengths alternate as well as in the first one: its mirror image, say.
+    [[nodiscard]] int best_orders() const { return best_orders_; }
+    [[nodiscard]] std::size_t lengths() const { return lengths_; }
+
+    /// Slots at whose end a code is read that begins in slot 0; one per length.
+    [[nodiscard]] std::span<const int> due(int order) const {
+        return due_[static_cast<std::size_t>(order)];
+    }
+
+    /// How much light two codes share: the sum over exposures e of one and f of the other of
+    /// overlap(e, f)^2 / (|e| |f|), in 1 / kUnit. Summed over neighbours this is the frame
+    /// potential of their exposures (J. J. Benedetto, M. Fickus, "Finite normalized tight frames",
+    /// Advances in Computational Mathematics 18, 2003): least where the exposures tell most of the
+    /// light.
+    [[nodiscard]] std::int32_t likeness(GroupCode a, GroupCode b) const {
+        const int shift = b.first_slot - a.first_slot;
+        const std::size_t pair = a.order * orders_.size() + b.order;
+        return likeness_[pair * static_cast<std::size_t>(period_) +
+                         static_cast<std::size_t>(shift < 0 ? shift + period_ : shift)];
+    }
+
+    /// Appends the exposures of a code.
+    void append(GroupCode code, std::vector<Exposure>& exposures) const;
+
+  private:
+    void choose_orders(std::span<const int> exposure_slots, Draws& draws);
+    void list_due();
+    void tabulate_likeness();
+
+    std::size_t lengths_;
+    int period_;
+    int best_orders_ = 1;
+    std::vector<std::vector<int>> orders_;  ///< lengths in the order in which they follow
+    std::vector<std::vector<int>> due_;
+    std::vector<std::int32_t> likeness_;  ///< by order, order, shift
+};
+
+}  // namespace stipple
