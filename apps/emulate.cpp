@@ -77,7 +77,7 @@ void add_emulate(CLI::App& app, Action& action) {
         ->type_name("NAME|FILE");
     command
         ->add_option("--schedule", options->sensor.schedule,
-                     "who exposes when: random, tiled, full4x, full1x (random)")
+                     "who exposes when: docs/schedules.md lists the names (random)")
         ->type_name("NAME|FILE");
     command
         ->add_option("--set", options->sensor.settings,

@@ -56,6 +56,13 @@ int run(const Action& action, const RunOptions& options) {
     return fail(static_cast<ExitCode>(kSignal + stop_signal()), "stopped; the output is shorter");
 }
 
+/// To each subcommand that does something, however deep.
+void add_run_options_to_all(CLI::App& app, RunOptions& options) {
+    for (CLI::App* command : app.get_subcommands({}))
+        command->get_subcommands({}).empty() ? add_run_options(*command, options)
+                                             : add_run_options_to_all(*command, options);
+}
+
 int main(int argc, char** argv) {
     RunOptions options;
     Action action;
@@ -64,10 +71,10 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "stipple " STIPPLE_VERSION);
     app.footer(kExamples);
     app.require_subcommand(1);
-    for (const auto add :
-         {add_synth, add_emulate, add_decode, add_compare, add_info, add_timing, add_demo})
+    for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_schedule,
+                           add_timing, add_demo})
         add(app, action);
-    for (CLI::App* command : app.get_subcommands({})) add_run_options(*command, options);
+    add_run_options_to_all(app, options);
     const auto is_first = [&](const CLI::App* command) { return command->check_name(argv[1]); };
     if (argc > 1 && argv[1][0] != '-' && std::ranges::none_of(app.get_subcommands({}), is_first))
         return fail(kUsage,

@@ -24,31 +24,6 @@ constexpr TypeName kTypes[] = {{"|u1", NpyType::kUint8},  {"<u1", NpyType::kUint
                                {"<u2", NpyType::kUint16}, {"<f2", NpyType::kHalf},
                                {"<f4", NpyType::kFloat},  {"<f8", NpyType::kDouble}};
 
-/// The dictionary of the header, and where the data begin.
-struct HeaderText {
-    std::string_view dictionary;
-    std::size_t data_offset = 0;
-};
-
-HeaderText find_dictionary(std::string_view start, std::string_view place) {
-    if (!start.starts_with(kMagic)) throw InputError(place, "is not a .npy file");
-    const auto byte = [&](std::size_t i) {
-        if (i >= start.size()) throw InputError(place, "ends within its header");
-        return static_cast<std::size_t>(static_cast<unsigned char>(start[i]));
-    };
-    const std::size_t version = byte(6);
-    if (version < 1 || version > 3)
-        throw InputError(place, fmt::format("offset 6: .npy version {} is unknown", version));
-    const std::size_t length_bytes = version == 1 ? 2 : 4;
-    std::size_t length = 0;
-    for (std::size_t i = 0; i < length_bytes; ++i) length |= byte(8 + i) << (8 * i);
-    const std::size_t begin = 8 + length_bytes;
-    if (length > kMaxNpyHeaderBytes - begin)
-        throw InputError(place, fmt::format("offset 8: a header of {} bytes is too long", length));
-    if (length > start.size() - begin) throw InputError(place, "ends within its header");
-    return {start.substr(begin, length), begin + length};
-}
-
 NpyType type_of(std::string_view name, std::string_view place) {
     for (const TypeName& known : kTypes)
         if (known.name == name) return known.type;
@@ -75,6 +50,25 @@ void take_shape(const std::vector<std::uint64_t>& shape, std::string_view place,
 
 }  // namespace
 
+NpyDictionary find_npy_dictionary(std::string_view start, std::string_view place) {
+    if (!start.starts_with(kMagic)) throw InputError(place, "is not a .npy file");
+    const auto byte = [&](std::size_t i) {
+        if (i >= start.size()) throw InputError(place, "ends within its header");
+        return static_cast<std::size_t>(static_cast<unsigned char>(start[i]));
+    };
+    const std::size_t version = byte(6);
+    if (version < 1 || version > 3)
+        throw InputError(place, fmt::format("offset 6: .npy version {} is unknown", version));
+    const std::size_t length_bytes = version == 1 ? 2 : 4;
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < length_bytes; ++i) length |= byte(8 + i) << (8 * i);
+    const std::size_t begin = 8 + length_bytes;
+    if (length > kMaxNpyHeaderBytes - begin)
+        throw InputError(place, fmt::format("offset 8: a header of {} bytes is too long", length));
+    if (length > start.size() - begin) throw InputError(place, "ends within its header");
+    return {start.substr(begin, length), begin + length};
+}
+
 std::size_t npy_type_bytes(NpyType type) {
     switch (type) {
         case NpyType::kUint8:
@@ -94,10 +88,10 @@ NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_
                            std::string_view place) {
     // Bytes may be read through char.
     const auto text =
-        find_dictionary({reinterpret_cast<const char*>(start.data()), start.size()}, place);
+        find_npy_dictionary({reinterpret_cast<const char*>(start.data()), start.size()}, place);
     NpyHeader header;
     header.data_offset = text.data_offset;
-    const NpyFields fields = read_npy_fields(text.dictionary, place);
+    const NpyFields fields = read_npy_fields(text.text, place);
     header.type = type_of(fields.descr, place);
     if (fields.fortran_order)
         throw InputError(place, "is in Fortran order; save numpy.ascontiguousarray(video)");

@@ -28,6 +28,16 @@ struct NpyHeader {
 /// The longest start of a file that a header may take.
 inline constexpr std::size_t kMaxNpyHeaderBytes = 65536;
 
+/// The Python dictionary of a header, and where the data begin.
+struct NpyDictionary {
+    std::string_view text;
+    std::size_t data_offset = 0;
+};
+
+/// Finds the dictionary in `start`, the first bytes of a file. \throws InputError at `place` if it
+/// is no .npy file, of an unknown version, or ends within its header.
+[[nodiscard]] NpyDictionary find_npy_dictionary(std::string_view start, std::string_view place);
+
 /// Reads the header from `start`, the first min(file_bytes, kMaxNpyHeaderBytes) bytes of a file.
 /// \throws InputError at `place` if it is no .npy file, is not little-endian u1, u2, f2, f4 or f8
 /// in C order, has another shape, is empty, or does not match the file's length.

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/json_file.h"
+#include "apps/schedule_choice.h"
+#include "apps/schedule_commands.h"
+#include "apps/sensor_setup.h"
+#include "core/error.h"
+#include "readout/schedule_check.h"
+
+namespace stipple {
+namespace {
+
+struct CheckOptions {
+    ScheduleChoice schedule;
+    std::string sensor = "paper";
+};
+
+/// Settings of the schedule, and after "sensor." of the sensor, in the form of `emulate`.
+std::vector<std::string> emulate_settings(const std::vector<std::string>& settings) {
+    constexpr std::string_view kSensor = "sensor.";
+    std::vector<std::string> result;
+    for (const std::string& setting : settings)
+        result.push_back(setting.starts_with(kSensor) ? setting.substr(kSensor.size())
+                                                      : "schedule." + setting);
+    return result;
+}
+
+void check(const CheckOptions& options, const RunOptions& run) {
+    const ScheduleChoice& choice = options.schedule;
+    const SensorSetup setup = set_up_sensor({.sensor = options.sensor,
+                                             .schedule = choice.schedule,
+                                             .settings = emulate_settings(choice.settings),
+                                             .seed = choice.seed},
+                                            choice.shape);
+    const auto& [name, source, schedule] = setup.schedule;
+    JsonFile json(run);
+    const auto problem = store_problem(schedule, setup.params.charge_stores);
+    json.write({{"schedule", name},
+                {"sensor", setup.params.name},
+                {"legal", !problem.has_value()},
+                {"problem", problem.value_or("")}});
+    if (problem)
+        throw InputError(fmt::format("schedule {} on sensor {}", name, setup.params.name),
+                         *problem);
+    run.say(fmt::format("{} can be done by the sensor {}", name, setup.params.name));
+}
+
+}  // namespace
+
+void add_schedule_check(CLI::App& schedule, Action& action) {
+    auto* command = schedule.add_subcommand(
+        "check", "Whether a sensor can do what a schedule says; exit code 1 if not");
+    const auto options = std::make_shared<CheckOptions>();
+    add_schedule_choice(*command, options->schedule);
+    command->add_option("--sensor", options->sensor, "sensor (paper)")->type_name("NAME|FILE");
+    command->footer(
+        "Examples:\n"
+        "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { check(*options, run); };
+    });
+}
+
+}  // namespace stipple

@@ -1,0 +1,44 @@
+#include "apps/schedule_choice.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/sensor_setup.h"
+#include "apps/size_argument.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kMostSide = 65535;
+
+}  // namespace
+
+void add_schedule_choice(CLI::App& command, ScheduleChoice& choice) {
+    command
+        .add_option("SCHEDULE", choice.schedule,
+                    "name of config/schedules, file of that form, or compiled .mem or .hex")
+        ->type_name("NAME|FILE")
+        ->required();
+    command.add_option("--set", choice.settings, "change a key of the schedule")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command
+        .add_option_function<std::string>(
+            "--size",
+            [&choice](const std::string& text) {
+                parse_size("--size", text, 1, kMostSide, choice.shape);
+            },
+            "width and height of the array (640x480)")
+        ->type_name("WxH");
+    command.add_option("--seed", choice.seed, "of random codes (1)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
+}
+
+NamedSchedule set_up_schedule(const ScheduleChoice& choice) {
+    SensorChoice sensor{.schedule = choice.schedule, .seed = choice.seed};
+    for (const std::string& setting : choice.settings)
+        sensor.settings.push_back("schedule." + setting);
+    return set_up_schedule(sensor, choice.shape);
+}
+
+}  // namespace stipple

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "readout/schedule_catalogue.h"
+
+namespace CLI {
+class App;
+}
+
+namespace stipple {
+
+/// A schedule as the commands `stipple schedule ...` are told it.
+struct ScheduleChoice {
+    std::string schedule;                    ///< name, file, or compiled file (.mem, .hex)
+    std::vector<std::string> settings = {};  ///< "key=value" of the schedule
+    FrameShape shape = {.rows = 480, .cols = 640, .planes = 1};  ///< of the array
+    std::uint64_t seed = 1;
+};
+
+/// NAME|FILE, --set, --size and --seed.
+void add_schedule_choice(CLI::App& command, ScheduleChoice& choice);
+
+/// \throws InputError naming file, line and key of what cannot be used.
+[[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);
+
+}  // namespace stipple

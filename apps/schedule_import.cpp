@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/json_file.h"
+#include "apps/schedule_commands.h"
+#include "apps/schedule_text.h"
+#include "apps/text_file.h"
+#include "core/error.h"
+#include "readout/schedules/code_schedule.h"
+#include "readout/schedules/volume_schedule.h"
+
+namespace stipple {
+namespace {
+
+struct ImportOptions {
+    std::string volume;
+    std::string output;
+    std::string name;  ///< empty: the file's
+    bool lengths = false;
+    int period_slots = 0;
+};
+
+void import(const ImportOptions& options, const RunOptions& run) {
+    if (options.period_slots > 0 && !options.lengths)
+        throw InputError("--period", "goes with --lengths; masks have one slot per layer");
+    const NpyVolume volume = read_npy_volume(options.volume);
+    const ExposureSchedule schedule =
+        options.lengths ? lengths_schedule(volume, options.period_slots, options.volume)
+                        : mask_schedule(volume, options.volume);
+    const std::string stem = std::filesystem::path(options.output).stem().string();
+    const std::string name = (options.name.empty() ? stem : options.name).substr(0, 64);
+    JsonFile json(run);
+    write_text_file(options.output, run.force, code_text(schedule, name));
+    const ScheduleFigures figures =
+        schedule_figures(schedule, {.rows = volume.rows, .cols = volume.cols, .planes = 1});
+    json.write(figures_json(name, figures));
+    run.say(fmt::format("{}: {}", options.output, figures_text(name, figures)));
+}
+
+}  // namespace
+
+void add_schedule_import(CLI::App& schedule, Action& action) {
+    auto* command =
+        schedule.add_subcommand("import", "A schedule from masks or exposure lengths in a .npy");
+    const auto options = std::make_shared<ImportOptions>();
+    command
+        ->add_option("VOLUME", options->volume,
+                     ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
+        ->type_name("FILE.npy")
+        ->required();
+    command->add_option("-o,--output", options->output, "schedule file, .toml")
+        ->type_name("FILE")
+        ->required();
+    command->add_flag("--lengths", options->lengths,
+                      "layers are the lengths of successive exposures in slots, from slot 0 on");
+    command
+        ->add_option("--period", options->period_slots,
+                     "with --lengths: slots after which all repeats (the largest sum)")
+        ->check(CLI::Range(1, 65535))
+        ->type_name("N");
+    command->add_option("--name", options->name, "of the schedule (the output's)")
+        ->type_name("NAME");
+    command->footer(
+        "Examples:\n"
+        "  stipple schedule import masks.npy -o masks.toml\n"
+        "  stipple schedule import lengths.npy -o lengths.toml --lengths --period 16\n"
+        "  stipple emulate scene -o clip.stipple --schedule masks.toml");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { import(*options, run); };
+    });
+}
+
+}  // namespace stipple

@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/json_file.h"
+#include "apps/schedule_choice.h"
+#include "apps/schedule_commands.h"
+#include "apps/schedule_text.h"
+#include "apps/text_file.h"
+#include "readout/schedules/code_schedule.h"
+
+namespace stipple {
+namespace {
+
+struct MakeOptions {
+    ScheduleChoice schedule;
+    std::string output;
+};
+
+void make(const MakeOptions& options, const RunOptions& run) {
+    const auto [name, source, schedule] = set_up_schedule(options.schedule);
+    JsonFile json(run);
+    write_text_file(options.output, run.force, code_text(schedule, name));
+    const ScheduleFigures figures = schedule_figures(schedule, options.schedule.shape);
+    json.write(figures_json(name, figures));
+    run.say(fmt::format("{}: {}", options.output, figures_text(name, figures)));
+}
+
+}  // namespace
+
+void add_schedule_make(CLI::App& schedule, Action& action) {
+    auto* command =
+        schedule.add_subcommand("make", "Write out what each pixel of a schedule does (kind code)");
+    const auto options = std::make_shared<MakeOptions>();
+    add_schedule_choice(*command, options->schedule);
+    command->add_option("-o,--output", options->output, "schedule file, .toml")
+        ->type_name("FILE")
+        ->required();
+    command->footer(
+        "Examples:\n"
+        "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"
+        "  stipple schedule make random -o tile.toml --size 32x32 --seed 7");
+    command->callback(
+        [options, &action] { action = [options](const RunOptions& run) { make(*options, run); }; });
+}
+
+}  // namespace stipple

@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/json_file.h"
+#include "apps/schedule_chart.h"
+#include "apps/schedule_choice.h"
+#include "apps/schedule_commands.h"
+#include "apps/schedule_text.h"
+
+namespace stipple {
+namespace {
+
+struct ShowOptions {
+    ScheduleChoice schedule;
+    std::string output;  ///< empty: text
+    int pixels = 10;     ///< as in the paper's Figure 1
+    int slots = 0;       ///< 0: two periods, 24 to 64
+};
+
+void show(const ShowOptions& options, const RunOptions& run) {
+    const auto [name, source, schedule] = set_up_schedule(options.schedule);
+    const int slots =
+        options.slots > 0 ? options.slots : std::clamp(2 * schedule.period_slots(), 24, 64);
+    const auto pixels = sample_pixels(schedule, options.pixels);
+    JsonFile json(run);
+    if (!options.output.empty())
+        draw_schedule(options.output, run.force, {name, schedule, pixels, slots});
+    const ScheduleFigures figures = schedule_figures(schedule, options.schedule.shape);
+    json.write(figures_json(name, figures));
+    const std::string diagram =
+        options.output.empty() ? diagram_text(schedule, pixels, slots) : std::string();
+    run.say(diagram + figures_text(name, figures));
+}
+
+}  // namespace
+
+void add_schedule_show(CLI::App& schedule, Action& action) {
+    auto* command = schedule.add_subcommand("show", "Timing diagram and figures of a schedule");
+    const auto options = std::make_shared<ShowOptions>();
+    add_schedule_choice(*command, options->schedule);
+    command->add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
+        ->type_name("FILE");
+    command->add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
+        ->check(CLI::Range(1, 64))
+        ->type_name("N");
+    command->add_option("--slots", options->slots, "slots that it shows (two periods, 24 to 64)")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N");
+    command->footer(
+        "In the text, - is open, = open in the second charge store, . closed; a digit is the slot\n"
+        "at whose end a pixel is read and how many slots it was open, # for ten or more.\n"
+        "Examples:\n"
+        "  stipple schedule show random\n"
+        "  stipple schedule show two_bucket -o two_bucket.png --pixels 16");
+    command->callback(
+        [options, &action] { action = [options](const RunOptions& run) { show(*options, run); }; });
+}
+
+}  // namespace stipple

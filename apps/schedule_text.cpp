@@ -1,0 +1,85 @@
+#include "apps/schedule_text.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace stipple {
+namespace {
+
+std::string line_of(const ExposureSchedule& schedule, ArrayPixel pixel, int slots) {
+    const int row = pixel.row % schedule.tile_rows();
+    const int col = pixel.col % schedule.tile_cols();
+    const auto exposures = schedule.exposures(row, col);
+    const std::int64_t period = schedule.period_slots();
+    std::string line(static_cast<std::size_t>(slots), '.');
+    for (std::int64_t n = -1; n * period < slots; ++n)
+        for (std::size_t i = 0; i < exposures.size(); ++i) {
+            const Exposure& e = exposures[i];
+            const char open = schedule.store(row, col, i, n + 2) == 0 ? '-' : '=';
+            const char read = e.light_slots() < 10 ? static_cast<char>('0' + e.light_slots()) : '#';
+            for (int age = 0; age < e.span_slots(); ++age) {
+                const std::int64_t slot = n * period + e.first_slot + age;
+                if (slot >= 0 && slot < slots && (e.open_slots >> age & 1U) != 0)
+                    line[static_cast<std::size_t>(slot)] = age + 1 == e.span_slots() ? read : open;
+            }
+        }
+    return line;
+}
+
+}  // namespace
+
+nlohmann::ordered_json figures_json(const std::string& name, const ScheduleFigures& figures) {
+    return {{"name", name},
+            {"tile_rows", figures.tile_rows},
+            {"tile_cols", figures.tile_cols},
+            {"period_slots", figures.period_slots},
+            {"compression_ratio", figures.compression_ratio},
+            {"light_throughput", figures.light_throughput},
+            {"least_exposures", figures.least_exposures},
+            {"most_exposures", figures.most_exposures},
+            {"least_due", figures.least_due},
+            {"mean_due", figures.mean_due},
+            {"most_due", figures.most_due},
+            {"charge_stores", figures.charge_stores},
+            {"code_memory_bits", figures.code_memory_bits}};
+}
+
+std::string figures_text(const std::string& name, const ScheduleFigures& figures) {
+    const std::string exposures =
+        figures.least_exposures == figures.most_exposures
+            ? fmt::format("{}", figures.most_exposures)
+            : fmt::format("{} to {}", figures.least_exposures, figures.most_exposures);
+    return fmt::format(
+        "{}: tile of {} x {} pixels, {} slots\n"
+        "compression {:.4g}, light throughput {:.4g} %, {} exposures a pixel, {} charge store{}\n"
+        "pixels read in a slot: {} to {}, mean {:.1f}; code memory {} bits",
+        name, figures.tile_cols, figures.tile_rows, figures.period_slots, figures.compression_ratio,
+        100 * figures.light_throughput, exposures, figures.charge_stores,
+        figures.charge_stores == 1 ? "" : "s", figures.least_due, figures.most_due,
+        figures.mean_due, figures.code_memory_bits);
+}
+
+std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, int count) {
+    const std::int64_t cols = schedule.tile_cols();
+    const std::int64_t tile = std::int64_t{schedule.tile_rows()} * cols;
+    std::vector<ArrayPixel> pixels;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t in_tile = tile > count ? i * tile / count : i % tile;
+        const std::int64_t tiles_right = tile > count ? 0 : i / tile;
+        pixels.push_back({static_cast<int>(in_tile / cols),
+                          static_cast<int>(in_tile % cols + tiles_right * cols)});
+    }
+    return pixels;
+}
+
+std::string diagram_text(const ExposureSchedule& schedule, const std::vector<ArrayPixel>& pixels,
+                         int slots) {
+    std::string text;
+    for (const ArrayPixel& pixel : pixels)
+        text += fmt::format("{:>12}  {}\n", fmt::format("({}, {})", pixel.row, pixel.col),
+                            line_of(schedule, pixel, slots));
+    return text;
+}
+
+}  // namespace stipple

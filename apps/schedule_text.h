@@ -1,0 +1,34 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+#include "readout/schedule_figures.h"
+
+namespace stipple {
+
+/// For programs.
+[[nodiscard]] nlohmann::ordered_json figures_json(const std::string& name,
+                                                  const ScheduleFigures& figures);
+/// For people: some lines.
+[[nodiscard]] std::string figures_text(const std::string& name, const ScheduleFigures& figures);
+
+/// A pixel of the array.
+struct ArrayPixel {
+    int row = 0;
+    int col = 0;
+};
+
+/// `count` pixels that show what a schedule does: spread evenly over the tile or, where it has
+/// fewer, of it and its neighbours.
+[[nodiscard]] std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, int count);
+
+/// A line per pixel and a character per slot of [0, slots), the period before counts too: '-' open,
+/// '=' open in the second charge store, '.' closed; where an exposure is read, the slots it was
+/// open, '#' for ten or more.
+[[nodiscard]] std::string diagram_text(const ExposureSchedule& schedule,
+                                       const std::vector<ArrayPixel>& pixels, int slots);
+
+}  // namespace stipple

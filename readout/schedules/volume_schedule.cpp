@@ -1,0 +1,103 @@
+#include "readout/schedules/volume_schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "readout/schedules/tile_list.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kLongestExposure = 64;
+constexpr int kLongestPeriod = 65535;
+
+struct TilePixel {
+    int row;
+    int col;
+};
+
+bool is_open(const NpyVolume& masks, int slot, TilePixel pixel, std::string_view place) {
+    const double value = masks.at(slot, pixel.row, pixel.col);
+    if (value == 0 || value == 1) return value == 1;
+    throw InputError(place, fmt::format("pixel ({}, {}) slot {}: {} is neither 0 nor 1", pixel.row,
+                                        pixel.col, slot, value));
+}
+
+void add_mask(const NpyVolume& masks, TilePixel pixel, std::string_view place, TileList& list) {
+    int first = -1;
+    std::uint64_t mask = 0;
+    for (int slot = 0; slot < masks.layers; ++slot) {
+        if (!is_open(masks, slot, pixel, place)) continue;
+        if (first < 0) first = slot;
+        if (slot - first >= kLongestExposure)
+            throw InputError(
+                place, fmt::format("pixel ({}, {}) slot {}: the exposure from slot {} on spans "
+                                   "more than {} slots",
+                                   pixel.row, pixel.col, slot, first, kLongestExposure));
+        mask |= std::uint64_t{1} << static_cast<unsigned>(slot - first);
+    }
+    if (first >= 0) list.add(static_cast<std::uint32_t>(first), mask);
+    list.end_pixel();
+}
+
+int length_at(const NpyVolume& lengths, int layer, TilePixel pixel, std::string_view place) {
+    const double value = lengths.at(layer, pixel.row, pixel.col);
+    if (value >= 0 && value <= kLongestExposure && value == static_cast<int>(value))
+        return static_cast<int>(value);
+    throw InputError(place,
+                     fmt::format("pixel ({}, {}) exposure {}: {} is no whole number of slots "
+                                 "from 0 to {}",
+                                 pixel.row, pixel.col, layer, value, kLongestExposure));
+}
+
+template <typename Visit>
+void for_each_pixel(const NpyVolume& volume, const Visit& visit) {
+    for (int row = 0; row < volume.rows; ++row)
+        for (int col = 0; col < volume.cols; ++col) visit(TilePixel{row, col});
+}
+
+/// The largest sum of a pixel, or `period_slots` if no sum is longer.
+int checked_period(const NpyVolume& lengths, int period_slots, std::string_view place) {
+    std::int64_t longest = 1;
+    for_each_pixel(lengths, [&](TilePixel pixel) {
+        std::int64_t sum = 0;
+        for (int layer = 0; layer < lengths.layers; ++layer) {
+            sum += length_at(lengths, layer, pixel, place);
+            const int most = period_slots > 0 ? period_slots : kLongestPeriod;
+            if (sum > most)
+                throw InputError(place,
+                                 fmt::format("pixel ({}, {}) exposure {}: ends after {} slots;"
+                                             " the period is {}",
+                                             pixel.row, pixel.col, layer, sum, most));
+        }
+        longest = std::max(longest, sum);
+    });
+    return period_slots > 0 ? period_slots : static_cast<int>(longest);
+}
+
+}  // namespace
+
+ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view place) {
+    TileList list(masks.rows, masks.cols, masks.layers);
+    for_each_pixel(masks, [&](TilePixel pixel) { add_mask(masks, pixel, place, list); });
+    return std::move(list).schedule();
+}
+
+ExposureSchedule lengths_schedule(const NpyVolume& lengths, int period_slots,
+                                  std::string_view place) {
+    TileList list(lengths.rows, lengths.cols, checked_period(lengths, period_slots, place));
+    for_each_pixel(lengths, [&](TilePixel pixel) {
+        std::uint32_t slot = 0;
+        for (int layer = 0; layer < lengths.layers; ++layer) {
+            const int length = length_at(lengths, layer, pixel, place);
+            if (length > 0) list.add_open(slot, length);
+            slot += static_cast<std::uint32_t>(length);
+        }
+        list.end_pixel();
+    });
+    return std::move(list).schedule();
+}
+
+}  // namespace stipple

@@ -1,0 +1,157 @@
+"""stipple schedule: making, showing, checking and importing schedules."""
+
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+
+from program import INPUT, USAGE, ProgramTest
+
+
+class MakeTest(ProgramTest):
+    def test_a_file_that_records_what_its_schedule_records(self):
+        light = np.random.default_rng(1).random((20, 16, 24))
+        self.write_array("light.npy", light)
+        for name in ("random", "two_bucket", "global_flutter", "rolling"):
+            self.succeed("schedule", "make", name, "-o", f"{name}.toml", "--size", "24x16")
+            for schedule in (name, f"{name}.toml"):
+                self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--schedule", schedule,
+                             "--set", "charge_stores=2", "--force")
+                self.succeed("decode", "clip.stipple", "-o", f"{schedule}.npy", "--method", "naive")
+            np.testing.assert_array_equal(self.array(f"{name}.npy"), self.array(f"{name}.toml.npy"))
+
+    def test_settings_change_the_schedule(self):
+        figures = self.figures("schedule", "make", "pixel_flutter", "-o", "mine.toml", "-q",
+                               "--set", "tile_rows=2", "--set", "tile_cols=3",
+                               "--set", "code_slots=6", "--set", "open_slots=2", "--size", "30x20")
+        self.assertEqual(figures, {
+            "name": "pixel_flutter", "tile_rows": 2, "tile_cols": 3, "period_slots": 6,
+            "compression_ratio": 6, "light_throughput": 1 / 3, "least_exposures": 1,
+            "most_exposures": 1, "least_due": figures["least_due"], "mean_due": 100,
+            "most_due": figures["most_due"], "charge_stores": 1, "code_memory_bits": 72})
+        self.assertIn('kind = "code"', (self.folder / "mine.toml").read_text())
+
+    def test_what_is_too_large_is_refused(self):
+        self.fails(INPUT, ["2^24", "smaller"], "schedule", "make", "random", "-o", "large.toml",
+                   "--size", "2000x1000")
+
+    def test_wrong_command_lines(self):
+        for arguments in (["--size", "3"], ["--size", "0x3"], ["--seed", "-1"], ["--what"]):
+            self.fails(USAGE, [arguments[0]], "schedule", "make", "random", "-o", "x.toml",
+                       *arguments)
+        self.fails(USAGE, [], "schedule")
+        self.fails(INPUT, ["random", "two_bucket"], "schedule", "make", "nobody", "-o", "x.toml")
+        self.fails(INPUT, ["tile_row"], "schedule", "make", "tiled", "-o", "x.toml", "--set",
+                   "tile_row=3")
+
+
+class ShowTest(ProgramTest):
+    def test_text_names_each_reading(self):
+        (self.folder / "mine.toml").write_text(
+            'kind = "code"\nname = "it\'s"\ntile_cols = 2\nperiod_slots = 6\ncode = ["AaaA..", "ABaBab"]\n')
+        lines = self.succeed("schedule", "show", "mine.toml", "--pixels", "2", "--slots",
+                             "12").splitlines()
+        self.assertEqual(lines[0].split()[-1], "--31..--31..")
+        self.assertEqual(lines[1].split()[-1], "-1-=32-1-=32")
+        self.assertIn("2 charge stores", "\n".join(lines))
+        self.succeed("schedule", "show", "mine.toml", "-o", "mine.svg")
+        self.assertIn("Schedule it's", (self.folder / "mine.svg").read_text())
+
+    def test_pictures(self):
+        for name in ("random", "two_bucket", "global_flutter", "rolling"):
+            self.succeed("schedule", "show", name, "-o", f"{name}.svg", "--size", "32x32")
+            picture = ElementTree.parse(self.folder / f"{name}.svg").getroot()
+            self.assertTrue(picture.tag.endswith("svg"))
+        self.succeed("schedule", "show", "random", "-o", "random.png", "--pixels", "16")
+        self.assertTrue((self.folder / "random.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_a_picture_of_another_kind_is_refused(self):
+        self.fails(INPUT, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
+
+
+class CheckTest(ProgramTest):
+    def test_pixels_with_one_store_cannot_do_two_exposures_at_once(self):
+        self.fails(INPUT, ["two_bucket", "pixel (0, 0) slot", "charge_stores=2"],
+                   "schedule", "check", "two_bucket", "--sensor", "paper")
+        figures = self.figures("schedule", "check", "two_bucket", "--set",
+                               "sensor.charge_stores=2")
+        self.assertTrue(figures["legal"])
+        light = self.write_flat("light.npy")
+        self.fails(INPUT, ["pixel (0, 0) slot", "charge_stores=2"], "emulate", light, "-o",
+                   "clip.stipple", "--schedule", "two_bucket")
+
+
+class ImportTest(ProgramTest):
+    def test_masks_of_every_type_are_one_exposure_per_period_and_pixel(self):
+        masks = np.random.default_rng(2).random((8, 16, 16)) < 0.5
+        masks[:, 3, 4] = False
+        codes = set()
+        for dtype in (bool, np.uint8, np.int64, np.float32, np.float64):
+            self.write_array("masks.npy", masks, dtype)
+            figures = self.figures("schedule", "import", "masks.npy", "-o", "masks.toml", "--force")
+            self.assertEqual(figures["light_throughput"], masks.mean())
+            self.assertEqual((figures["least_exposures"], figures["most_exposures"]), (0, 1))
+            codes.add((self.folder / "masks.toml").read_text())
+        self.assertEqual(len(codes), 1)
+
+    def test_masks_sample_what_they_let_through(self):
+        rng = np.random.default_rng(3)
+        masks = rng.random((8, 12, 10)) < 0.5
+        light = rng.random((8, 12, 10)) * 0.2
+        self.write_array("masks.npy", masks, np.uint8)
+        self.write_array("light.npy", light)
+        self.succeed("schedule", "import", "masks.npy", "-o", "masks.toml")
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--schedule", "masks.toml",
+                     "--sensor", "ideal")
+        self.succeed("decode", "clip.stipple", "-o", "naive.npy", "--method", "naive")
+        # The naive estimate gives each open slot its sample over the number of open slots.
+        measured = (self.array("naive.npy") * masks).sum(axis=0)
+        np.testing.assert_allclose(measured, (light * masks).sum(axis=0), atol=2e-3)
+
+    def test_lengths_follow_each_other(self):
+        lengths = np.zeros((3, 1, 2), int)
+        lengths[:, 0, 0] = 2, 1, 3
+        lengths[:, 0, 1] = 0, 4, 0
+        self.write_array("lengths.npy", lengths, np.uint8)
+        self.succeed("schedule", "import", "lengths.npy", "-o", "a.toml", "--lengths")
+        self.assertIn('"AaAAaa", "Aaaa..",', (self.folder / "a.toml").read_text())
+        self.succeed("schedule", "import", "lengths.npy", "-o", "b.toml", "--lengths", "--period",
+                     "8", "--name", "mine")
+        self.assertIn('"AaAAaa..", "Aaaa....",', (self.folder / "b.toml").read_text())
+        self.assertIn('name = "mine"', (self.folder / "b.toml").read_text())
+
+    def refuse(self, parts, values, *arguments, dtype=np.float64):
+        self.write_array("bad.npy", values, dtype)
+        self.fails(INPUT, ["bad.npy", *parts] if parts else [], "schedule", "import", "bad.npy",
+                   "-o", "x.toml", *arguments)
+
+    def test_what_is_wrong_is_named_by_pixel_and_slot(self):
+        masks = np.zeros((70, 2, 3))
+        for value in (0.5, -1, 2, np.nan, np.inf):
+            masks[4, 1, 2] = value
+            self.refuse(["pixel (1, 2) slot 4", "neither 0 nor 1"], masks)
+        masks[4, 1, 2] = masks[68, 1, 2] = 1
+        self.refuse(["pixel (1, 2) slot 68", "64"], masks)
+        lengths = np.ones((2, 2, 2))
+        for value in (0.5, -1, 65, np.nan):
+            lengths[1, 0, 1] = value
+            self.refuse(["pixel (0, 1) exposure 1", "0 to 64"], lengths, "--lengths")
+        self.refuse(["pixel (0, 0) exposure 1", "period is 1"], np.ones((2, 2, 2)), "--lengths",
+                    "--period", "1")
+
+    def test_what_is_no_volume_is_refused(self):
+        self.refuse(["2 dimensions"], np.ones((2, 2)))
+        self.refuse(["sides"], np.ones((2, 0, 2)))
+        self.refuse(["Fortran"], np.asfortranarray(np.ones((2, 3, 4))))
+        self.refuse(["type"], np.ones((2, 3, 4)), dtype=np.complex64)
+        self.write_array("masks.npy", np.ones((2, 3, 4)))
+        self.fails(INPUT, ["--period", "--lengths"], "schedule", "import", "masks.npy", "-o",
+                   "x.toml", "--period", "3")
+        content = (self.folder / "masks.npy").read_bytes()
+        (self.folder / "masks.npy").write_bytes(content[:-1])
+        self.fails(INPUT, ["masks.npy", "truncated"], "schedule", "import", "masks.npy", "-o",
+                   "x.toml")
+
+
+if __name__ == "__main__":
+    unittest.main()
