@@ -13,29 +13,45 @@ std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
-/// The bits of one pixel over the period.
-class PixelProgram {
-  public:
-    PixelProgram(SequencerProgram& program, std::size_t pixel) : program_(program), pixel_(pixel) {}
+/// True if some exposure takes one store in even repetitions of the period and the other in odd.
+bool stores_alternate(const ExposureSchedule& schedule) {
+    if (!schedule.interleaved()) return false;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col)
+            for (std::size_t i = 0; i < schedule.exposures(row, col).size(); ++i)
+                if (schedule.store(row, col, i, 0) != schedule.store(row, col, i, 1)) return true;
+    return false;
+}
 
-    [[nodiscard]] std::uint8_t& at(std::uint32_t slot) const {
-        const auto phase = slot % static_cast<std::uint32_t>(program_.period_slots);
-        return program_
-            .pixels[phase * index(program_.tile_rows) * index(program_.tile_cols) + pixel_];
-    }
-
-    void write(const Exposure& e, unsigned store) const {
-        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(e.span_slots()); ++i)
-            if ((e.open_slots >> i & 1U) != 0)
-                at(e.first_slot + i) = static_cast<std::uint8_t>(SequencerProgram::kOpen | store);
-        at(e.first_slot + static_cast<std::uint32_t>(e.span_slots()) - 1) |=
-            SequencerProgram::kRead;
-    }
-
-  private:
-    SequencerProgram& program_;
-    std::size_t pixel_;
+/// A tile pixel in one repetition of the schedule's period.
+struct PixelPeriod {
+    int row;
+    int col;
+    int repetition;
 };
+
+/// Writes the exposures that begin in this repetition.
+void write_pixel(const ExposureSchedule& schedule, const PixelPeriod& where,
+                 SequencerProgram& program) {
+    const auto exposures = schedule.exposures(where.row, where.col);
+    const auto bits_in = [&](std::int64_t slot) -> std::uint8_t& {
+        const auto line =
+            index(static_cast<int>(slot % program.period_slots)) * index(program.tile_rows) +
+            index(where.row);
+        return program.pixels[line * index(program.tile_cols) + index(where.col)];
+    };
+    for (std::size_t i = 0; i < exposures.size(); ++i) {
+        const Exposure& e = exposures[i];
+        const std::int64_t begin =
+            e.first_slot + std::int64_t{where.repetition} * schedule.period_slots();
+        const bool second = schedule.store(where.row, where.col, i, where.repetition) == 1;
+        const unsigned open = SequencerProgram::kOpen | (second ? SequencerProgram::kStore : 0U);
+        for (int age = 0; age < e.span_slots(); ++age)
+            if ((e.open_slots >> index(age) & 1U) != 0)
+                bits_in(begin + age) = static_cast<std::uint8_t>(open);
+        bits_in(begin + e.span_slots() - 1) |= SequencerProgram::kRead;
+    }
+}
 
 /// The exposures of one pixel and store, found by following its bits from one reading to the next.
 class ExposureFinder {
@@ -102,22 +118,26 @@ class ExposureFinder {
 }  // namespace
 
 SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
-    if (schedule.interleaved())
+    if (schedule.charge_stores() > 2)
         throw InputError("sequencer program",
-                         "exposures of a pixel interleave; there is no "
-                         "program for two charge stores yet");
+                         fmt::format("the schedule needs {} charge stores per pixel; a program "
+                                     "knows two",
+                                     schedule.charge_stores()));
+    const int repetitions = stores_alternate(schedule) ? 2 : 1;
     SequencerProgram program{.tile_rows = schedule.tile_rows(),
                              .tile_cols = schedule.tile_cols(),
-                             .period_slots = schedule.period_slots(),
-                             .bits_per_pixel = schedule.gapless() ? 1 : 2,
+                             .period_slots = schedule.period_slots() * repetitions,
+                             .bits_per_pixel = schedule.interleaved() ? 3
+                                               : schedule.gapless()   ? 1
+                                                                      : 2,
                              .pixels = {}};
-    const std::size_t tile = index(program.tile_rows) * index(program.tile_cols);
-    program.pixels.resize(tile * index(program.period_slots));
-    for (std::size_t pixel = 0; pixel < tile; ++pixel)
-        for (const Exposure& e : schedule.exposures(static_cast<int>(pixel) / program.tile_cols,
-                                                    static_cast<int>(pixel) % program.tile_cols))
-            PixelProgram(program, pixel).write(e, 0);
-    const auto mask = static_cast<std::uint8_t>((1U << unsigned(program.bits_per_pixel)) - 1);
+    program.pixels.resize(index(program.tile_rows) * index(program.tile_cols) *
+                          index(program.period_slots));
+    for (int repetition = 0; repetition < repetitions; ++repetition)
+        for (int row = 0; row < program.tile_rows; ++row)
+            for (int col = 0; col < program.tile_cols; ++col)
+                write_pixel(schedule, {row, col, repetition}, program);
+    const auto mask = static_cast<std::uint8_t>((1U << index(program.bits_per_pixel)) - 1);
     for (std::uint8_t& bits : program.pixels) bits &= mask;
     return program;
 }

@@ -29,11 +29,13 @@ struct SequencerProgram {
     bool operator==(const SequencerProgram&) const = default;
 };
 
-/// \throws InputError if the exposures of a pixel interleave so that two charge stores are too few.
+/// The program repeats the schedule's period once, or twice where an exposure changes from one
+/// charge store to the other between repetitions. \throws InputError if two charge stores are too
+/// few.
 [[nodiscard]] SequencerProgram compile_schedule(const ExposureSchedule& schedule);
 
 /// The schedule that `program` steps through: an exposure of a store begins in the first open slot
-/// after its last reading. `schedule_of(compile_schedule(s)) == s`.
+/// after its last reading. `schedule_of(compile_schedule(s)) == s` if the periods are equal.
 /// \throws InputError naming `place`, pixel and slot: a pixel is read while it is closed, is open
 /// and never read, or is open for more than 64 slots from the first to the last.
 [[nodiscard]] ExposureSchedule schedule_of(const SequencerProgram& program,

@@ -73,6 +73,31 @@ TEST(SequencerProgramTest, ReadsAnExposureAcrossTheEndOfThePeriod) {
     EXPECT_EQ(schedule_of(compile_schedule(schedule), "test"), schedule);
 }
 
+TEST(SequencerProgramTest, KeepsTwoStoresApart) {
+    // Slots 0, 2, 4 into one store, 1, 3 into the other; read in slots 4 and 3.
+    const ExposureSchedule two_bucket(1, 1, 5, {0, 2}, {{0, 0b10101}, {1, 0b101}});
+    constexpr unsigned kStore = SequencerProgram::kStore;
+    EXPECT_EQ(pixels_of(two_bucket),
+              (std::vector<std::uint8_t>{kOpen, kOpen | kStore, kOpen, kOpen | kStore | kRead,
+                                         kOpen | kRead}));
+    EXPECT_EQ(schedule_of(compile_schedule(two_bucket), "test"), two_bucket);
+}
+
+TEST(SequencerProgramTest, CoversTwoPeriodsWhereAnExposureChangesStores) {
+    // Three exposures of 4 slots in a period of 6, each begun before the last one has ended.
+    const ExposureSchedule odd(1, 1, 6, {0, 3}, {{0, 0b1001}, {2, 0b1001}, {4, 0b1001}});
+    ASSERT_TRUE(odd.interleaved());
+    const SequencerProgram program = compile_schedule(odd);
+    EXPECT_EQ(program.period_slots, 12);
+    const ExposureSchedule twice = schedule_of(program, "test");
+    for (int slot = 0; slot < 24; ++slot)
+        visit_due(odd, slot, 0, 1, [&](int, int span_slots) {
+            int found = 0;
+            visit_due(twice, slot, 0, 1, [&](int, int span) { found = span; });
+            EXPECT_EQ(found, span_slots) << "slot " << slot;
+        });
+}
+
 TEST(SequencerProgramTest, NamesPixelAndSlotOfWhatCannotBe) {
     SequencerProgram program{.tile_rows = 1,
                              .tile_cols = 2,
