@@ -124,7 +124,8 @@ void ExposureSchedule::list_due_pixels() {
         for (int col = 0; col < tile_cols_; ++col)
             for (const Exposure& e : exposures(row, col))
                 due_[next[list_of(e, row)]++] = {static_cast<std::uint16_t>(col),
-                                                 static_cast<std::uint16_t>(e.span_slots())};
+                                                 static_cast<std::uint8_t>(e.span_slots()),
+                                                 static_cast<std::uint8_t>(e.light_slots())};
 }
 
 std::span<const Exposure> ExposureSchedule::exposures(int tile_row, int tile_col) const {

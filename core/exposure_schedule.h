@@ -25,7 +25,8 @@ struct Exposure {
 /// A pixel that is due for readout, in a row of the tile.
 struct DuePixel {
     std::uint16_t col = 0;         ///< column in the tile
-    std::uint16_t span_slots = 0;  ///< slots since the exposure began, this one included
+    std::uint8_t span_slots = 0;   ///< slots since the exposure began, this one included
+    std::uint8_t light_slots = 0;  ///< slots of these that have collected light
 };
 
 /// Which pixel exposes when: a tile of rows x cols pixels, repeated over the array, whose
@@ -93,21 +94,30 @@ class ExposureSchedule {
     std::vector<DuePixel> due_;
 };
 
-/// Calls `visit(col, span_slots)` for each pixel of array row `row` that is read out at the end of
+/// Calls `visit(col, due_pixel)` for each pixel of array row `row` that is read out at the end of
 /// `slot`, in scan order. The array is reset before slot 0, so an exposure that would have begun
 /// earlier is not read. The one definition of which samples a slot holds, shared by the chip, the
 /// stream and the decoder. Precondition: slot >= 0, row >= 0.
 template <typename Visit>
-void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
-               Visit&& visit) {
+void visit_due_pixels(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
+                      Visit&& visit) {
     const auto phase = static_cast<int>(slot % schedule.period_slots());
     const auto due = schedule.due(phase, row % schedule.tile_rows());
     for (int tile_col = 0; tile_col < cols; tile_col += schedule.tile_cols())
         for (const DuePixel& pixel : due) {
             const int col = tile_col + pixel.col;
             if (col >= cols) break;
-            if (pixel.span_slots <= slot + 1) visit(col, static_cast<int>(pixel.span_slots));
+            if (pixel.span_slots <= slot + 1) visit(col, pixel);
         }
+}
+
+/// The same with `visit(col, span_slots)`.
+template <typename Visit>
+void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
+               Visit&& visit) {
+    visit_due_pixels(schedule, slot, row, cols, [&](int col, const DuePixel& pixel) {
+        visit(col, static_cast<int>(pixel.span_slots));
+    });
 }
 
 /// Number of pixels that `visit_due` visits in rows [first_row, first_row + rows).

@@ -86,14 +86,8 @@ void Sequencer::append_stores(std::int64_t slot, int row, std::vector<std::uint8
 
 void Sequencer::append_open_slots(std::int64_t slot, int row,
                                   std::vector<std::uint16_t>& slots) const {
-    const int tile_row = row % schedule_->tile_rows();
-    visit_due(*schedule_, slot, row, cols_, [&](int col, int span_slots) {
-        const auto first =
-            static_cast<std::uint32_t>((slot - span_slots + 1) % schedule_->period_slots());
-        const auto exposures = schedule_->exposures(tile_row, col % schedule_->tile_cols());
-        const auto ended = std::ranges::lower_bound(exposures, first, {}, &Exposure::first_slot);
-        slots.push_back(static_cast<std::uint16_t>(ended->light_slots()));
-    });
+    visit_due_pixels(*schedule_, slot, row, cols_,
+                     [&](int, const DuePixel& pixel) { slots.push_back(pixel.light_slots); });
 }
 
 }  // namespace stipple
