@@ -42,7 +42,11 @@ std::optional<FluxVideo> luminance_clip(const std::string& name) {
 
 void write_recording(const FluxVideo& video, const std::string& schedule,
                      const std::filesystem::path& file) {
-    const NamedSchedule named = schedule_of(schedule, video.shape());
+    write_recording(video, schedule_of(schedule, video.shape()), kSeed, file);
+}
+
+void write_recording(const FluxVideo& video, const NamedSchedule& named, std::uint64_t seed,
+                     const std::filesystem::path& file) {
     const SensorParams params;
     StreamWriter writer(file, {.shape = video.shape(),
                                .slot_us = params.slot_us,
@@ -51,7 +55,7 @@ void write_recording(const FluxVideo& video, const std::string& schedule,
                                .schedule_source = named.source,
                                .schedule_name = named.name,
                                .provenance = ""});
-    CodedSensor sensor(params, video.shape(), named.schedule, kSeed);
+    CodedSensor sensor(params, video.shape(), named.schedule, seed);
     SamplePacket packet;
     for (int slot = 0; slot < video.slots(); ++slot) {
         sensor.expose(video.frame(slot), packet);
@@ -71,8 +75,13 @@ FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method)
 }
 
 VideoQuality quality_of(const FluxVideo& video, const std::string& schedule, DecodeMethod method) {
+    return quality_of(video, schedule_of(schedule, video.shape()), kSeed, method);
+}
+
+VideoQuality quality_of(const FluxVideo& video, const NamedSchedule& schedule, std::uint64_t seed,
+                        DecodeMethod method) {
     const TemporaryFolder folder;
-    write_recording(video, schedule, folder / "clip.stipple");
+    write_recording(video, schedule, seed, folder / "clip.stipple");
     const FluxVideo decoded = read_recording(folder / "clip.stipple", method);
     QualityMeter meter(video.shape(), {.margin = 4, .max_value = kBrightest});
     for (int slot = 0; slot < video.slots(); ++slot)

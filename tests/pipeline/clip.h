@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
+#include "readout/schedule_catalogue.h"
 
 namespace stipple {
 
@@ -19,11 +21,16 @@ namespace stipple {
 void write_recording(const FluxVideo& video, const std::string& schedule,
                      const std::filesystem::path& file);
 
+void write_recording(const FluxVideo& video, const NamedSchedule& schedule, std::uint64_t seed,
+                     const std::filesystem::path& file);
+
 [[nodiscard]] FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method);
 
 /// write_recording, read_recording through a temporary file, then the quality without the first
 /// and last 4 frames.
 [[nodiscard]] VideoQuality quality_of(const FluxVideo& video, const std::string& schedule,
                                       DecodeMethod method);
+[[nodiscard]] VideoQuality quality_of(const FluxVideo& video, const NamedSchedule& schedule,
+                                      std::uint64_t seed, DecodeMethod method);
 
 }  // namespace stipple
