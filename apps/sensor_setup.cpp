@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/config.h"
 #include "core/error.h"
@@ -116,6 +117,13 @@ SensorDescription read_sensor_file(const SensorChoice& choice) {
     sensor.timing = read_timing(config, sensor.params.bit_depth);
     config.reject_unknown_keys();
     return sensor;
+}
+
+SensorParams set_up_params(const SensorChoice& choice) {
+    const auto settings = settings_of(choice, "schedule.");
+    if (!settings.empty())
+        throw InputError("--set schedule." + settings.front(), "there is no schedule here");
+    return read_sensor_file(choice).params;
 }
 
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {

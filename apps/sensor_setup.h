@@ -46,6 +46,10 @@ struct SensorSetup {
 /// of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape);
 
+/// The parameters of a sensor that has no schedule. \throws InputError naming file, line and key of
+/// what cannot be used; the schedule's settings cannot.
+[[nodiscard]] SensorParams set_up_params(const SensorChoice& choice);
+
 /// A sensor for this footage. \throws InputError naming file, line and key of what cannot be used,
 /// or if there is a colour filter array but no colour.
 [[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage);

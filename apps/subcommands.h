@@ -13,6 +13,8 @@ void add_compare(CLI::App& app, Action& action);   ///< quality of a video again
 void add_info(CLI::App& app, Action& action);      ///< what a sample stream says and holds
 void add_schedule(CLI::App& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(CLI::App& app, Action& action);    ///< how fast a sensor reads
-void add_demo(CLI::App& app, Action& action);      ///< all of it on an embedded scene
+/// EMVA 1288 figures of an emulated sensor or of images
+void add_characterize(CLI::App& app, Action& action);
+void add_demo(CLI::App& app, Action& action);  ///< all of it on an embedded scene
 
 }  // namespace stipple

@@ -1,0 +1,102 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/camera_report.h"
+#include "apps/flat_field_series.h"
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/progress.h"
+#include "apps/sensor_setup.h"
+#include "apps/subcommands.h"
+#include "core/pending_output.h"
+
+namespace stipple {
+namespace {
+
+struct CharacterizeOptions {
+    SensorChoice sensor;
+    std::string descriptor;  ///< of images that exist; empty: photograph them
+    std::string output;      ///< folder; may be empty if there is a descriptor
+};
+
+emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std::string& place,
+                              const RunOptions& run) {
+    Progress progress(run, "evaluating", {});
+    return evaluate_series(descriptor, place, [&] {
+        throw_if_stopped();
+        progress.advance();
+    });
+}
+
+void report(const CameraReport& camera, JsonFile& json, const RunOptions& run) {
+    json.write(camera_json(camera));
+    run.say(camera_text(camera));
+}
+
+void characterize_sensor(const CharacterizeOptions& options, const RunOptions& run) {
+    SensorParams params = set_up_params(options.sensor);
+    params.physical.cfa = ColourFilter::kNone;
+    JsonFile json(run);
+    PendingOutput folder(options.output, run.force, OutputKind::kFolder);
+    {
+        Progress progress(run, "photographing", kSeriesImages);
+        photograph_series(params, options.sensor.seed, folder.partial(), [&] {
+            throw_if_stopped();
+            progress.advance();
+        });
+    }
+    const auto place = (folder.final_path() / kDescriptorName).string();
+    const CameraReport camera{evaluate(folder.partial() / kDescriptorName, place, run),
+                              configured_figures(params)};
+    draw_photon_transfer(camera.evaluation, folder.partial());
+    folder.commit();
+    report(camera, json, run);
+}
+
+void characterize_images(const CharacterizeOptions& options, const RunOptions& run) {
+    JsonFile json(run);
+    std::optional<PendingOutput> folder;
+    if (!options.output.empty()) folder.emplace(options.output, run.force, OutputKind::kFolder);
+    const CameraReport camera{evaluate(options.descriptor, options.descriptor, run), {}};
+    if (folder) {
+        draw_photon_transfer(camera.evaluation, folder->partial());
+        folder->commit();
+    }
+    report(camera, json, run);
+}
+
+}  // namespace
+
+void add_characterize(CLI::App& app, Action& action) {
+    auto* command = app.add_subcommand("characterize", "EMVA 1288 figures of a sensor or camera");
+    const auto options = std::make_shared<CharacterizeOptions>();
+    auto* sensor = command->add_option("--sensor", options->sensor.sensor, "sensor (paper)");
+    sensor->type_name("NAME|FILE");
+    auto* set =
+        command->add_option("--set", options->sensor.settings, "change a key of the sensor");
+    set->allow_extra_args(false)->type_name("KEY=VALUE");
+    auto* seed = command->add_option("--seed", options->sensor.seed, "of the noise (1)");
+    seed->check(CLI::NonNegativeNumber)->type_name("S");
+    auto* evaluate = command->add_option("--evaluate", options->descriptor,
+                                         "images that exist: their descriptor");
+    evaluate->type_name("FILE")->excludes(sensor)->excludes(set)->excludes(seed);
+    auto* output = command->add_option("-o,--output", options->output,
+                                       "folder for images, descriptor and charts");
+    output->type_name("DIR");
+    command->footer(
+        "Examples:\n"
+        "  stipple characterize --sensor grasshopper -o series\n"
+        "  stipple characterize --sensor t6 --set temperature_c=60 -o warm --json figures.json\n"
+        "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
+    command->callback([options, &action] {
+        if (options->descriptor.empty() && options->output.empty())
+            throw CLI::RequiredError("--output (a folder for the series) or --evaluate");
+        action = [options](const RunOptions& run) {
+            options->descriptor.empty() ? characterize_sensor(*options, run)
+                                        : characterize_images(*options, run);
+        };
+    });
+}
+
+}  // namespace stipple

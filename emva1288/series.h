@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stipple::emva1288 {
+
+/// Images of one exposure: two for the temporal noise, more for the spatial one.
+struct ImageGroup {
+    double exposure_ns = 0;
+    double photons = 0;  ///< mean number per pixel; 0 of dark images
+    bool dark = false;
+    std::vector<std::string> files;  ///< as the descriptor has them, relative to it
+};
+
+/// A measurement after EMVA 1288: what the descriptor file of the reference software says.
+struct Series {
+    int bits = 0;
+    int cols = 0;
+    int rows = 0;
+    std::vector<ImageGroup> groups;
+};
+
+/// Reads a descriptor (release 4.0 of its format): `v 4.0`, `n bits width height`, then groups that
+/// begin with `b exposure_ns photons` or `d exposure_ns` and list their images, `i file`. Lines
+/// that are empty or begin with # mean nothing; backslashes in file names are taken as slashes.
+/// \throws InputError naming `place` and line for anything else, for numbers outside their limits
+/// and for a group without two images.
+[[nodiscard]] Series parse_series(std::string_view text, std::string_view place);
+
+/// The descriptor of a series.
+[[nodiscard]] std::string series_text(const Series& series);
+
+}  // namespace stipple::emva1288

@@ -1,0 +1,103 @@
+"""EMVA 1288: a series of the emulated sensor gives back what it is configured to."""
+
+import json
+import unittest
+
+from program import INPUT, USAGE, ProgramTest
+
+# What has to hold, relative.
+BOUNDS = {"gain_dn_per_e": 0.02, "quantum_efficiency": 0.02, "dark_noise_e": 0.03,
+          "saturation_e": 0.08, "dsnu_e": 0.04, "prnu": 0.04}
+
+
+class CharacterizeTest(ProgramTest):
+    def characterize(self, sensor, *settings):
+        arguments = [word for setting in settings for word in ("--set", setting)]
+        return self.figures("characterize", "--sensor", sensor, "-o", "series", *arguments)
+
+    def expect_configured(self, figures, keys):
+        self.assertFalse(figures["biased"])
+        for key in keys:
+            measured, configured = figures["measured"][key], figures["configured"][key]
+            self.assertLess(abs(measured / configured - 1), BOUNDS[key], key)
+
+    def test_a_camera_is_what_it_is_configured_to(self):
+        figures = self.characterize("grasshopper")
+        self.expect_configured(figures, BOUNDS)
+        self.assertAlmostEqual(figures["configured"]["gain_dn_per_e"], 0.280, 5)
+        self.assertEqual(figures["configured"]["quantum_efficiency"], 0.45)
+        self.assertLess(figures["measured"]["linearity_error"], 0.002)
+        self.expect_a_series_for_other_programs(figures)
+
+    def expect_a_series_for_other_programs(self, figures):
+        lines = (self.folder / "series/emva1288_data.txt").read_text().split("\n")
+        self.assertEqual(lines[:3], ["v 4.0", "n 12 320 240", "d 5000000"])
+        self.assertEqual(sum(line.startswith("i ") for line in lines), 302)
+        self.assertEqual(sum(line.startswith("b ") for line in lines), 51)
+        for name in ("photon_transfer.png", "photon_transfer.svg", "image_0302.png"):
+            self.assertGreater((self.folder / "series" / name).stat().st_size, 1000, name)
+        again = self.figures("characterize", "--evaluate", "series/emva1288_data.txt")
+        self.assertEqual(again["measured"], figures["measured"])
+        self.assertNotIn("configured", again)
+        self.succeed("characterize", "--evaluate", "series/emva1288_data.txt", "-o", "charts")
+        self.assertTrue((self.folder / "charts/photon_transfer.svg").exists())
+
+    def test_a_noisy_chip_is_what_it_is_configured_to(self):
+        settings = ["prnu=0.01", "dsnu_e=20", "dead_pixel_fraction=0"]
+        self.expect_configured(self.characterize("t6", *settings), BOUNDS)
+
+    def test_pixels_that_differ_much_saturate_early(self):
+        """With PRNU of 6 % the variance falls where the first pixels are full: 10 to 15 % low."""
+        figures = self.characterize("t6")
+        self.expect_configured(figures, set(BOUNDS) - {"saturation_e", "dsnu_e"})
+        low = figures["measured"]["saturation_e"] / figures["configured"]["saturation_e"]
+        self.assertTrue(0.85 < low < 0.92, low)
+
+    def test_dark_current_and_temperature_are_part_of_the_dark_noise(self):
+        """400 e/s at 44 degrees are 3200 e/s: 16 e in 5 ms."""
+        figures = self.characterize("grasshopper", "dark_current_e_per_s=400", "temperature_c=44")
+        self.assertAlmostEqual(figures["configured"]["dark_noise_e"], (10.9**2 + 16) ** 0.5, 6)
+        self.expect_configured(figures, BOUNDS)
+        self.assertAlmostEqual(figures["dark_mean_dn"], 64 + 16 * 0.28, delta=0.05)
+
+    def test_a_curve_of_the_converter_is_a_linearity_error(self):
+        figures = self.characterize("grasshopper", "inl_dn=40")
+        self.assertGreater(figures["measured"]["linearity_error"], 0.003)
+
+    def test_without_black_level_the_evaluation_is_biased_and_says_so(self):
+        """Eq. 1 cuts the noise off at 0: mean 0.40 sigma, deviation 0.58 sigma of 10 e."""
+        text = self.succeed("characterize", "--sensor", "paper", "-o", "series",
+                            "--set", "bit_depth=12", "--json", "figures.json")
+        self.assertIn("black level is too low", text)
+        figures = json.loads((self.folder / "figures.json").read_text())
+        self.assertTrue(figures["biased"])
+        sigma_dn = 10 * 4095 / 2000
+        self.assertAlmostEqual(figures["dark_mean_dn"] / sigma_dn, 0.399, delta=0.005)
+        self.assertAlmostEqual(figures["dark_deviation_dn"] / sigma_dn, 0.584, delta=0.005)
+        ratio = figures["measured"]["dark_noise_e"] / 10
+        self.assertTrue(0.4 < ratio < 0.65, ratio)
+
+    def test_a_black_level_of_four_sigma_removes_the_bias(self):
+        figures = self.characterize("paper", "mode=physical", "bit_depth=12", "prnu=0.01",
+                                    "dsnu_e=3")
+        self.expect_configured(figures, BOUNDS)
+
+    def test_what_cannot_be_used_is_named(self):
+        self.fails(USAGE, ["--output"], "characterize", "--sensor", "t6")
+        self.fails(INPUT, ["unequal transmittance"], "characterize", "--sensor", "ideal", "-o", "a",
+                   "--set", "transmittance=[0.5]")
+        self.fails(INPUT, ["schedule"], "characterize", "-o", "a", "--set", "schedule.tile_rows=3")
+        self.fails(INPUT, ["a/emva1288_data.txt", "more light"], "characterize", "--sensor", "ideal", "-o", "a")
+        self.fails(INPUT, ["none.txt"], "characterize", "--evaluate", "none.txt")
+        (self.folder / "a.txt").write_text("v 4.0\nn 8 4 4\nd 1\ni a.png\ni b.png\n")
+        self.fails(INPUT, ["a.png"], "characterize", "--evaluate", "a.txt")
+        self.write_png("a.png", [[1, 2], [3, 4]])
+        self.fails(INPUT, ["a.png", "2 x 2", "4 x 4"], "characterize", "--evaluate", "a.txt")
+        (self.folder / "a.txt").write_text("v 4.0\nn 2 2 2\nd 1\ni a.png\ni a.png\n")
+        self.fails(INPUT, ["a.png", "DN 4", "2 bits"], "characterize", "--evaluate", "a.txt")
+        (self.folder / "a.txt").write_text("v 4.0\nn 8 2 2\nd 1\ni a.png\ni a.png\nq\n")
+        self.fails(INPUT, ["a.txt:6"], "characterize", "--evaluate", "a.txt")
+
+
+if __name__ == "__main__":
+    unittest.main()
