@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/json_file.h"
+#include "apps/schedule_choice.h"
+#include "apps/schedule_commands.h"
+#include "apps/text_file.h"
+#include "core/error.h"
+#include "readout/program_text.h"
+
+namespace stipple {
+namespace {
+
+struct CompileOptions {
+    ScheduleChoice schedule;
+    std::filesystem::path output;
+};
+
+void compile(const CompileOptions& options, const RunOptions& run) {
+    if (options.output.extension() != ".mem" && options.output.extension() != ".hex")
+        throw InputError(options.output.string(), "a memory image is a .mem or a .hex");
+    const NamedSchedule schedule = set_up_schedule(options.schedule);
+    const NamedProgram named = {schedule.name, compile_schedule(schedule.schedule)};
+    JsonFile json(run);
+    write_text_file(options.output, run.force, program_text(named));
+    const SequencerProgram& program = named.program;
+    const auto words = std::int64_t{program.period_slots} * program.tile_rows;
+    json.write({{"name", named.name},
+                {"tile_rows", program.tile_rows},
+                {"tile_cols", program.tile_cols},
+                {"period_slots", program.period_slots},
+                {"bits_per_pixel", program.bits_per_pixel},
+                {"words", words},
+                {"word_bits", program.tile_cols * program.bits_per_pixel},
+                {"program_bits", program.bits()}});
+    run.say(fmt::format(
+        "{}: {} words of {} bits, {} bits in all: {} slots of a tile of {} x {}, "
+        "{} per pixel",
+        options.output.string(), words, program.tile_cols * program.bits_per_pixel, program.bits(),
+        program.period_slots, program.tile_cols, program.tile_rows, program.bits_per_pixel));
+}
+
+}  // namespace
+
+void add_schedule_compile(CLI::App& schedule, Action& action) {
+    auto* command = schedule.add_subcommand(
+        "compile", "Write the program of the chip's sequencer, a memory image for $readmemh");
+    const auto options = std::make_shared<CompileOptions>();
+    add_schedule_choice(*command, options->schedule);
+    command->add_option("-o,--output", options->output, "memory image, .mem or .hex")
+        ->required()
+        ->type_name("FILE");
+    command->footer(
+        "Examples:\n"
+        "  stipple schedule compile tiled -o tiled.mem\n"
+        "  stipple schedule compile tiled -o tiled.mem --set tile_rows=8 --seed 7\n"
+        "  stipple emulate scene -o clip.stipple --schedule tiled.mem");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { compile(*options, run); };
+    });
+}
+
+}  // namespace stipple
