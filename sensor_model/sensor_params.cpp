@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -92,7 +93,9 @@ double default_black_level_dn(const SensorParams& params) {
     const double temporal_e = params.temporal_read_noise_e();
     const double all_e = std::sqrt(temporal_e * temporal_e + terms.dsnu_e * terms.dsnu_e +
                                    terms.column_noise_e * terms.column_noise_e);
-    return std::ceil(4 * all_e / params.gain_e_per_dn());
+    double largest_gain = 1;
+    for (const double gain : terms.gain_map) largest_gain = std::max(largest_gain, gain);
+    return std::ceil(4 * all_e * largest_gain / params.gain_e_per_dn());
 }
 
 void validate(const SensorParams& params) {

@@ -39,6 +39,27 @@ TEST_F(ConfigTest, ReadsEveryKindOfValueByItsDottedName) {
     EXPECT_NO_THROW(config.reject_unknown_keys());
 }
 
+TEST_F(ConfigTest, ReadsOneNumberOrAListOfNumbers) {
+    Config config = parse("one = 2.5\nmany = [1, 0.5]\nnone = []\n");
+    EXPECT_EQ(config.numbers("one", {}, 0, 10), (std::vector<double>{2.5}));
+    EXPECT_EQ(config.numbers("many", {}, 0, 10), (std::vector<double>{1, 0.5}));
+    EXPECT_EQ(config.numbers("none", {7}, 0, 10), std::vector<double>{});
+    EXPECT_EQ(config.numbers("absent", {7}, 0, 10), std::vector<double>{7});
+    EXPECT_NO_THROW(config.reject_unknown_keys());
+    expect_parts(message_of<InputError>([&] { return config.numbers("many", {}, 0, 0.75); }),
+                 {"sensor.toml:2: many", "1 is outside 0..0.75"});
+    Config text = parse("a = [1, \"x\"]\n");
+    expect_parts(message_of<InputError>([&] { return text.numbers("a", {}, 0, 10); }),
+                 {"sensor.toml:1: a", "a number or a list of numbers"});
+}
+
+TEST_F(ConfigTest, TellsWhetherAKeyIsGivenWithoutMakingItKnown) {
+    Config config = parse("a = 1\n");
+    EXPECT_TRUE(config.contains("a"));
+    EXPECT_FALSE(config.contains("b"));
+    EXPECT_THROW(config.reject_unknown_keys(), InputError);
+}
+
 TEST_F(ConfigTest, FallsBackForAbsentKeys) {
     Config config = parse("");
     EXPECT_EQ(config.number("a", 0.1, 0, 1), 0.1);

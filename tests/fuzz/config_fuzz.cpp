@@ -16,6 +16,7 @@ void read_all_keys(Config& config) {
     static_cast<void>(config.boolean("adc.dither", false));
     static_cast<void>(config.choice("mode", "paper", {"paper", "physical"}));
     static_cast<void>(config.integers("exposure_slots", {1}, 1, 64));
+    static_cast<void>(config.numbers("row_noise_e", {}, 0, 100));
     static_cast<void>(config.text("name", ""));
     config.reject_unknown_keys();
 }

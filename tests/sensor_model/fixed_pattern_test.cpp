@@ -58,8 +58,8 @@ TEST(FixedPatternTest, HasTheConfiguredSpreads) {
     const auto offset = moments(pattern, [](const auto& s) { return s.offset_e; });
     EXPECT_NEAR(offset.mean, 0, 3 * kMean);
     EXPECT_NEAR(offset.deviation, 3, 3 * kDeviation);
-    const auto noise2 =
-        moments(pattern, [](const auto& s) { return std::pow(double{s.read_noise_e}, 2); });
+    const auto noise2 = moments(
+        pattern, [](const auto& s) { return std::pow(static_cast<double>(s.read_noise_e), 2); });
     EXPECT_NEAR(noise2.mean, 100, 100 * 0.4 * kMean) << "read_noise_e is the rms over pixels";
 }
 
@@ -105,7 +105,7 @@ TEST(FixedPatternTest, ColumnsShareTheirOffset) {
     for (std::size_t col = 0; col < 500; ++col) {
         const float offset = pattern.plane(0)[col].offset_e;
         EXPECT_EQ(pattern.plane(0)[399 * 500 + col].offset_e, offset);
-        sum2 += std::pow(double{offset}, 2);
+        sum2 += std::pow(static_cast<double>(offset), 2);
     }
     EXPECT_NEAR(std::sqrt(sum2 / 500), 5, 5 * 5 / std::sqrt(1000.0));
 }

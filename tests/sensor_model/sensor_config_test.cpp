@@ -121,6 +121,7 @@ TEST(SensorConfigTest, ReadsEveryKeyOfThePhysicalMode) {
 TEST(SensorConfigTest, TakesABlackLevelOfFourStandardDeviationsInPhysicalMode) {
     // 4 sqrt(10^2 + 24^2) = 104 e at 2000 / 255 e/DN: 13.26 DN.
     EXPECT_EQ(read({"mode=physical", "dsnu_e=24"}).physical.black_level_dn, 14);
+    EXPECT_EQ(read({"mode=physical", "dsnu_e=24", "gain_map=[2]"}).physical.black_level_dn, 27);
     EXPECT_EQ(read({"mode=physical", "read_noise_e=0"}).physical.black_level_dn, 0);
     EXPECT_EQ(read({"mode=physical", "dsnu_e=24", "black_level_dn=1"}).physical.black_level_dn, 1);
     EXPECT_EQ(read().physical.black_level_dn, 0);
