@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostSide = 65535;
 constexpr int kMostChannels = 4096;
-constexpr double kSigma = 0.9;  ///< groups; of square groups (docs/hardware_schedules.md)
+constexpr double kSigma = 0.8;  ///< groups; of square groups (docs/hardware_schedules.md)
 constexpr std::int32_t kFullWeight = 256;
 
 /// exp(-x) for 0 <= x < 1024 with products only, so that it has the same bits everywhere.
@@ -48,8 +48,8 @@ GroupGrid grid_of(const HardwareTile& tile) {
 std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int most_rows, int most_cols) {
     // The longer side of a group counts as less than it measures: motion bridges both sides alike.
     const double aspect = std::sqrt(std::sqrt(1.0 * grid.group_cols / grid.group_rows));
-    const double sigma_rows = kSigma * std::sqrt(aspect);
-    const double sigma_cols = kSigma / std::sqrt(aspect);
+    const double sigma_rows = kSigma * aspect;
+    const double sigma_cols = kSigma / aspect;
     const auto reach = [](double sigma, int most) {
         return std::min(most, static_cast<int>(3 * sigma) + 1);
     };

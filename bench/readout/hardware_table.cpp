@@ -191,7 +191,7 @@ void draw(const std::vector<Point>& points, const std::string& file) {
                    "set ylabel 'decoded PSNR against random, dB'\n"
                    "set grid ytics\nset key bottom left\nset offsets 0.3, 0.3, 0.3, 0.3\n"
                    "plot $points using 1:2:xtic(4) with linespoints pt 7 title 'random groups', "
-                   "$points using 1:3 with linespoints pt 7 title 'hardware\\_tiled'\n");
+                   "$points using 1:3 with linespoints pt 7 title 'hardware_tiled'\n");
 }
 
 }  // namespace
