@@ -36,16 +36,22 @@ void check(const CheckOptions& options, const RunOptions& run) {
                                              .seed = choice.seed},
                                             choice.shape);
     const auto& [name, source, schedule] = setup.schedule;
+    const SensorParams& sensor = setup.params;
     JsonFile json(run);
-    const auto problem = store_problem(schedule, setup.params.charge_stores);
+    auto problem = store_problem(schedule, sensor.charge_stores);
+    std::optional<std::string> remark;
+    if (setup.timing && !problem)
+        problem = timing_problem(schedule, *setup.timing, setup.shape, sensor.slot_us);
+    if (setup.timing) remark = group_remark(schedule, setup.timing->addressing, setup.shape);
     json.write({{"schedule", name},
-                {"sensor", setup.params.name},
+                {"sensor", sensor.name},
                 {"legal", !problem.has_value()},
-                {"problem", problem.value_or("")}});
+                {"problem", problem.value_or("")},
+                {"remark", remark.value_or("")}});
     if (problem)
-        throw InputError(fmt::format("schedule {} on sensor {}", name, setup.params.name),
-                         *problem);
-    run.say(fmt::format("{} can be done by the sensor {}", name, setup.params.name));
+        throw InputError(fmt::format("schedule {} on sensor {}", name, sensor.name), *problem);
+    run.say(fmt::format("{} can be done by the sensor {}{}", name, sensor.name,
+                        remark ? "; " + *remark : ""));
 }
 
 }  // namespace
@@ -58,7 +64,8 @@ void add_schedule_check(CLI::App& schedule, Action& action) {
     command->add_option("--sensor", options->sensor, "sensor (paper)")->type_name("NAME|FILE");
     command->footer(
         "Examples:\n"
-        "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2");
+        "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2\n"
+        "  stipple schedule check tiled --sensor lux1310 --size 1280x1024");
     command->callback([options, &action] {
         action = [options](const RunOptions& run) { check(*options, run); };
     });

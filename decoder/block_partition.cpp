@@ -19,13 +19,17 @@ Stretch part(std::int64_t length, std::int64_t i, std::int64_t parts) {
 
 }  // namespace
 
-Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots) {
+std::int64_t halo_slots(int longest_span_slots) {
+    return std::clamp<std::int64_t>(longest_span_slots - 1, kHaloSlots, kMaxHaloSlots);
+}
+
+Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots, std::int64_t halo) {
     const bool last = slots - core_begin <= kCoreSlots + kRestSlots;
     const std::int64_t core_end = last ? slots : core_begin + kCoreSlots;
-    return {.begin = std::max<std::int64_t>(core_begin - kHaloSlots, 0),
+    return {.begin = std::max<std::int64_t>(core_begin - halo, 0),
             .core_begin = core_begin,
             .core_end = core_end,
-            .end = std::min(core_end + kHaloSlots, slots)};
+            .end = std::min(core_end + halo, slots)};
 }
 
 std::vector<Tile> frame_tiles(FrameShape shape) {

@@ -16,16 +16,21 @@ struct Stretch {
     std::int64_t end = 0;
 };
 
-/// Slots of a block's core, of its halo on each side, and the longest rest that the last block
-/// takes along instead of leaving it to a block of its own.
+/// Slots of a block's core, of its halo on each side, at least and at most, and the longest rest
+/// that the last block takes along instead of leaving it to a block of its own.
 inline constexpr std::int64_t kCoreSlots = 48;
 inline constexpr std::int64_t kHaloSlots = 8;
+inline constexpr std::int64_t kMaxHaloSlots = 32;
 inline constexpr std::int64_t kRestSlots = 16;
 
+/// The halo that holds the whole of the exposures of a block's core, as far as a halo may grow.
+[[nodiscard]] std::int64_t halo_slots(int longest_span_slots);
+
 /// The block of slots whose core begins at `core_begin`, of a recording that has `slots` slots; if
-/// it may go on, `slots` is what is known so far, at least core_begin + kCoreSlots + kRestSlots
-/// + 1.
-[[nodiscard]] Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots);
+/// it may go on, `slots` is what is known so far, more than core_begin + kCoreSlots + kRestSlots
+/// and no less than core_begin + kCoreSlots + halo.
+[[nodiscard]] Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots,
+                                   std::int64_t halo = kHaloSlots);
 
 /// Tiles of a frame, in rows and columns.
 struct Tile {

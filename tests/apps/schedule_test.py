@@ -81,6 +81,19 @@ class CheckTest(ProgramTest):
                    "clip.stipple", "--schedule", "two_bucket")
 
 
+    def test_a_readout_must_fit_its_slot(self):
+        arguments = ("schedule", "check", "tiled", "--sensor", "lux1310", "--size", "320x240")
+        self.assertTrue(self.figures(*arguments)["legal"])
+        self.fails(INPUT, ["tiled", "lux1310", "slot ", "us"], *arguments, "--set",
+                   "sensor.slot_us=10")
+
+    def test_pixels_that_differ_from_their_group_are_remarked_on(self):
+        figures = self.figures("schedule", "check", "tiled", "--sensor", "lux1310", "--size",
+                               "320x240", "--set", "sensor.timing.addressing=group")
+        self.assertTrue(figures["legal"])
+        self.assertIn("pixel (0, 1)", figures["remark"])
+
+
 class ImportTest(ProgramTest):
     def test_masks_of_every_type_are_one_exposure_per_period_and_pixel(self):
         masks = np.random.default_rng(2).random((8, 16, 16)) < 0.5

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "decoder/data_prox.h"
+
 namespace stipple {
 namespace {
 
@@ -30,6 +32,20 @@ TEST(BlockPartitionTest, ABlockIsTheSameWhateverFollowsIt) {
         EXPECT_EQ(s.core_end, 96 + kCoreSlots);
         EXPECT_EQ(s.end, 96 + kCoreSlots + kHaloSlots);
     }
+}
+
+TEST(BlockPartitionTest, HalosHoldTheLongestExposureUpToALimit) {
+    EXPECT_EQ(halo_slots(0), kHaloSlots);
+    EXPECT_EQ(halo_slots(9), 8);
+    EXPECT_EQ(halo_slots(10), 9);
+    EXPECT_EQ(halo_slots(33), 32);
+    EXPECT_EQ(halo_slots(64), 32);
+    const Stretch s = slot_stretch(96, 500, 32);
+    EXPECT_EQ(s.begin, 64);
+    EXPECT_EQ(s.end, 96 + kCoreSlots + 32);
+    // The last block, and one with two halos, fit the run of `data_prox`.
+    EXPECT_LE(kCoreSlots + kRestSlots + kMaxHaloSlots, kMaxRunSlots);
+    EXPECT_LE(kCoreSlots + 2 * kMaxHaloSlots, kMaxRunSlots);
 }
 
 TEST(BlockPartitionTest, TilesCoverEveryPixelOnce) {

@@ -47,7 +47,7 @@ void write_recording(const FluxVideo& video, const std::string& schedule,
 
 void write_recording(const FluxVideo& video, const NamedSchedule& named, std::uint64_t seed,
                      const std::filesystem::path& file) {
-    const SensorParams params;
+    const SensorParams params{.charge_stores = named.schedule.charge_stores()};
     StreamWriter writer(file, {.shape = video.shape(),
                                .slot_us = params.slot_us,
                                .calibration = calibration_of(params),
