@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,7 +16,7 @@ struct GroupCode {
     std::uint16_t order = 0;
     std::uint16_t first_slot = 0;
 
-    bool operator==(const GroupCode&) const = default;
+    auto operator<=>(const GroupCode&) const = default;
 };
 
 /// Codes of the groups of a tile, row by row.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostRests = 24;        ///< ways to fill a rest that are kept
 constexpr int kMostRestSteps = 4000;  ///< changes tried for each
-constexpr int kFewRests = 4;  ///< with fewer, every channel takes what is most even for itself
+constexpr int kFewRests = 6;  ///< with fewer, rows would be in phase: each channel is even alone
 
 using Codes = std::vector<GroupCode>;
 
@@ -99,6 +99,9 @@ class Rests {
             Codes rest = search(codes, size, target, draws);
             if (count(codes, rest).distance2(target) == 0) rests_.push_back(std::move(rest));
         }
+        for (Codes& rest : rests_) std::ranges::sort(rest);
+        std::ranges::sort(rests_);
+        rests_.erase(std::unique(rests_.begin(), rests_.end()), rests_.end());
         alike_ = rests_.size() >= kFewRests;
         if (!alike_) rests_ = std::move(even);
     }
