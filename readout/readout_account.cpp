@@ -191,6 +191,10 @@ std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
         throw InputError(kPlace, fmt::format("a slot of {} us is shorter than a clock of {} Hz; "
                                              "raise slot_us",
                                              slot_us, timing.clock_hz));
+    if (clocks > static_cast<double>(kMostReadoutClocks))
+        throw InputError(kPlace, fmt::format("a slot of {} us has more than {} clocks of {} Hz; "
+                                             "lower slot_us",
+                                             slot_us, kMostReadoutClocks, timing.clock_hz));
     return static_cast<std::int64_t>(clocks);
 }
 

@@ -75,12 +75,28 @@ void check_clocks(const ReadoutTiming& timing, std::string_view sensor) {
             sensor, "settle_clocks does not rise from 0 on");
 }
 
+/// So that no sum of clocks of a recording overflows.
+void check_length(const ReadoutTiming& timing, std::string_view sensor) {
+    const int longest_settle = timing.settle_clocks.empty() ? 0 : timing.settle_clocks.back();
+    const std::int64_t row = convert_clocks(timing, longest_settle, timing.columns_per_adc) +
+                             transfer_clocks(timing, timing.cols / timing.addressing.channels) +
+                             2 * std::int64_t{timing.blanking_clocks};
+    const std::int64_t rows =
+        std::int64_t{timing.rows} + timing.dark_rows + timing.overhead_rows + 1;
+    require(static_cast<double>(row) * static_cast<double>(rows) <=
+                static_cast<double>(kMostReadoutClocks),
+            sensor,
+            fmt::format("{} rows of up to {} clocks exceed {} clocks a readout", rows, row,
+                        kMostReadoutClocks));
+}
+
 }  // namespace
 
 void validate(const ReadoutTiming& timing, std::string_view sensor) {
     check_array(timing, sensor);
     check_row_table(timing, sensor);
     check_clocks(timing, sensor);
+    check_length(timing, sensor);
 }
 
 int settle_clocks(const ReadoutTiming& timing, int channel_columns) noexcept {

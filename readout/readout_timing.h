@@ -10,6 +10,9 @@
 
 namespace stipple {
 
+/// Clocks of a readout or a slot are at most that many.
+inline constexpr std::int64_t kMostReadoutClocks = std::int64_t{1} << 40U;
+
 /// How the conversion of a row and the transfer of a row to the link share the time.
 enum class RowTimeLaw : std::uint8_t {
     kOverlapped,  ///< row i is transferred while row i + 1 is converted

@@ -174,6 +174,7 @@ TEST(ReadoutAccountTest, WhatDroppingRowsCannotHelpIsRefused) {
     expect_parts(problem(2000), {"exposure code", "2228", "slot_us"});
     expect_parts(problem(3000), {"overhead", "9919", "slot_us"});  // 319 + 40 x 240
     EXPECT_THROW(static_cast<void>(slot_clocks(timing, 0.001)), InputError);
+    EXPECT_THROW(static_cast<void>(slot_clocks(timing, 1e12)), InputError);
     EXPECT_EQ(slot_clocks(timing, 1000), 74250);
 }
 

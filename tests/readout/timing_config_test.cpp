@@ -54,6 +54,8 @@ TEST(TimingConfigTest, ImpossibleTimingNamesTheConstraint) {
              Case{{"timing.row_table_cols=[640]", "timing.row_table_clocks=[9]"}, {"640", "1280"}},
              Case{{"timing.row_table_cols=[640, 1280]", "timing.row_table_clocks=[9, 8]"},
                   {"row_table_clocks", "falls"}},
+             Case{{"timing.overhead_rows=65535", "timing.adc_clocks=100000000"},
+                  {"exceed", "rows"}},
              Case{{"timing.law=random"}, {"timing.law", "overlapped"}},
              Case{{"timing.rows=70000"}, {"timing.rows", "65535"}},
              Case{{"timing.channel=8"}, {"timing.channel", "timing.channels"}},
