@@ -143,6 +143,9 @@ TEST(PublishedTimingTest, AQuarterOfTheColumnsGainsWhatTheRowTimeLawAllows) {
     // 4 exposures in 15 slots: 1280 / 16 x 4 / 15 = 21.3 columns a channel.
     const auto lux = sensor_timing("lux1310");
     EXPECT_EQ(even_readout(lux, {1024, 1280, 1}, 4.0 / 15).row, 24);
+    // Dark rows are read in full; 93 clocks and a conversion of 19 + 3 come first.
+    const auto dark = sensor_timing("lux1310", {"timing.dark_rows=4"});
+    EXPECT_EQ(even_readout(dark, {1024, 1280, 1}, 0.25).total, 93 + 22 + 4 * 82 + 1024 * 22);
 }
 
 }  // namespace
