@@ -64,12 +64,15 @@ TEST(PublishedTimingTest, Lux2100) {
                                             {640, 96, 24046, 1}});
 }
 
+constexpr std::array kWidths{1408, 1344, 1280, 1216, 1152, 1088, 1024, 960, 896, 640, 320};
+
+/// Frame times of windows of `rows` rows and each of those widths.
+struct Line {
+    int rows;
+    std::array<double, kWidths.size()> ms;
+};
+
 TEST(PublishedTimingTest, Imx273IsWithinTwoMicrosecondsInAllCells) {
-    constexpr std::array kWidths{1408, 1344, 1280, 1216, 1152, 1088, 1024, 960, 896, 640, 320};
-    struct Line {
-        int rows;
-        std::array<double, kWidths.size()> ms;
-    };
     constexpr std::array kLines{
         Line{1080, {5.584, 5.283, 4.981, 4.830, 4.529, 4.378, 4.076, 3.774, 3.623, 3.623, 3.623}},
         Line{1024, {5.305, 5.019, 4.732, 4.589, 4.302, 4.159, 3.872, 3.586, 3.442, 3.442, 3.442}},
