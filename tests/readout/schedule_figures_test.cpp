@@ -27,8 +27,9 @@ TEST(ScheduleFiguresTest, AreThoseOfTheClosedFormForAnEvenTile) {
 }
 
 TEST(ScheduleFiguresTest, CountTheMemoryOfTheCompiledSchedule) {
-    for (const auto& schedule : {tiled_schedule(8, 8, kPaperExposureSlots, 1),
-                                 gapped_schedule(3, 5, 29, 1), full_schedule(1, 4)})
+    for (const auto& schedule :
+         {tiled_schedule(8, 8, kPaperExposureSlots, 1), gapped_schedule(3, 5, 29, 1),
+          full_schedule(1, 4), interleaved_schedule(3, 5, 9, 1)})
         EXPECT_EQ(schedule_figures(schedule, kShape).code_memory_bits,
                   compile_schedule(schedule).bits());
 }
