@@ -22,6 +22,7 @@ struct CheckOptions {
 std::vector<std::string> emulate_settings(const std::vector<std::string>& settings) {
     constexpr std::string_view kSensor = "sensor.";
     std::vector<std::string> result;
+    result.reserve(settings.size());
     for (const std::string& setting : settings)
         result.push_back(setting.starts_with(kSensor) ? setting.substr(kSensor.size())
                                                       : "schedule." + setting);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -53,14 +54,11 @@ class Parser {
     double number(std::istringstream& words, std::string_view what, double least, double most) {
         std::string word;
         if (!(words >> word)) fail(fmt::format("{} is missing", what));
-        std::size_t used = 0;
-        double value = std::nan("");
-        try {
-            value = std::stod(word, &used);
-        } catch (const std::exception&) {
-            used = 0;
-        }
-        if (used != word.size()) fail(fmt::format("{} \"{}\" is not a number", what, word));
+        double value = 0;
+        const char* const end = word.data() + word.size();
+        const auto [stop, error] = std::from_chars(word.data(), end, value);
+        if (error != std::errc() || stop != end)
+            fail(fmt::format("{} \"{}\" is not a number", what, word));
         if (!(value >= least && value <= most))
             fail(fmt::format("{} {} is outside {}..{}", what, word, least, most));
         return value;

@@ -87,8 +87,8 @@ std::int64_t RowLoadCount::counted() const {
 void RowLoadCount::add(int channel_class, GroupCode code) {
     const int period = codes_.period();
     for (const int slot : codes_.due(code.order))
-        ++due_[static_cast<std::size_t>(channel_class * period +
-                                        (slot + code.first_slot) % period)];
+        ++due_[static_cast<std::size_t>(channel_class) * static_cast<std::size_t>(period) +
+               static_cast<std::size_t>((slot + code.first_slot) % period)];
 }
 
 }  // namespace stipple

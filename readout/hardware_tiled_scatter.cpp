@@ -88,6 +88,7 @@ class Rests {
         if (size == 0) return;
         const DueCounts none(codes);
         std::vector<Codes> even;  // distance to none: sum of squares, least where most even
+        even.reserve(kMostRests);
         for (int i = 0; i < kMostRests; ++i) even.push_back(search(codes, size, none, draws));
         const auto roughness = [&](const Codes& list) {
             return count(codes, list).distance2(none);

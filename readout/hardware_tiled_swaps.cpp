@@ -38,6 +38,7 @@ class PartTileLoads {
         const int round =
             tile_cols / std::gcd(tile_cols, classes);  // groups until the tile repeats
         std::vector<std::pair<int, int>> parts;        // first column, groups
+        parts.reserve(static_cast<std::size_t>(std::min(classes, grid.array_cols)));
         for (int first = 0; first < std::min(classes, grid.array_cols); ++first)
             parts.emplace_back(first % tile_cols,
                                ((grid.array_cols - 1 - first) / classes + 1) % round);

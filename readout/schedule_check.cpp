@@ -35,7 +35,7 @@ std::optional<std::string> store_problem(const ExposureSchedule& schedule, int c
                     "pixel ({}, {}) slot {}: exposures interleave; this schedule takes {} charge "
                     "stores per pixel, the sensor has {}{}",
                     row, col, *slot, schedule.charge_stores(), charge_stores,
-                    schedule.charge_stores() == 2 ? " (--set charge_stores=2 gives it two)"
+                    schedule.charge_stores() == 2 ? " (its key charge_stores=2 gives it two)"
                                                   : ", and two is the most that can be emulated");
     return std::nullopt;
 }
