@@ -1,7 +1,7 @@
 // The tables of docs/hardware_schedules.md: what schedules gain in frame rate on each sensor with a
 // section [timing], what they cost in quality, and the same for groups of growing size. Many
-// minutes long, so the tests do not run it. `bench_hardware_table FILE.svg` also draws the chart of
-// groups.
+// minutes long, so the tests do not run it. `bench_hardware_table groups FILE.svg` also draws the
+// chart of groups.
 #include <fmt/format.h>
 
 #include <algorithm>
