@@ -38,7 +38,7 @@ NamedSchedule set_up_schedule(const ScheduleChoice& choice) {
     SensorChoice sensor{.schedule = choice.schedule, .seed = choice.seed};
     for (const std::string& setting : choice.settings)
         sensor.settings.push_back("schedule." + setting);
-    return set_up_schedule(sensor, choice.shape);
+    return set_up_schedule(sensor, choice.shape, ColumnAddressing{});
 }
 
 }  // namespace stipple

@@ -93,20 +93,13 @@ FrameShape array_of(const SensorParams& params, FrameShape footage) {
     return {footage.rows, footage.cols, 1};
 }
 
-/// How the chosen sensor addresses columns, if its file says.
-ColumnAddressing addressing_of(const SensorChoice& choice) {
-    Config sensor(find_config("sensors", choice.sensor), settings_of(choice, ""));
-    constexpr int kAnyBits = 8;
-    const std::optional<ReadoutTiming> timing = read_timing(sensor, kAnyBits);
-    return timing ? timing->addressing : ColumnAddressing{};
-}
-
 }  // namespace
 
-NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape) {
+NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
+                              const ColumnAddressing& addressing) {
     if (is_program(choice.schedule)) return read_program(choice);
     Config config(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
-    NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing_of(choice));
+    NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing);
     config.reject_unknown_keys();
     return schedule;
 }
@@ -130,8 +123,10 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {
     const SensorDescription sensor = read_sensor_file(choice);
     const FrameShape shape = array_of(sensor.params, footage);
     if (sensor.timing) check_window(*sensor.timing, shape);
+    const ColumnAddressing addressing =
+        sensor.timing ? sensor.timing->addressing : ColumnAddressing{};
     return {.params = sensor.params,
-            .schedule = set_up_schedule(choice, shape),
+            .schedule = set_up_schedule(choice, shape, addressing),
             .shape = shape,
             .footage = footage,
             .seed = choice.seed,

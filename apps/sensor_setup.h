@@ -44,7 +44,8 @@ struct SensorSetup {
 
 /// The chosen schedule, made for an array of `shape`. \throws InputError naming file, line and key
 /// of what cannot be used.
-[[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape);
+[[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
+                                            const ColumnAddressing& addressing);
 
 /// The parameters of a sensor that has no schedule. \throws InputError naming file, line and key of
 /// what cannot be used; the schedule's settings cannot.

@@ -55,7 +55,7 @@ void time_readout(const TimingOptions& options, const RunOptions& run) {
     check_window(timing, shape);
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, true);
-    const NamedSchedule named = set_up_schedule(options.sensor, shape);
+    const NamedSchedule named = set_up_schedule(options.sensor, shape, timing.addressing);
     const SlotBudget budget{slot_clocks(timing, sensor.params.slot_us), OverrunPolicy::kStretch};
     ReadoutAccount account(timing, named.schedule, shape, budget);
     const ReadoutRate rate = rate_of(timing, named.schedule, shape);

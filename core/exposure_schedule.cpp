@@ -91,6 +91,7 @@ void ExposureSchedule::check_pixel(int pixel) {
             open[slot] = true;
         }
         covered_slots += static_cast<std::uint32_t>(e->span_slots());
+        longest_span_slots_ = std::max(longest_span_slots_, e->span_slots());
         const auto next_begin = e + 1 == end ? begin->first_slot + period : (e + 1)->first_slot;
         if (e->first_slot + static_cast<std::uint32_t>(e->span_slots()) > next_begin)
             interleaved = true;
@@ -195,8 +196,8 @@ ExposureSchedule random_schedule(int rows, int cols, std::span<const int> exposu
             std::swap(order[i], order[draw(static_cast<std::uint32_t>(i), i + 1)]);
         auto slot = draw(0, index(period_slots));
         for (const int length : order) {
-            const auto mask = ~std::uint64_t{0} >> static_cast<unsigned>(64 - length);
-            exposures.push_back({slot % static_cast<std::uint32_t>(period_slots), mask});
+            exposures.push_back(
+                {slot % static_cast<std::uint32_t>(period_slots), open_without_gap(length)});
             slot += static_cast<std::uint32_t>(length);
         }
         first[pixel + 1] = static_cast<std::uint32_t>(exposures.size());

@@ -22,6 +22,11 @@ struct Exposure {
     bool operator==(const Exposure&) const = default;
 };
 
+/// `Exposure::open_slots` of `slots` slots in succession. Precondition: 1 <= slots <= 64.
+[[nodiscard]] constexpr std::uint64_t open_without_gap(int slots) {
+    return ~std::uint64_t{0} >> static_cast<unsigned>(64 - slots);
+}
+
 /// A pixel that is due for readout, in a row of the tile.
 struct DuePixel {
     std::uint16_t col = 0;         ///< column in the tile
@@ -61,6 +66,8 @@ class ExposureSchedule {
     [[nodiscard]] bool interleaved() const { return most_at_once_ > 1; }
     /// The most exposures of one pixel that are under way in one slot: the charge stores it needs.
     [[nodiscard]] int charge_stores() const { return most_at_once_; }
+    /// The most slots from the first to the last open one of an exposure; 0 if there is none.
+    [[nodiscard]] int longest_span_slots() const { return longest_span_slots_; }
     /// The charge store (0 or 1) of exposure `i` of a tile pixel, when it begins in repetition
     /// `begin_slot / period_slots` of the period. Exposures under way at once never share one. It
     /// alternates between repetitions where an odd number of exposures follow each other around
@@ -86,6 +93,7 @@ class ExposureSchedule {
     int tile_cols_;
     int period_slots_;
     int most_at_once_ = 1;
+    int longest_span_slots_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Exposure> exposures_;
     std::vector<std::uint8_t> stores_;  ///< by exposure, bit 0 in even repetitions, bit 1 in odd;

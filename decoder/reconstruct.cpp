@@ -119,15 +119,6 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     return video;
 }
 
-int longest_span_slots(const ExposureSchedule& schedule) {
-    int longest = 0;
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (const Exposure& e : schedule.exposures(row, col))
-                longest = std::max(longest, e.span_slots());
-    return longest;
-}
-
 }  // namespace
 
 DecodeMethod decode_method_from_name(std::string_view name) {
@@ -148,7 +139,7 @@ DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& 
                         name_of(header.cfa)));
     PacketBuffer buffer(reader);
     DecodeReport report;
-    const std::int64_t halo = halo_slots(longest_span_slots(header.schedule));
+    const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
     for (bool more = true; more;) {
         buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
         const Stretch slots = slot_stretch(report.slots, buffer.slots(), halo);

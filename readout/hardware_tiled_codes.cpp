@@ -103,8 +103,7 @@ void CodeSet::append(GroupCode code, std::vector<Exposure>& exposures) const {
     const auto period = static_cast<std::uint32_t>(period_);
     std::uint32_t slot = code.first_slot;
     for (const int length : orders_[code.order]) {
-        exposures.push_back(
-            {slot % period, ~std::uint64_t{0} >> static_cast<unsigned>(64 - length)});
+        exposures.push_back({slot % period, open_without_gap(length)});
         slot += static_cast<std::uint32_t>(length);
     }
 }

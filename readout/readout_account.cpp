@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "readout/sequencer_program.h"
 
 namespace stipple {
 namespace {
@@ -15,15 +16,6 @@ constexpr char kPlace[] = "readout timing";
 
 std::uint64_t wide(int value) {
     return static_cast<std::uint64_t>(value);
-}
-
-int longest_span_slots(const ExposureSchedule& schedule) {
-    int longest = 1;
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (const Exposure& e : schedule.exposures(row, col))
-                longest = std::max(longest, e.span_slots());
-    return longest;
 }
 
 /// Clocks of a readout that its ADCs or its link take; the rest is overhead.
@@ -102,7 +94,7 @@ ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedu
       shape_(shape),
       budget_(budget),
       row_loads_(timing_, schedule, shape),
-      first_steady_slot_(longest_span_slots(schedule) - 1),
+      first_steady_slot_(std::max(schedule.longest_span_slots(), 1) - 1),
       by_phase_(static_cast<std::size_t>(schedule.period_slots())) {
     if (budget.policy != OverrunPolicy::kDrop || budget.clocks == 0) return;
     const auto check = [&](std::int64_t clocks, const char* what) {
@@ -199,9 +191,8 @@ std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
 }
 
 std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule) {
-    const std::uint64_t bits = schedule.interleaved() ? 3 : schedule.gapless() ? 1 : 2;
-    return bits * wide(schedule.tile_rows()) * wide(schedule.tile_cols()) *
-           wide(schedule.period_slots());
+    return wide(program_bits_per_pixel(schedule)) * wide(schedule.tile_rows()) *
+           wide(schedule.tile_cols()) * wide(schedule.period_slots());
 }
 
 }  // namespace stipple

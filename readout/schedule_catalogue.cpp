@@ -247,8 +247,7 @@ ExposureSchedule full_schedule(int open_slots, int period_slots) {
                          fmt::format("{} open slots in a period of {}: needs 1 to {} open slots "
                                      "and a period not shorter",
                                      open_slots, period_slots, kLongestExposure));
-    const auto mask = ~std::uint64_t{0} >> static_cast<unsigned>(kLongestExposure - open_slots);
-    return {1, 1, period_slots, {0, 1}, {{0, mask}}};
+    return {1, 1, period_slots, {0, 1}, {{0, open_without_gap(open_slots)}}};
 }
 
 }  // namespace stipple

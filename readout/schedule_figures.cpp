@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "readout/readout_account.h"
+
 namespace stipple {
 namespace {
-
-/// As `compile_schedule`.
-int code_bits(const ExposureSchedule& schedule) {
-    if (schedule.charge_stores() > 1) return 3;
-    return schedule.gapless() ? 1 : 2;
-}
 
 void count_exposures(const ExposureSchedule& schedule, ScheduleFigures& figures) {
     figures.least_exposures = std::numeric_limits<int>::max();
@@ -48,10 +44,7 @@ ScheduleFigures schedule_figures(const ExposureSchedule& schedule, FrameShape sh
     figures.compression_ratio = 1 / schedule.samples_per_pixel_slot();
     figures.light_throughput = schedule.light_throughput();
     figures.charge_stores = schedule.charge_stores();
-    figures.code_memory_bits = static_cast<std::uint64_t>(schedule.tile_rows()) *
-                               static_cast<std::uint64_t>(schedule.tile_cols()) *
-                               static_cast<std::uint64_t>(schedule.period_slots()) *
-                               static_cast<std::uint64_t>(code_bits(schedule));
+    figures.code_memory_bits = schedule_memory_bits(schedule);
     count_exposures(schedule, figures);
     count_due_pixels(schedule, shape, figures);
     return figures;

@@ -46,14 +46,10 @@ std::uint8_t open_store(const ExposureSchedule& schedule, std::int64_t slot, Til
 Sequencer::Sequencer(const ExposureSchedule& schedule, FrameShape shape)
     : schedule_(&schedule), cols_(shape.cols), gapless_(schedule.gapless()) {
     assert(schedule.charge_stores() <= 2);
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (const Exposure& e : schedule.exposures(row, col))
-                longest_span_slots_ = std::max(longest_span_slots_, e.span_slots());
 }
 
 bool Sequencer::all_open(std::int64_t slot) const noexcept {
-    return gapless_ && slot + 1 >= longest_span_slots_;
+    return gapless_ && slot + 1 >= schedule_->longest_span_slots();
 }
 
 void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept {

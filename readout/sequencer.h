@@ -37,7 +37,6 @@ class Sequencer {
   private:
     const ExposureSchedule* schedule_;
     int cols_;
-    int longest_span_slots_ = 0;
     bool gapless_;
 };
 

@@ -117,6 +117,11 @@ class ExposureFinder {
 
 }  // namespace
 
+int program_bits_per_pixel(const ExposureSchedule& schedule) {
+    if (schedule.interleaved()) return 3;
+    return schedule.gapless() ? 1 : 2;
+}
+
 SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
     if (schedule.charge_stores() > 2)
         throw InputError("sequencer program",
@@ -127,9 +132,7 @@ SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
     SequencerProgram program{.tile_rows = schedule.tile_rows(),
                              .tile_cols = schedule.tile_cols(),
                              .period_slots = schedule.period_slots() * repetitions,
-                             .bits_per_pixel = schedule.interleaved() ? 3
-                                               : schedule.gapless()   ? 1
-                                                                      : 2,
+                             .bits_per_pixel = program_bits_per_pixel(schedule),
                              .pixels = {}};
     program.pixels.resize(index(program.tile_rows) * index(program.tile_cols) *
                           index(program.period_slots));

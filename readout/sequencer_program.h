@@ -29,6 +29,9 @@ struct SequencerProgram {
     bool operator==(const SequencerProgram&) const = default;
 };
 
+/// `SequencerProgram::bits_per_pixel` of a schedule.
+[[nodiscard]] int program_bits_per_pixel(const ExposureSchedule& schedule);
+
 /// The program repeats the schedule's period once, or twice where an exposure changes from one
 /// charge store to the other between repetitions. \throws InputError if two charge stores are too
 /// few.

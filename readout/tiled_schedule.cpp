@@ -24,7 +24,7 @@ int period_of(std::span<const int> lengths) {
 /// Draws what one pixel repeats: a permutation of `lengths` from a random offset.
 void draw_pixel(Draws& draws, std::span<const int> lengths, std::span<Exposure> exposures) {
     for (std::size_t i = 0; i < lengths.size(); ++i)
-        exposures[i].open_slots = ~std::uint64_t{0} >> static_cast<unsigned>(64 - lengths[i]);
+        exposures[i].open_slots = open_without_gap(lengths[i]);
     for (std::size_t i = lengths.size() - 1; i > 0; --i)
         std::swap(exposures[i], exposures[draws.below(i + 1)]);
     const auto period = static_cast<std::uint32_t>(period_of(lengths));

@@ -99,8 +99,7 @@ ExposureSchedule flutter_schedule(const Flutter& flutter, std::uint64_t seed) {
                                    most_open, kLongestPeriod));
     TileList list(flutter.tile_rows, flutter.tile_cols, flutter.codes * flutter.code_slots);
     Draws draws(seed, kFlutterPlane);
-    const std::uint64_t all =
-        ~std::uint64_t{0} >> static_cast<unsigned>(kLongestExposure - flutter.code_slots);
+    const std::uint64_t all = open_without_gap(flutter.code_slots);
     for (int pixel = 0; pixel < flutter.tile_rows * flutter.tile_cols; ++pixel) {
         for (int code = 0; code < flutter.codes; ++code) {
             const auto mask = draw_mask(draws, flutter.code_slots, flutter.open_slots);

@@ -19,9 +19,7 @@ class TileList {
         exposures_.push_back({slot % static_cast<std::uint32_t>(period_slots_), open_slots});
     }
     /// Adds `slots` slots without gaps, 1..64.
-    void add_open(std::uint32_t slot, int slots) {
-        add(slot, ~std::uint64_t{0} >> static_cast<unsigned>(64 - slots));
-    }
+    void add_open(std::uint32_t slot, int slots) { add(slot, open_without_gap(slots)); }
     void end_pixel() { first_.push_back(static_cast<std::uint32_t>(exposures_.size())); }
 
     /// \throws InputError as ExposureSchedule. Precondition: `end_pixel` was called for each pixel.
