@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
@@ -20,18 +21,35 @@
 namespace stipple {
 namespace {
 
-struct DecodeOptions {
+struct DecodeArguments {
     std::string stream;
     std::string output;
     std::string method = "fast";
+    std::string options;  ///< file of the method's options; empty: none
+    std::vector<std::string> settings;
     bool strict = false;
 };
+
+DecodeOptions options_of(const DecodeArguments& arguments) {
+    const DecodeMethod method = decode_method_from_name(arguments.method);
+    Config config = arguments.options.empty()
+                        ? Config(arguments.settings)
+                        : Config(find_config("decoders", arguments.options), arguments.settings);
+    return read_decode_options(method, config);
+}
 
 /// The most memory of this process that has lain in RAM at a time.
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // kilobytes on Linux
+}
+
+std::string method_help() {
+    std::string names;
+    for (const NamedDecodeMethod& known : decode_methods())
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", known.name);
+    return names + fmt::format(" ({})", DecodeArguments{}.method);
 }
 
 nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method) {
@@ -43,7 +61,8 @@ nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string&
             {"threads", thread_count()}};
 }
 
-void decode_file(const DecodeOptions& options, const RunOptions& run) {
+void decode_file(const DecodeArguments& options, const RunOptions& run) {
+    const DecodeOptions method = options_of(options);
     StreamReader reader(options.stream,
                         options.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
     JsonFile json(run);
@@ -52,7 +71,7 @@ void decode_file(const DecodeOptions& options, const RunOptions& run) {
     {
         Progress progress(run, "decoding", reader.slots());
         report = decode(
-            reader, decode_method_from_name(options.method),
+            reader, method,
             [&](std::int64_t, std::span<const float> frame) {
                 writer.write(frame);
                 return stop_signal() == 0;
@@ -79,16 +98,23 @@ void decode_file(const DecodeOptions& options, const RunOptions& run) {
 
 void add_decode(CLI::App& app, Action& action) {
     auto* command = app.add_subcommand("decode", "Sample stream to high-speed video");
-    const auto options = std::make_shared<DecodeOptions>();
+    const auto options = std::make_shared<DecodeArguments>();
     command->add_option("STREAM", options->stream, "sample stream")->required();
     command
         ->add_option("-o,--output", options->output,
                      "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
         ->type_name("OUT")
         ->required();
-    command->add_option("--method", options->method, "naive or fast (fast)")
+    command->add_option("--method", options->method, method_help())
         ->check(name_check(decode_method_from_name))
         ->type_name("NAME");
+    command
+        ->add_option("--options", options->options,
+                     "options of the method: a file as docs/decoder_options.md says")
+        ->type_name("FILE");
+    command->add_option("--set", options->settings, "change one option of the method")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
     command->add_flag("--strict", options->strict, "write nothing if the stream is damaged");
     command->footer(
         "Examples:\n"

@@ -131,7 +131,8 @@ const toml::node* Config::Impl::find(std::string_view key) {
 
 std::string Config::Impl::place(std::string_view key) const {
     const auto found = entries.find(key);
-    if (found == entries.end()) return fmt::format("{}: {}", file, key);
+    if (found == entries.end())
+        return file.empty() ? std::string(key) : fmt::format("{}: {}", file, key);
     if (found->second.place == "--set") return fmt::format("--set {}", key);
     return fmt::format("{}: {}", found->second.place, key);
 }
@@ -149,6 +150,10 @@ Config::Config(const std::filesystem::path& file, const std::vector<std::string>
             e.description());
     }
     flatten(impl_->tables.back(), "", impl_->file, impl_->entries);
+    for (const std::string& assignment : overrides) impl_->set(assignment);
+}
+
+Config::Config(const std::vector<std::string>& overrides) : impl_(std::make_unique<Impl>()) {
     for (const std::string& assignment : overrides) impl_->set(assignment);
 }
 

@@ -17,6 +17,8 @@ class Config {
     /// syntax, a bare word is a string).
     /// \throws InputError naming file, line and column, or the override.
     Config(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+    /// Overrides alone, without a file. \throws InputError naming the override.
+    explicit Config(const std::vector<std::string>& overrides);
     ~Config();
     Config(Config&&) noexcept;
     Config& operator=(Config&&) noexcept;

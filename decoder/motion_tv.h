@@ -1,9 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "core/flux_video.h"
+#include "decoder/checkpoint.h"
 #include "decoder/measurements.h"
 #include "decoder/motion.h"
 #include "decoder/total_variation.h"
@@ -23,9 +23,6 @@ struct MotionTvOptions {
     float step_flux = 0.3F;
     float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
 };
-
-/// Told now and then which fraction of the work is done; false stops.
-using Checkpoint = std::function<bool(double fraction)>;
 
 /// Decodes one block: total variation at rest, then rounds of (variances, motion, total variation
 /// along it), each from the estimate of the last. The result may be slightly negative. Nothing if

@@ -58,10 +58,16 @@ class PacketBuffer {
 
 using Block = std::optional<FluxVideo>;  ///< nothing if stopped
 
-Block decode_block(Measurements measurements, const Calibration& calibration, DecodeMethod method,
-                   const Checkpoint& checkpoint) {
-    if (method == DecodeMethod::kNaive) return nearest_samples(measurements);
-    return decode_motion_tv(measurements, SampleNoise(calibration), {}, checkpoint);
+Block decode_block(Measurements measurements, const Calibration& calibration,
+                   const DecodeOptions& options, const Checkpoint& checkpoint) {
+    switch (options.method) {
+        case DecodeMethod::kNaive:
+            return nearest_samples(measurements);
+        case DecodeMethod::kFast:
+            return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
+                                    checkpoint);
+    }
+    return {};
 }
 
 /// Where a block's core goes in the frames of its slots.
@@ -100,7 +106,8 @@ VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
 
 /// Decodes the cores of all tiles of a block of slots. No packet is older than the block.
 Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
-                   DecodeMethod method, const Stretch& slots, const Checkpoint& checkpoint) {
+                   const DecodeOptions& options, const Stretch& slots,
+                   const Checkpoint& checkpoint) {
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), header.shape);
     const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
     if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
@@ -112,7 +119,7 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
         };
         const VideoWindow window = window_of(tiles[i], slots, header.shape.planes);
         const Block block = decode_block(collect_measurements(header, packets, window),
-                                         header.calibration, method, tile_checkpoint);
+                                         header.calibration, options, tile_checkpoint);
         if (!block || !tile_checkpoint(1)) return {};
         copy_core(*block, {tiles[i], slots}, video);
     }
@@ -121,13 +128,7 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
 
 }  // namespace
 
-DecodeMethod decode_method_from_name(std::string_view name) {
-    if (name == "naive") return DecodeMethod::kNaive;
-    if (name == "fast") return DecodeMethod::kFast;
-    throw InputError("decoding method", fmt::format("`{}` is none of naive, fast", name));
-}
-
-DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
                     const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
@@ -149,7 +150,7 @@ DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& 
             return monitor(static_cast<double>(slots.core_begin) +
                            fraction * static_cast<double>(slots.core_end - slots.core_begin));
         };
-        const Block video = decode_slots(header, buffer.packets(), method, slots, checkpoint);
+        const Block video = decode_slots(header, buffer.packets(), options, slots, checkpoint);
         if (!video) break;
         for (int slot = 0; slot < video->slots() && more; ++slot) {
             more = sink(report.slots, video->frame(slot));

@@ -3,19 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <string_view>
 
+#include "decoder/decode_options.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
-
-enum class DecodeMethod {
-    kNaive,  ///< each pixel holds its nearest samples; no model of the scene
-    kFast,   ///< motion-compensated total variation
-};
-
-/// `naive` or `fast`. \throws InputError listing these names.
-[[nodiscard]] DecodeMethod decode_method_from_name(std::string_view name);
 
 /// Takes the frames of a decoded video in slot order; order (plane, row, col), units of
 /// FluxVideo. Returns false to stop decoding.
@@ -38,7 +30,14 @@ struct DecodeReport {
 /// if the stream is a mosaic of colours, or if 100000
 /// slots in succession have no sample.
 DecodeReport decode(
-    StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+    StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
     const DecodeMonitor& monitor = [](double) { return true; });
+
+/// With the defaults of a method.
+inline DecodeReport decode(
+    StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+    const DecodeMonitor& monitor = [](double) { return true; }) {
+    return decode(reader, DecodeOptions{.method = method}, sink, monitor);
+}
 
 }  // namespace stipple

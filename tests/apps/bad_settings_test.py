@@ -51,6 +51,16 @@ class BadSettingsTest(ProgramTest):
         (self.folder / "mine.toml").write_text('kind = "full"\n\nopen_slots = 65\n')
         self.refuse(["mine.toml:3", "open_slots", "1..64"], "--schedule", "mine.toml")
 
+    def test_an_option_of_the_decoding_method(self):
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple")
+        (self.folder / "mine.toml").write_text("rounds = 2\nlast_iterations = -1\n")
+        for parts, options in ((["--set round", "rounds"], ["--set", "round=2"]),
+                               (["--set rounds", "0..100"], ["--set", "rounds=-1"]),
+                               (["rounds", "unknown"], ["--method", "naive", "--set", "rounds=2"]),
+                               (["mine.toml:2", "0..10000"], ["--options", "mine.toml"]),
+                               (["there is no such file"], ["--options", "yours.toml"])):
+            self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy", *options)
+
     def test_a_name_that_nobody_knows_with_the_known_ones(self):
         self.refuse(["nobody", "paper"], "--sensor", "nobody")
         self.refuse(["nobody", "full4x", "random", "tiled"], "--schedule", "nobody")

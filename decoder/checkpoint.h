@@ -1,0 +1,10 @@
+#pragma once
+
+#include <functional>
+
+namespace stipple {
+
+/// Told now and then which fraction of the work is done; false stops.
+using Checkpoint = std::function<bool(double fraction)>;
+
+}  // namespace stipple
