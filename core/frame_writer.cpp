@@ -22,12 +22,16 @@ namespace {
 /// Writes a folder of frame_%04d.exr.
 class ExrFolderWriter {
   public:
-    ExrFolderWriter(fs::path folder, std::string place, FrameShape shape)
-        : folder_(std::move(folder)), place_(std::move(place)), shape_(shape) {}
+    ExrFolderWriter(fs::path folder, std::string place, FrameShape shape, bool live)
+        : folder_(std::move(folder)), place_(std::move(place)), shape_(shape), live_(live) {}
 
     void write(std::span<const float> frame) {
         const std::string name = fmt::format("frame_{:04}.exr", next_slot_++);
-        write_exr(folder_ / name, (fs::path(place_) / name).string(), shape_, frame);
+        const std::string place = (fs::path(place_) / name).string();
+        if (!live_) return write_exr(folder_ / name, place, shape_, frame);
+        PendingOutput whole(folder_ / name, false);
+        write_exr(whole.partial(), place, shape_, frame);
+        whole.commit();
     }
     void finish() {}
 
@@ -35,6 +39,7 @@ class ExrFolderWriter {
     fs::path folder_;
     std::string place_;
     FrameShape shape_;
+    bool live_;
     int next_slot_ = 0;
 };
 
@@ -67,17 +72,21 @@ OutputKind checked_kind(const fs::path& output, FrameShape shape,
     return format_of(output) == Format::kExrFolder ? OutputKind::kFolder : OutputKind::kFile;
 }
 
-Writer open_writer(const PendingOutput& output, Format format, FrameShape shape, double rate) {
+/// A live folder is put in place at once.
+Writer open_writer(PendingOutput& output, Format format, FrameShape shape,
+                   const FrameWriterOptions& options) {
     const std::string place = output.final_path().string();
     switch (format) {
         case Format::kExrFolder:
-            return ExrFolderWriter(output.partial(), place, shape);
+            if (options.live) output.commit();
+            return ExrFolderWriter(options.live ? output.final_path() : output.partial(), place,
+                                   shape, options.live);
         case Format::kNpy:
             return NpyWriter(output.partial(), place, shape);
         case Format::kVideo:
             break;
     }
-    return VideoWriter(output.partial(), place, shape, rate);
+    return VideoWriter(output.partial(), place, shape, options.frames_per_second);
 }
 
 }  // namespace
@@ -91,7 +100,7 @@ struct FrameWriter::Impl {
     Impl(const fs::path& path, FrameShape shape, const FrameWriterOptions& options)
         : sites(shape.sites()),
           output(path, options.force, checked_kind(path, shape, options)),
-          writer(open_writer(output, format_of(path), shape, options.frames_per_second)) {}
+          writer(open_writer(output, format_of(path), shape, options)) {}
 };
 
 FrameWriter::FrameWriter(const fs::path& output, FrameShape shape, FrameWriterOptions options)
@@ -107,7 +116,7 @@ void FrameWriter::write(std::span<const float> frame) {
 void FrameWriter::finish() {
     if (std::exchange(impl_->finished, true)) return;
     std::visit([](auto& writer) { writer.finish(); }, impl_->writer);
-    impl_->output.commit();
+    if (!impl_->output.committed()) impl_->output.commit();
 }
 
 }  // namespace stipple

@@ -11,6 +11,7 @@ namespace stipple {
 struct FrameWriterOptions {
     double frames_per_second = 30;  ///< playback rate of .mp4 / .mkv
     bool force = false;             ///< replace an existing output
+    bool live = false;              ///< frames of a folder appear there one by one
 };
 
 /// Writes a video frame by frame. The name chooses the format: a folder of

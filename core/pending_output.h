@@ -27,6 +27,7 @@ class PendingOutput {
     [[nodiscard]] const std::filesystem::path& partial() const { return partial_; }
     /// Moves the partial output to its final name. \throws DeviceError.
     void commit();
+    [[nodiscard]] bool committed() const { return committed_; }
 
   private:
     void check_replaceable() const;

@@ -23,6 +23,8 @@ class FileWindow {
 
     /// Offset in the file of the first byte of the window.
     [[nodiscard]] std::uint64_t offset() const { return offset_; }
+    /// Bytes of the file that have been read, those of the window included.
+    [[nodiscard]] std::uint64_t bytes_read() const { return offset_ + (end_ - begin_); }
     /// The next `bytes` bytes, or fewer at the end of the file; there may be more later. They are
     /// valid until the next call. Memory is taken only for bytes that the file really has.
     /// \throws InputError if the file cannot be read.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "stream/bit_packing.h"
@@ -23,9 +24,16 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::size_t kSearchBytes = std::size_t{1} << 16U;
 constexpr std::uint64_t kMaxVainBytes = std::uint64_t{1} << 32U;
 
-StreamHeader read_header(FileWindow& window, const std::string& place) {
-    const std::size_t bytes = header_bytes(window.peek(kHeaderStartBytes), place);
-    const Bytes header = window.peek(bytes);
+/// The next `bytes` bytes, or fewer if they do not come.
+Bytes peek_or_wait(FileWindow& window, std::size_t bytes, const WaitForMore& wait) {
+    Bytes there = window.peek(bytes);
+    while (there.size() < bytes && wait && wait(window.bytes_read())) there = window.peek(bytes);
+    return there;
+}
+
+StreamHeader read_header(FileWindow& window, const std::string& place, const WaitForMore& wait) {
+    const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), place);
+    const Bytes header = peek_or_wait(window, bytes, wait);
     if (header.size() < bytes)
         throw InputError(fmt::format("{}: byte {}", place, header.size()),
                          fmt::format("the file ends within its header of {} bytes", bytes));
@@ -48,11 +56,12 @@ std::string_view cause_of(Start start) {
 }  // namespace
 
 struct StreamReader::Impl {
-    Impl(const std::filesystem::path& file, ReadPolicy read_policy)
+    Impl(const std::filesystem::path& file, ReadPolicy read_policy, WaitForMore wait_for_more)
         : place(file.string()),
           strict(read_policy == ReadPolicy::kStrict),
+          wait(std::move(wait_for_more)),
           window(file),
-          header(read_header(window, place)),
+          header(read_header(window, place, wait)),
           slots(slots_by_index(window)),
           order(header.shape.rows) {}
 
@@ -68,6 +77,8 @@ struct StreamReader::Impl {
     Step wait_for_rest(Bytes tail);
     /// Moves to the next good start. False if there is none yet.
     bool search();
+    /// At the end of what there is of the file: true if it is to be looked at again.
+    bool more_comes();
     void count_bytes_after_end();
     [[nodiscard]] std::optional<std::string> fault_of(const PacketHeader& found,
                                                       Bytes payload) const;
@@ -81,6 +92,7 @@ struct StreamReader::Impl {
 
     std::string place;
     bool strict;
+    WaitForMore wait;  ///< empty if the file is not followed, or no longer
     FileWindow window;
     StreamHeader header;
     std::optional<std::int64_t> slots;
@@ -163,7 +175,7 @@ StreamReader::Impl::Step StreamReader::Impl::step(SamplePacket& packet) {
 }
 
 StreamReader::Impl::Step StreamReader::Impl::wait_for_rest(Bytes tail) {
-    if (strict)
+    if (strict && !wait)
         note(0, fmt::format("the file ends within a packet, after {} bytes of it", tail.size()));
     // A good header further on means that bytes of this packet are missing. What was searched at
     // an earlier call is not searched again, but for a header that was cut.
@@ -251,6 +263,13 @@ void StreamReader::Impl::take_end_marker(std::uint64_t index_at) {
         note(kEndMarkerBytes, "the end marker does not point to an index before it");
     window.skip(kEndMarkerBytes);
     end_offset = window.offset();
+    if (!slots) slots = slots_by_index(window);
+}
+
+bool StreamReader::Impl::more_comes() {
+    if (!wait) return false;
+    if (!wait(window.bytes_read())) wait = {};  // one more look, for which the file ends here
+    return true;
 }
 
 void StreamReader::Impl::count_bytes_after_end() {
@@ -263,8 +282,8 @@ void StreamReader::Impl::count_bytes_after_end() {
     }
 }
 
-StreamReader::StreamReader(const std::filesystem::path& file, ReadPolicy policy)
-    : impl_(std::make_unique<Impl>(file, policy)) {}
+StreamReader::StreamReader(const std::filesystem::path& file, ReadPolicy policy, WaitForMore wait)
+    : impl_(std::make_unique<Impl>(file, policy, std::move(wait))) {}
 
 StreamReader::~StreamReader() = default;
 StreamReader::StreamReader(StreamReader&&) noexcept = default;
@@ -284,9 +303,10 @@ bool StreamReader::next(SamplePacket& packet) {
             impl_->count_bytes_after_end();
             return false;
         }
-        if (impl_->search_begin && !impl_->search()) return false;
-        const auto step = impl_->step(packet);
-        if (step != Impl::Step::kGoOn) return step == Impl::Step::kDelivered;
+        const bool found = !impl_->search_begin || impl_->search();
+        const auto step = found ? impl_->step(packet) : Impl::Step::kStop;
+        if (step == Impl::Step::kDelivered) return true;
+        if (step == Impl::Step::kStop && !impl_->more_comes()) return false;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,21 +41,28 @@ struct StreamReport {
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };
 
+/// Called where a file that is still being written holds no further whole packet; `bytes` of it
+/// have been seen. It waits for more and returns true to look again, false if the file ends here.
+using WaitForMore = std::function<bool(std::uint64_t bytes)>;
+
 /// Reads a sample stream packet by packet (docs/stream_format.md). Memory: one packet.
 class StreamReader {
   public:
     /// \throws InputError naming file and offset if the file is missing, foreign, of an unknown
     /// version, or its header is damaged (without a header no sample has a meaning).
+    /// With `wait` the file is followed while it grows: the constructor waits for the header,
+    /// `next` for whole packets, until the end marker comes or `wait` returns false.
     explicit StreamReader(const std::filesystem::path& file,
-                          ReadPolicy policy = ReadPolicy::kTolerant);
+                          ReadPolicy policy = ReadPolicy::kTolerant, WaitForMore wait = {});
     ~StreamReader();
     StreamReader(StreamReader&&) noexcept;
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
     /// Number of slots in the recording, known at once if a good index at the end of the file says
-    /// so (then below the bytes of the file / 36, since each slot takes a packet); nothing if the
-    /// recording was interrupted, goes on, or comes through a pipe.
+    /// so (then below the bytes of the file / 36, since each slot takes a packet), else once the
+    /// end marker has been read; nothing if the recording was interrupted, goes on, or comes
+    /// through a pipe.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the

@@ -46,6 +46,24 @@ TEST(FrameWriterTest, NpyAndExrFoldersKeepEveryBit) {
     EXPECT_TRUE(fs::exists(folder / "frames/frame_0001.exr"));
 }
 
+TEST(FrameWriterTest, FramesOfALiveFolderAppearThereOneByOneAndStay) {
+    const TemporaryFolder folder;
+    const auto output = folder / "frames";
+    {
+        FrameWriter writer(output, kShape, {.live = true});
+        EXPECT_TRUE(fs::is_empty(output));
+        writer.write(ramp(0));
+        EXPECT_EQ(read_all(output), ramp(0));
+        writer.write(ramp(1));  // and no finish()
+    }
+    EXPECT_EQ(folder.names(), Names{"frames"});
+    EXPECT_EQ(std::distance(fs::directory_iterator(output), {}), 2);
+    const Floats again = write_two(output, {.force = true, .live = true});
+    EXPECT_EQ(read_all(output), again);
+    const Floats npy = write_two(folder / "clip.npy", {.live = true});
+    EXPECT_EQ(read_all(folder / "clip.npy"), npy);
+}
+
 TEST(FrameWriterTest, WritesMonoNpyOfThreeDimensions) {
     const TemporaryFolder folder;
     FrameWriter writer(folder / "clip.npy", {2, 2, 1});

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/error.h"
 #include "tests/stream/stream_bytes.h"
 
 namespace stipple {
@@ -24,7 +25,7 @@ TEST(GrowingTest, APacketCanBeReadAsSoonAsItIsWritten) {
     }
     writer.finish();
     EXPECT_FALSE(reader.next(packet));
-    EXPECT_EQ(reader.slots(), std::nullopt);  // there was no index when it was opened
+    EXPECT_EQ(reader.slots(), 6);
     EXPECT_EQ(reader.report().slots, 6);
     EXPECT_EQ(causes(reader.report()), "");
 }
@@ -66,6 +67,76 @@ TEST(GrowingTest, DamageCostsTheSameAsInAFinishedFile) {
         const Reading finished = read_bytes(damaged.bytes);
         EXPECT_EQ(growing.packets, finished.packets) << at;
         EXPECT_EQ(growing.report.missing_slots, finished.report.missing_slots) << at;
+    }
+}
+
+/// Writes `bytes` to a file one by one, each when the reader waits for it.
+class Camera {
+  public:
+    explicit Camera(std::string bytes) : bytes_(std::move(bytes)) { write_text(file_, ""); }
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    WaitForMore wait() {
+        return [this](std::uint64_t seen) {
+            EXPECT_EQ(seen, written_);
+            if (written_ == bytes_.size()) return false;
+            std::ofstream(file_, std::ios::binary | std::ios::app) << bytes_[written_++];
+            return true;
+        };
+    }
+
+  private:
+    TemporaryFolder folder_;
+    std::filesystem::path file_ = folder_ / "clip.stipple";
+    std::string bytes_;
+    std::size_t written_ = 0;
+};
+
+TEST(GrowingTest, AFollowedFileIsReadFromItsFirstByteToItsEndMarker) {
+    const StreamHeader header = varied_header();
+    const auto packets = random_packets(header, 5, 2);
+    Camera camera(bytes_of(header, packets).bytes + "never looked at");
+    StreamReader reader(camera.file(), ReadPolicy::kStrict, camera.wait());
+    EXPECT_EQ(reader.header(), header);
+    EXPECT_EQ(reader.slots(), std::nullopt);
+    EXPECT_EQ(read_packets(reader), packets);
+    EXPECT_EQ(reader.slots(), 5);
+    EXPECT_EQ(causes(reader.report()), "");
+}
+
+TEST(GrowingTest, AFollowedFileThatStopsGrowingEndsThere) {
+    const StreamHeader header = varied_header();
+    const auto packets = random_packets(header, 3, 4);
+    const StreamBytes stream = bytes_of(header, packets);
+    const std::string cut = stream.bytes.substr(0, stream.begins[2] + 40);
+    Camera camera(cut);
+    StreamReader tolerant(camera.file(), ReadPolicy::kTolerant, camera.wait());
+    EXPECT_EQ(read_packets(tolerant).size(), 2U);
+    EXPECT_EQ(tolerant.report().tail_bytes, 40U);
+    EXPECT_EQ(causes(tolerant.report()), "");
+    Camera again(cut);
+    StreamReader strict(again.file(), ReadPolicy::kStrict, again.wait());
+    expect_parts(message_of<InputError>([&] { return read_packets(strict); }),
+                 {"ends within a packet", "40 bytes"});
+}
+
+TEST(GrowingTest, AFollowedFileThatNeverHoldsAHeaderIsRefused) {
+    Camera camera(bytes_of(varied_header(), {}).bytes.substr(0, 70));
+    expect_parts(message_of<InputError>([&] {
+                     return StreamReader(camera.file(), ReadPolicy::kTolerant, camera.wait());
+                 }),
+                 {"ends within its header"});
+}
+
+TEST(GrowingTest, DamageInAFollowedFileCostsTheSameAsInAFinishedOne) {
+    const StreamHeader header = varied_header();
+    const StreamBytes stream = bytes_of(header, random_packets(header, 4, 2));
+    for (std::size_t at = stream.begins.front(); at < stream.bytes.size(); at += 29) {
+        std::string damaged = stream.bytes;
+        damaged.erase(at, 50);
+        Camera camera(damaged);
+        StreamReader reader(camera.file(), ReadPolicy::kTolerant, camera.wait());
+        EXPECT_EQ(read_packets(reader), read_bytes(damaged).packets) << at;
+        EXPECT_EQ(reader.report().missing_slots, read_bytes(damaged).report.missing_slots) << at;
     }
 }
 

@@ -1,0 +1,130 @@
+#include "apps/decode_file.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/progress.h"
+#include "apps/stream_follower.h"
+#include "apps/stream_text.h"
+#include "core/config.h"
+#include "core/error.h"
+#include "core/frame_writer.h"
+#include "core/parallel.h"
+#include "decoder/reconstruct.h"
+
+namespace stipple {
+namespace {
+
+DecodeOptions options_of(const DecodeArguments& arguments) {
+    const DecodeMethod method = decode_method_from_name(arguments.method);
+    Config config = arguments.options.empty()
+                        ? Config(arguments.settings)
+                        : Config(find_config("decoders", arguments.options), arguments.settings);
+    return read_decode_options(method, config);
+}
+
+/// The most memory of this process that has lain in RAM at a time.
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // kilobytes on Linux
+}
+
+StreamReader open_stream(const DecodeArguments& arguments, StreamFollower& follower) {
+    const auto policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant;
+    if (!arguments.follow) return StreamReader(arguments.stream, policy);
+    follower.wait_for_file();
+    try {
+        return StreamReader(arguments.stream, policy,
+                            [&](std::uint64_t bytes) { return follower.more(bytes); });
+    } catch (const InputError&) {
+        throw_if_stopped();  // the rest of the header may still have come
+        throw;
+    }
+}
+
+DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, FrameWriter& writer,
+                           const DecodeArguments& arguments, const RunOptions& run) {
+    std::optional<std::int64_t> total = reader.slots();
+    if (arguments.until > 0) total = std::min(total.value_or(arguments.until), arguments.until);
+    Progress progress(run, "decoding", total);
+    return decode(
+        reader, options,
+        [&](std::int64_t slot, std::span<const float> frame) {
+            writer.write(frame);
+            return slot + 1 != arguments.until && stop_signal() == 0;
+        },
+        [&](double slots) {
+            progress.reach(slots);
+            return stop_signal() == 0;
+        });
+}
+
+/// What made the frames end: a value of the JSON key `ended_by`.
+std::string_view end_of(const DecodeReport& report, const DecodeArguments& arguments,
+                        const StreamFollower& follower) {
+    if (report.slots == arguments.until) return "until";
+    if (stop_signal() != 0) return "signal";
+    return follower.timed_out() ? "timeout" : "stream";
+}
+
+/// Ends that the user may not expect.
+void warn(std::string_view end, const DecodeReport& report, const DecodeArguments& arguments,
+          const StreamFollower& follower) {
+    if (end == "timeout")
+        fmt::print(stderr,
+                   "stipple: {}: nothing was appended for {:g} s (--timeout), so it was decoded as "
+                   "if it ended here, after {} slots\n",
+                   arguments.stream, follower.timeout_s(), report.slots);
+    else if (end == "stream" && arguments.until > 0)
+        fmt::print(stderr, "stipple: {}: ends after {} slots, before --until {}\n",
+                   arguments.stream, report.slots, arguments.until);
+}
+
+nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
+                                  std::string_view end) {
+    return {{"method", method},
+            {"seconds", report.seconds},
+            {"slots", report.slots},
+            {"ended_by", end},
+            {"voxels", report.voxels},
+            {"voxels_per_second", static_cast<double>(report.voxels) / report.seconds},
+            {"peak_memory_bytes", peak_memory_bytes()},
+            {"threads", thread_count()}};
+}
+
+}  // namespace
+
+void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
+    const DecodeOptions options = options_of(arguments);
+    StreamFollower follower(arguments.stream, arguments.timeout_s);
+    StreamReader reader = open_stream(arguments, follower);
+    JsonFile json(run);
+    FrameWriter writer(arguments.output, reader.header().shape,
+                       {.force = run.force, .live = arguments.follow && !arguments.strict});
+    const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
+    if (report.slots == 0) throw_if_stopped();
+    if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
+    writer.finish();
+    const std::string_view end = end_of(report, arguments, follower);
+    const auto figures = figures_of(report, arguments.method, end);
+    json.write(figures);
+    warn(end, report, arguments, follower);
+    run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB",
+                        arguments.output, report.slots, arguments.method, report.seconds,
+                        figures["voxels_per_second"].get<double>(), peak_memory_bytes() / 1000000));
+    StreamReport found = reader.report();
+    if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
+    if (!undamaged(found))
+        throw InputError(arguments.stream,
+                         damage_text(found) + "\n  the output is made of what is left");
+}
+
+}  // namespace stipple

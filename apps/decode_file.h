@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/run_options.h"
+
+namespace stipple {
+
+/// What `stipple decode` was asked for.
+struct DecodeArguments {
+    std::string stream;
+    std::string output;
+    std::string method = "fast";
+    std::string options;  ///< file of the method's options; empty: none
+    std::vector<std::string> settings;
+    bool strict = false;
+    std::int64_t until = 0;  ///< frames wanted; 0: all
+    bool follow = false;     ///< the stream is still being written
+    double timeout_s = 10;   ///< with `follow`: without growth
+};
+
+/// Decodes a stream to video and says how it went. \throws InputError, DeviceError, Interrupted.
+void decode_file(const DecodeArguments& arguments, const RunOptions& run);
+
+}  // namespace stipple
