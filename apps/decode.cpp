@@ -52,6 +52,11 @@ void add_decode(CLI::App& app, Action& action) {
                      "with --follow: end where nothing more has come for so long (10)")
         ->check(CLI::Range(0.0, 1e6))
         ->type_name("SECONDS");
+    command
+        ->add_flag("--check-schedule", options->check_schedule,
+                   "first see whether the samples follow the schedule, or which shift of it; "
+                   "=fix goes on with that shift")
+        ->check(CLI::IsMember({"true", "fix"}));
     command->footer(
         "Examples:\n"
         "  stipple decode clip.stipple -o decoded\n"

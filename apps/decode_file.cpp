@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/decode_schedule.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
@@ -37,8 +38,8 @@ std::uint64_t peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // kilobytes on Linux
 }
 
-StreamReader open_stream(const DecodeArguments& arguments, StreamFollower& follower) {
-    const auto policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant;
+StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
+                         StreamFollower& follower) {
     if (!arguments.follow) return StreamReader(arguments.stream, policy);
     follower.wait_for_file();
     try {
@@ -100,13 +101,29 @@ nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string&
             {"threads", thread_count()}};
 }
 
+/// What packets of a wrong size may mean.
+std::string schedule_hint(const StreamReport& report) {
+    const bool found = std::ranges::any_of(report.damage, [](const StreamDamage& damage) {
+        return damage.cause.ends_with("not what is due");
+    });
+    return found ? "\n  the chip may have run another schedule: --check-schedule looks for it" : "";
+}
+
 }  // namespace
 
 void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     const DecodeOptions options = options_of(arguments);
     StreamFollower follower(arguments.stream, arguments.timeout_s);
-    StreamReader reader = open_stream(arguments, follower);
     JsonFile json(run);
+    std::optional<ScheduleCheck> check;
+    if (!arguments.check_schedule.empty()) {
+        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, follower);
+        check = checked_schedule(reader, arguments, run);
+    }
+    StreamReader reader = open_stream(
+        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, follower);
+    if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
+        reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, reader.header().shape,
                        {.force = run.force, .live = arguments.follow && !arguments.strict});
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
@@ -114,7 +131,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     const std::string_view end = end_of(report, arguments, follower);
-    const auto figures = figures_of(report, arguments.method, end);
+    auto figures = figures_of(report, arguments.method, end);
+    if (check) figures["schedule_check"] = check_json(*check);
     json.write(figures);
     warn(end, report, arguments, follower);
     run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB",
@@ -123,8 +141,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamReport found = reader.report();
     if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
-        throw InputError(arguments.stream,
-                         damage_text(found) + "\n  the output is made of what is left");
+        throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +
+                                               "\n  the output is made of what is left");
 }
 
 }  // namespace stipple

@@ -16,9 +16,10 @@ struct DecodeArguments {
     std::string options;  ///< file of the method's options; empty: none
     std::vector<std::string> settings;
     bool strict = false;
-    std::int64_t until = 0;  ///< frames wanted; 0: all
-    bool follow = false;     ///< the stream is still being written
-    double timeout_s = 10;   ///< with `follow`: without growth
+    std::int64_t until = 0;      ///< frames wanted; 0: all
+    bool follow = false;         ///< the stream is still being written
+    double timeout_s = 10;       ///< with `follow`: without growth
+    std::string check_schedule;  ///< empty: no; "true"; "fix"
 };
 
 /// Decodes a stream to video and says how it went. \throws InputError, DeviceError, Interrupted.

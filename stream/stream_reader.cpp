@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -59,6 +60,7 @@ struct StreamReader::Impl {
     Impl(const std::filesystem::path& file, ReadPolicy read_policy, WaitForMore wait_for_more)
         : place(file.string()),
           strict(read_policy == ReadPolicy::kStrict),
+          any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
           window(file),
           header(read_header(window, place, wait)),
@@ -92,6 +94,7 @@ struct StreamReader::Impl {
 
     std::string place;
     bool strict;
+    bool any_schedule;
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
     FileWindow window;
     StreamHeader header;
@@ -218,7 +221,7 @@ std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& foun
                                                         Bytes payload) const {
     if (index_offset) return "a packet after the index";
     if (found.kind == PacketKind::kSamples)
-        return sample_fault(header, found, payload, order.expected());
+        return sample_fault(header, found, payload, order.expected(), any_schedule);
     if (found.kind != PacketKind::kIndex)
         return fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
     // After damage and gaps no offset is right, but the number of slots is.
@@ -291,6 +294,12 @@ StreamReader& StreamReader::operator=(StreamReader&&) noexcept = default;
 
 const StreamHeader& StreamReader::header() const {
     return impl_->header;
+}
+
+void StreamReader::use_schedule(ExposureSchedule schedule) {
+    assert(impl_->report.packets == 0);
+    impl_->header.schedule = std::move(schedule);
+    impl_->header.schedule_source = {};
 }
 
 std::optional<std::int64_t> StreamReader::slots() const {

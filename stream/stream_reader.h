@@ -17,6 +17,9 @@ namespace stipple {
 enum class ReadPolicy {
     kTolerant,  ///< damage costs its own samples and is reported
     kStrict,    ///< the first deviation from the format is an InputError
+    /// As kTolerant, but packets may hold other samples than the schedule says, up to one a site:
+    /// to find out which schedule they follow.
+    kAnySchedule,
 };
 
 /// One place where a stream was damaged.
@@ -59,6 +62,9 @@ class StreamReader {
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
+    /// From here on `header` and `next` go by another schedule than the one in the file.
+    /// Precondition: no packet has been read.
+    void use_schedule(ExposureSchedule schedule);
     /// Number of slots in the recording, known at once if a good index at the end of the file says
     /// so (then below the bytes of the file / 36, since each slot takes a packet), else once the
     /// end marker has been read; nothing if the recording was interrupted, goes on, or comes

@@ -1,0 +1,48 @@
+// A wrong schedule is found out on real footage.
+#include <gtest/gtest.h>
+
+#include "decoder/schedule_check.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/pipeline/clip.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+
+/// What is found of a chip that ran `schedule` with this shift.
+ScheduleCheck check_shifted(const FluxVideo& video, const ExposureSchedule& schedule,
+                            const ScheduleShift& shift) {
+    const TemporaryFolder folder;
+    const NamedSchedule run{"run", {}, shifted_schedule(schedule, shift)};
+    write_recording(video, run, kSeed, folder / "clip.stipple");
+    StreamReader reader(folder / "clip.stipple", ReadPolicy::kAnySchedule);
+    reader.use_schedule(schedule);
+    return check_schedule(reader);
+}
+
+class ScheduleShiftOnFootageTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(ScheduleShiftOnFootageTest, IsFoundAndTheRightScheduleIsNotFlagged) {
+    const auto video = luminance_clip(GetParam());
+    if (!video) GTEST_SKIP() << "no clip " << GetParam();
+    const FrameShape shape = video->shape();
+    for (const auto& schedule : {tiled_schedule(16, 16, kPaperExposureSlots, kSeed),
+                                 random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1)})
+        for (const ScheduleShift shift :
+             {ScheduleShift{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {-4, 6, 5}}) {
+            const ScheduleCheck check = check_shifted(*video, schedule, shift);
+            EXPECT_EQ(check.verdict, shift == ScheduleShift{} ? ScheduleCheck::Verdict::kAgrees
+                                                              : ScheduleCheck::Verdict::kShifted);
+            EXPECT_EQ(check.shift, shift)
+                << check.shift.slots << ' ' << check.shift.rows << ' ' << check.shift.cols;
+            EXPECT_LT(check.best_residual, 0.25);
+            EXPECT_GT(check.median_residual, 0.25);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clips, ScheduleShiftOnFootageTest,
+                         testing::Values("mouse250_a", "nat30_coffee", "hdr_stilllife"));
+
+}  // namespace
+}  // namespace stipple
