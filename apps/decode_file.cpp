@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/frame_writer.h"
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 
 namespace stipple {
@@ -124,7 +125,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
         arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, follower);
     if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
-    FrameWriter writer(arguments.output, reader.header().shape,
+    FrameWriter writer(arguments.output, decoded_shape(reader.header()),
                        {.force = run.force, .live = arguments.follow && !arguments.strict});
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
     if (report.slots == 0) throw_if_stopped();

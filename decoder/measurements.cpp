@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -72,6 +73,7 @@ class Collector {
     Collector(const StreamHeader& header, const VideoWindow& window, Measurements& measurements)
         : schedule_(header.schedule),
           array_(header.shape),
+          cfa_(header.cfa),
           converter_(header.calibration),
           window_(window),
           out_(measurements) {}
@@ -103,8 +105,9 @@ class Collector {
             return;
         const Span span = span_of(last_slot, row, col, sample.span_slots);
         const auto sites = window_.shape.sites();
-        auto voxel = index(first) * sites + index(window_row) * index(window_.shape.cols) +
-                     index(window_col);
+        const int first_plane = cfa_ == ColourFilter::kNone ? 0 : colour_plane(cfa_, row, col);
+        auto voxel = index(first) * sites + index(first_plane) * window_.shape.pixels() +
+                     index(window_row) * index(window_.shape.cols) + index(window_col);
         const PixelLaw& law = converter_.law(row, col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
             write(voxel, sample.dn[plane], span, law);
@@ -151,6 +154,7 @@ class Collector {
 
     const ExposureSchedule& schedule_;
     FrameShape array_;
+    ColourFilter cfa_;
     Converter converter_;
     VideoWindow window_;
     Measurements& out_;
@@ -158,8 +162,15 @@ class Collector {
 
 }  // namespace
 
+FrameShape decoded_shape(const StreamHeader& header) {
+    FrameShape shape = header.shape;
+    if (header.cfa != ColourFilter::kNone) shape.planes = 3;
+    return shape;
+}
+
 Measurements collect_measurements(const StreamHeader& header, std::span<const SamplePacket> packets,
                                   const VideoWindow& window) {
+    assert(window.shape.planes == decoded_shape(header).planes);
     if (header.schedule.charge_stores() > 2)
         throw InputError("exposure schedule",
                          fmt::format("{} exposures of a pixel are under way at once; this decoder "

@@ -27,9 +27,10 @@ struct VideoWindow {
 
 /// The samples y of a window in the units of FluxVideo, spread out so that a voxel knows its
 /// exposure: arrays of order (slot, plane, row, col). Exposures that reach beyond the window or
-/// whose sample is missing are not in it; their voxels are unobserved. Where the exposures of a
-/// pixel interleave (two-bucket pixels) they form two chains, in each of which one follows the
-/// other; all bits of a voxel belong to the one exposure that it is open in.
+/// whose sample is missing are not in it; their voxels are unobserved, as are those of the colours
+/// that a pixel under a colour filter does not see. Where the exposures of a pixel interleave
+/// (two-bucket pixels) they form two chains, in each of which one follows the other; all bits of a
+/// voxel belong to the one exposure that it is open in.
 struct Measurements {
     static constexpr std::uint8_t kOpen = 1;       ///< the voxel's light is in a sample
     static constexpr std::uint8_t kFirst = 2;      ///< first voxel of an exposure
@@ -57,14 +58,19 @@ struct Measurements {
     [[nodiscard]] std::size_t voxels() const { return state.size(); }
 };
 
+/// Shape of the frames that a stream decodes to: three planes if its one plane is a mosaic of
+/// colours, else that of the array.
+[[nodiscard]] FrameShape decoded_shape(const StreamHeader& header);
+
 /// Collects the samples of `window` from packets that may hold more, each converted by its pixel of
 /// the calibration tile:
 ///
 ///     light = ((DN - black level) K^-1 / g - D n) / (r R),
 ///
 /// g relative gain, R relative responsivity, D dark electrons a slot, n open slots. Variances are
-/// set as if each sample were its own mean. \throws InputError if more than two exposures of a
-/// pixel are under way at once.
+/// set as if each sample were its own mean. The samples of a mosaic go to the planes of their
+/// colours. \throws InputError if more than two exposures of a pixel are under way at once.
+/// Precondition: window.shape.planes == decoded_shape(header).planes.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/unsampled_sites.h"
 
 namespace stipple {
 namespace {
@@ -73,9 +74,11 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
                                             : light / weight;
 }
 
-void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list,
+/// False if the site has no samples; then its light is not set.
+bool estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list,
                    float* x) {
     list_exposures(m, site, list);
+    if (list.empty()) return false;
     auto next = list.begin();
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
@@ -85,19 +88,22 @@ void estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExpo
         while (open && own->chain != (m.state[i] & Measurements::kSecond)) ++own;
         x[i] = estimate(list, slot, open ? &*own : nullptr);
     }
+    return true;
 }
 
 }  // namespace
 
 FluxVideo nearest_samples(const Measurements& measurements) {
     FluxVideo x(measurements.slots, measurements.shape);
+    std::vector<std::uint8_t> sampled(measurements.shape.sites());
     const auto cols = static_cast<std::size_t>(measurements.shape.cols);
     parallel_for(0, measurements.shape.planes * measurements.shape.rows, [&](int row) {
         std::vector<SiteExposure> list;
         const std::size_t begin = static_cast<std::size_t>(row) * cols;
         for (std::size_t site = begin; site < begin + cols; ++site)
-            estimate_site(measurements, site, list, x.data().data());
+            sampled[site] = estimate_site(measurements, site, list, x.data().data()) ? 1 : 0;
     });
+    fill_unsampled(sampled, x);
     return x;
 }
 

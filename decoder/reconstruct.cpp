@@ -108,16 +108,17 @@ VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
 Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
                    const DecodeOptions& options, const Stretch& slots,
                    const Checkpoint& checkpoint) {
-    FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), header.shape);
+    const FrameShape shape = decoded_shape(header);
+    FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
     const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
     if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
-    const std::vector<Tile> tiles = frame_tiles(header.shape);
+    const std::vector<Tile> tiles = frame_tiles(shape);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const auto tile_checkpoint = [&](double fraction) {
             return checkpoint((static_cast<double>(i) + fraction) /
                               static_cast<double>(tiles.size()));
         };
-        const VideoWindow window = window_of(tiles[i], slots, header.shape.planes);
+        const VideoWindow window = window_of(tiles[i], slots, shape.planes);
         const Block block = decode_block(collect_measurements(header, packets, window),
                                          header.calibration, options, tile_checkpoint);
         if (!block || !tile_checkpoint(1)) return {};
@@ -132,12 +133,6 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
                     const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
-    if (header.cfa != ColourFilter::kNone)
-        throw InputError(
-            "colour filter array",
-            fmt::format("the stream is a mosaic ({}), which this version cannot decode "
-                        "to colour; record with cfa = \"none\"",
-                        name_of(header.cfa)));
     PacketBuffer buffer(reader);
     DecodeReport report;
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
@@ -157,7 +152,7 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
             ++report.slots;
         }
     }
-    report.voxels = static_cast<std::uint64_t>(report.slots) * header.shape.sites();
+    report.voxels = static_cast<std::uint64_t>(report.slots) * decoded_shape(header).sites();
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return report;

@@ -26,9 +26,10 @@ struct DecodeReport {
 /// Decodes a stream from where its reader stands (its beginning), block by block: memory does not
 /// grow with the length of the stream. The same bits for any thread count. Samples that are
 /// missing or damaged count as unobserved; `reader.report()` says which.
-/// \throws InputError as StreamReader::next, if the method cannot decode the schedule,
-/// if the stream is a mosaic of colours, or if 100000
-/// slots in succession have no sample.
+/// A mosaic of colours is decoded to three planes as one problem, in which the colours that a
+/// pixel does not see are unobserved: frames have the `decoded_shape` of the header.
+/// \throws InputError as StreamReader::next, if the method cannot decode the schedule, or if
+/// 100000 slots in succession have no sample.
 DecodeReport decode(
     StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
     const DecodeMonitor& monitor = [](double) { return true; });

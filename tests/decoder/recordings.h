@@ -9,6 +9,7 @@
 #include "core/flux_video.h"
 #include "decoder/measurements.h"
 #include "readout/coded_sensor.h"
+#include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
 
@@ -32,6 +33,17 @@ inline Recorded record(const FluxVideo& video, const ExposureSchedule& schedule,
     CodedSensor sensor(params, video.shape(), recorded.header.schedule, seed);
     for (int slot = 0; slot < video.slots(); ++slot)
         sensor.expose(video.frame(slot), recorded.packets[static_cast<std::size_t>(slot)]);
+    return recorded;
+}
+
+/// The same through a colour filter array; the video has three planes.
+inline Recorded record_mosaic(const FluxVideo& video, ColourFilter cfa,
+                              const ExposureSchedule& schedule, const SensorParams& params = {}) {
+    FluxVideo mosaic(video.slots(), {video.shape().rows, video.shape().cols, 1});
+    for (int slot = 0; slot < video.slots(); ++slot)
+        take_mosaic(cfa, video.shape(), video.frame(slot), mosaic.frame(slot));
+    Recorded recorded = record(mosaic, schedule, params);
+    recorded.header.cfa = cfa;
     return recorded;
 }
 

@@ -1,12 +1,15 @@
 #include "tests/pipeline/clip.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "core/config.h"
 #include "core/footage_reader.h"
+#include "decoder/measurements.h"
 #include "readout/coded_sensor.h"
 #include "readout/schedule_catalogue.h"
+#include "sensor_model/colour_mosaic.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/footage_folder.h"
@@ -17,20 +20,11 @@ namespace {
 constexpr double kBrightest = 2;  // full scale / photons per unit
 constexpr std::uint64_t kSeed = 1;
 
-NamedSchedule schedule_of(const std::string& name, FrameShape shape) {
-    Config config(find_config("schedules", name), {});
-    NamedSchedule schedule = read_schedule(config, shape, kSeed);
-    config.reject_unknown_keys();
-    return schedule;
-}
-
-}  // namespace
-
-std::optional<FluxVideo> luminance_clip(const std::string& name) {
+std::optional<FluxVideo> read_clip(const std::string& name, bool luminance) {
     const auto folder = footage_folder() / name;
     if (!std::filesystem::exists(folder)) return {};
     FootageReader reader(
-        folder, {.transfer = Transfer::kLinear, .luminance = true, .max_value = kBrightest});
+        folder, {.transfer = Transfer::kLinear, .luminance = luminance, .max_value = kBrightest});
     std::vector<std::vector<float>> frames;
     std::vector<float> frame(reader.shape().sites());
     while (reader.read(frame)) frames.push_back(frame);
@@ -40,6 +34,58 @@ std::optional<FluxVideo> luminance_clip(const std::string& name) {
     return video;
 }
 
+/// The paper's sensor with a schedule, and the stream that it writes.
+class Recorder {
+  public:
+    Recorder(const NamedSchedule& named, FrameShape shape, ColourFilter cfa)
+        : params_{.charge_stores = named.schedule.charge_stores()},
+          header_{.shape = shape,
+                  .slot_us = params_.slot_us,
+                  .calibration = calibration_of(params_),
+                  .schedule = named.schedule,
+                  .schedule_source = named.source,
+                  .schedule_name = named.name,
+                  .provenance = "",
+                  .cfa = cfa} {}
+
+    /// The samples of `light(slot)`, frames of the array.
+    template <typename Light>
+    void write(int slots, std::uint64_t seed, const std::filesystem::path& file,
+               const Light& light) const {
+        StreamWriter writer(file, header_);
+        CodedSensor sensor(params_, header_.shape, header_.schedule, seed);
+        SamplePacket packet;
+        for (int slot = 0; slot < slots; ++slot) {
+            sensor.expose(light(slot), packet);
+            writer.write(packet);
+        }
+        writer.finish();
+    }
+
+  private:
+    SensorParams params_;
+    StreamHeader header_;
+};
+
+}  // namespace
+
+std::optional<FluxVideo> luminance_clip(const std::string& name) {
+    return read_clip(name, true);
+}
+
+std::optional<FluxVideo> colour_clip(const std::string& name) {
+    auto video = read_clip(name, false);
+    if (video && video->shape().planes != 3) return {};
+    return video;
+}
+
+NamedSchedule schedule_of(const std::string& name, FrameShape shape) {
+    Config config(find_config("schedules", name), {});
+    NamedSchedule schedule = read_schedule(config, shape, kSeed);
+    config.reject_unknown_keys();
+    return schedule;
+}
+
 void write_recording(const FluxVideo& video, const std::string& schedule,
                      const std::filesystem::path& file) {
     write_recording(video, schedule_of(schedule, video.shape()), kSeed, file);
@@ -47,31 +93,36 @@ void write_recording(const FluxVideo& video, const std::string& schedule,
 
 void write_recording(const FluxVideo& video, const NamedSchedule& named, std::uint64_t seed,
                      const std::filesystem::path& file) {
-    const SensorParams params{.charge_stores = named.schedule.charge_stores()};
-    StreamWriter writer(file, {.shape = video.shape(),
-                               .slot_us = params.slot_us,
-                               .calibration = calibration_of(params),
-                               .schedule = named.schedule,
-                               .schedule_source = named.source,
-                               .schedule_name = named.name,
-                               .provenance = ""});
-    CodedSensor sensor(params, video.shape(), named.schedule, seed);
-    SamplePacket packet;
-    for (int slot = 0; slot < video.slots(); ++slot) {
-        sensor.expose(video.frame(slot), packet);
-        writer.write(packet);
-    }
-    writer.finish();
+    const Recorder recorder(named, video.shape(), ColourFilter::kNone);
+    recorder.write(video.slots(), seed, file, [&](int slot) { return video.frame(slot); });
+}
+
+void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& named,
+                  const std::filesystem::path& file) {
+    const Recorder recorder(
+        named, {.rows = video.shape().rows, .cols = video.shape().cols, .planes = 1}, cfa);
+    std::vector<float> mosaic(video.shape().pixels());
+    recorder.write(video.slots(), kSeed, file, [&](int slot) {
+        take_mosaic(cfa, video.shape(), video.frame(slot), mosaic);
+        return std::span<const float>(mosaic);
+    });
 }
 
 FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method) {
     StreamReader reader(file, ReadPolicy::kStrict);
-    FluxVideo video(static_cast<int>(reader.slots().value()), reader.header().shape);
+    FluxVideo video(static_cast<int>(reader.slots().value()), decoded_shape(reader.header()));
     decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
         std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());
         return true;
     });
     return video;
+}
+
+VideoQuality quality_of(const FluxVideo& decoded, const FluxVideo& truth) {
+    QualityMeter meter(truth.shape(), {.margin = 4, .max_value = kBrightest});
+    for (int slot = 0; slot < truth.slots(); ++slot)
+        meter.add(decoded.frame(slot), truth.frame(slot));
+    return meter.quality();
 }
 
 VideoQuality quality_of(const FluxVideo& video, const std::string& schedule, DecodeMethod method) {
@@ -82,11 +133,7 @@ VideoQuality quality_of(const FluxVideo& video, const NamedSchedule& schedule, s
                         DecodeMethod method) {
     const TemporaryFolder folder;
     write_recording(video, schedule, seed, folder / "clip.stipple");
-    const FluxVideo decoded = read_recording(folder / "clip.stipple", method);
-    QualityMeter meter(video.shape(), {.margin = 4, .max_value = kBrightest});
-    for (int slot = 0; slot < video.slots(); ++slot)
-        meter.add(decoded.frame(slot), video.frame(slot));
-    return meter.quality();
+    return quality_of(read_recording(folder / "clip.stipple", method), video);
 }
 
 }  // namespace stipple

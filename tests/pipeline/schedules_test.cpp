@@ -19,17 +19,18 @@ constexpr int kSlots = 40;
 constexpr int kMargin = 8;  ///< slots at both ends: exposures cut off by them are not read
 
 /// A bright disc that moves a pixel a slot over a slanted, chequered wall.
-FluxVideo scene() {
-    FluxVideo video(kSlots, kShape);
+FluxVideo scene(FrameShape shape) {
+    FluxVideo video(kSlots, shape);
     for (int slot = 0; slot < kSlots; ++slot)
-        for (int row = 0; row < kShape.rows; ++row)
-            for (int col = 0; col < kShape.cols; ++col) {
-                const int x = col - 8 - slot;
-                const int y = row - 20;
-                const int wall = 4 + col / 8 + 6 * ((row / 10 + col / 10) % 2);
-                video.plane(slot, 0)(row, col) =
-                    static_cast<float>(x * x + y * y < 100 ? 40 : wall) / 64;
-            }
+        for (int plane = 0; plane < shape.planes; ++plane)
+            for (int row = 0; row < shape.rows; ++row)
+                for (int col = 0; col < shape.cols; ++col) {
+                    const int x = col - 8 - slot;
+                    const int y = row - 20;
+                    const int wall = 4 + plane + col / 8 + 6 * ((row / 10 + col / 10) % 2);
+                    video.plane(slot, plane)(row, col) =
+                        static_cast<float>(x * x + y * y < 100 ? 40 - 8 * plane : wall) / 64;
+                }
     return video;
 }
 
@@ -46,7 +47,7 @@ double mean_square_error(const FluxVideo& x, const FluxVideo& truth) {
     double sum = 0;
     std::size_t count = 0;
     for (int slot = kMargin; slot < kSlots - kMargin; ++slot)
-        for (std::size_t i = 0; i < kShape.sites(); ++i, ++count) {
+        for (std::size_t i = 0; i < truth.shape().sites(); ++i, ++count) {
             const double error =
                 static_cast<double>(x.frame(slot)[i]) - static_cast<double>(truth.frame(slot)[i]);
             sum += error * error;
@@ -56,26 +57,21 @@ double mean_square_error(const FluxVideo& x, const FluxVideo& truth) {
 
 /// What the best constant leaves.
 double variance_of(const FluxVideo& video) {
-    FluxVideo mean(kSlots, kShape);
+    FluxVideo mean(kSlots, video.shape());
     double sum = 0;
     for (const float light : video.data()) sum += static_cast<double>(light);
     std::ranges::fill(mean.data(), static_cast<float>(sum / static_cast<double>(video.voxels())));
     return mean_square_error(mean, video);
 }
 
-class SchedulesTest : public testing::TestWithParam<std::string> {};
-
-// A constant frame leaves the variance. `naive` must be below it with light in the right place,
-// `fast` three times below (4.8 dB), whatever the schedule.
-TEST_P(SchedulesTest, EmulatesAndDecodesThroughTheSameCode) {
-    const TemporaryFolder folder;
-    const FluxVideo video = scene();
-    write_recording(video, GetParam(), folder / "clip.stipple");
+/// A constant frame leaves the variance. `naive` must be below it with light in the right place,
+/// `fast` three times below (4.8 dB), whatever the schedule.
+void expect_decoded(const std::filesystem::path& file, const FluxVideo& video) {
     const double variance = variance_of(video);
     for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
         const auto decoded = [&](int threads) {
             const ThreadLimit limit(threads);
-            return read_recording(folder / "clip.stipple", method);
+            return read_recording(file, method);
         };
         const FluxVideo x = decoded(1);
         EXPECT_TRUE(std::ranges::all_of(x.data(), [](float v) { return v >= 0 && v < 4; }));
@@ -83,9 +79,27 @@ TEST_P(SchedulesTest, EmulatesAndDecodesThroughTheSameCode) {
         EXPECT_LT(error, variance / (method == DecodeMethod::kFast ? 3 : 1)) << "of " << variance;
         const FluxVideo with_two_threads = decoded(2);
         EXPECT_TRUE(std::ranges::equal(x.data(), with_two_threads.data()));
-        RecordProperty(method == DecodeMethod::kFast ? "fast" : "naive",
-                       std::to_string(10 * std::log10(1 / error)));
+        testing::Test::RecordProperty(method == DecodeMethod::kFast ? "fast" : "naive",
+                                      std::to_string(10 * std::log10(1 / error)));
     }
+}
+
+class SchedulesTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(SchedulesTest, EmulatesAndDecodesThroughTheSameCode) {
+    const TemporaryFolder folder;
+    const FluxVideo video = scene(kShape);
+    write_recording(video, GetParam(), folder / "clip.stipple");
+    expect_decoded(folder / "clip.stipple", video);
+}
+
+// Each pixel sees one of three colours, those of the disc and the wall differ.
+TEST_P(SchedulesTest, DecodesAMosaicOfColours) {
+    const TemporaryFolder folder;
+    const FluxVideo video = scene({kShape.rows, kShape.cols, 3});
+    write_mosaic(video, ColourFilter::kGrbg, schedule_of(GetParam(), kShape),
+                 folder / "clip.stipple");
+    expect_decoded(folder / "clip.stipple", video);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, SchedulesTest, testing::ValuesIn(names()),

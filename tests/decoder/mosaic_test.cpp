@@ -1,0 +1,146 @@
+// Streams of a colour filter array, from samples to RGB.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/parallel.h"
+#include "decoder/measurements.h"
+#include "decoder/nearest_samples.h"
+#include "decoder/reconstruct.h"
+#include "stream/stream_writer.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/decoder/recordings.h"
+
+namespace stipple {
+namespace {
+
+constexpr ColourFilter kFilters[] = {ColourFilter::kRggb, ColourFilter::kGrbg, ColourFilter::kGbrg,
+                                     ColourFilter::kBggr};
+
+FluxVideo constant(int slots, FrameShape shape, const std::vector<float>& colour) {
+    FluxVideo video(slots, shape);
+    for (int slot = 0; slot < slots; ++slot)
+        for (std::size_t i = 0; i < shape.sites(); ++i)
+            video.frame(slot)[i] = colour[i / shape.pixels()];
+    return video;
+}
+
+FluxVideo decode_file(const std::filesystem::path& file, DecodeMethod method) {
+    StreamReader reader(file);
+    FluxVideo video(static_cast<int>(reader.slots().value()), decoded_shape(reader.header()));
+    decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
+        std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());
+        return true;
+    });
+    return video;
+}
+
+FluxVideo decode_mosaic(const Recorded& recorded, DecodeMethod method) {
+    const TemporaryFolder folder;
+    StreamWriter writer(folder / "clip.stipple", recorded.header);
+    for (const SamplePacket& packet : recorded.packets) writer.write(packet);
+    writer.finish();
+    return decode_file(folder / "clip.stipple", method);
+}
+
+// The samples are those of a mono sensor, each in the plane that the filter's name says.
+void expect_planes_of_name(ColourFilter cfa, const VideoWindow& window) {
+    const FluxVideo video = random_video(30, {11, 14, 3}, 5);
+    const Recorded mosaic =
+        record_mosaic(video, cfa, random_schedule(11, 14, kPaperExposureSlots, 3));
+    Recorded mono = mosaic;
+    mono.header.cfa = ColourFilter::kNone;
+    VideoWindow mono_window = window;
+    mono_window.shape.planes = 1;
+    const Measurements m = collect_measurements(mosaic.header, mosaic.packets, window);
+    const Measurements expected = collect_measurements(mono.header, mono.packets, mono_window);
+    const std::size_t pixels = window.shape.pixels();
+    const auto cols = static_cast<std::size_t>(window.shape.cols);
+    for (std::size_t i = 0; i < m.voxels(); ++i) {
+        const std::size_t row = i % pixels / cols + static_cast<std::size_t>(window.first_row);
+        const std::size_t col = i % cols + static_cast<std::size_t>(window.first_col);
+        const char letter = name_of(cfa)[row % 2 * 2 + col % 2];
+        const bool seen = std::string_view("rgb").find(letter) == i / pixels % 3;
+        const std::size_t same = i / (3 * pixels) * pixels + i % pixels;
+        ASSERT_EQ(m.state[i], seen ? expected.state[same] : 0) << name_of(cfa) << ' ' << i;
+        ASSERT_EQ(m.sum[i], seen ? expected.sum[same] : 0);
+        ASSERT_EQ(m.variance[i], seen ? expected.variance[same] : 0);
+    }
+}
+
+TEST(MosaicTest, EachPixelIsOpenInThePlaneOfItsFilterOnly) {
+    for (const ColourFilter cfa : kFilters) {
+        expect_planes_of_name(cfa, {0, 30, 0, 0, {11, 14, 3}});
+        expect_planes_of_name(cfa, {4, 20, 3, 5, {7, 6, 3}});  // begins in the midst of a cell
+        expect_planes_of_name(cfa, {4, 20, 2, 1, {8, 5, 3}});
+    }
+}
+
+// Without noise light is off by half a DN, 0.004, in exposures of one slot at most.
+TEST(MosaicTest, ALastingColourComesBackInEveryPixelByEveryMethod) {
+    const FrameShape shape{18, 21, 3};
+    const std::vector<float> colour{0.15F, 0.4F, 0.25F};
+    const FluxVideo video = constant(45, shape, colour);
+    const ExposureSchedule schedule = random_schedule(18, 21, kPaperExposureSlots, 1);
+    for (const ColourFilter cfa : kFilters)
+        for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+            const FluxVideo x = decode_mosaic(
+                record_mosaic(video, cfa, schedule, {.read_noise_e = 0, .shot_noise = false}),
+                method);
+            for (std::size_t i = 8 * shape.sites(); i < 37 * shape.sites(); ++i)
+                ASSERT_NEAR(x.data()[i], video.data()[i], 0.005) << name_of(cfa) << ' ' << i;
+        }
+}
+
+TEST(MosaicTest, ColoursThatNoPixelSeesAreTakenToBeGrey) {
+    // A row of rggb has no blue, a single pixel of bggr nothing else.
+    for (const auto& [cfa, shape] : {std::pair{ColourFilter::kRggb, FrameShape{1, 9, 3}},
+                                     std::pair{ColourFilter::kBggr, FrameShape{1, 1, 3}}})
+        for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+            const FluxVideo x =
+                decode_mosaic(record_mosaic(constant(40, shape, {0.3F, 0.3F, 0.3F}), cfa,
+                                            random_schedule(1, 9, kPaperExposureSlots, 1),
+                                            {.read_noise_e = 0, .shot_noise = false}),
+                              method);
+            for (std::size_t i = 8 * shape.sites(); i < 32 * shape.sites(); ++i)
+                ASSERT_NEAR(x.data()[i], 0.3, 0.005) << shape.cols << ' ' << i;
+        }
+}
+
+TEST(MosaicTest, FramesOfAnySizeDecodeToLight) {
+    for (const ColourFilter cfa : kFilters)
+        for (const FrameShape shape :
+             {FrameShape{1, 1, 3}, FrameShape{1, 8, 3}, FrameShape{7, 1, 3}, FrameShape{2, 2, 3},
+              FrameShape{17, 19, 3}}) {
+            const FluxVideo video = random_video(30, shape, 1);
+            const Recorded recorded = record_mosaic(
+                video, cfa, random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1));
+            for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+                const FluxVideo x = decode_mosaic(recorded, method);
+                ASSERT_EQ(x.shape(), shape);
+                EXPECT_TRUE(std::ranges::all_of(x.data(), [](float v) { return v >= 0 && v < 3; }))
+                    << name_of(cfa) << ' ' << shape.rows << ' ' << shape.cols;
+            }
+        }
+}
+
+TEST(MosaicTest, TilesFitTogetherAndThreadsDoNotShow) {
+    const FrameShape shape{601, 603, 3};  // 2^20 sites are a tile at most
+    const FluxVideo video = random_video(3, shape, 1);
+    const Recorded recorded = record_mosaic(video, ColourFilter::kGbrg,
+                                            random_schedule(601, 603, kPaperExposureSlots, 1));
+    const FluxVideo x = decode_mosaic(recorded, DecodeMethod::kNaive);
+    FluxVideo single = nearest_samples(  // one block
+        collect_measurements(recorded.header, recorded.packets, whole(video)));
+    for (float& light : single.data()) light = std::max(light, 0.0F);
+    EXPECT_TRUE(std::ranges::equal(x.data(), single.data()));
+    const ThreadLimit limit(1);
+    EXPECT_TRUE(std::ranges::equal(x.data(), decode_mosaic(recorded, DecodeMethod::kNaive).data()));
+}
+
+}  // namespace
+}  // namespace stipple
