@@ -41,6 +41,10 @@ void add_decode(CLI::App& app, Action& action) {
     command->add_option("--set", options->settings, "change one option of the method")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+    command
+        ->add_option("--stages", options->stages,
+                     "keep the estimate of each stage as .npy, and a chart of the convergence")
+        ->type_name("DIR");
     command->add_flag("--strict", options->strict, "write nothing if the stream is damaged");
     command->add_option("--until", options->until, "stop after the first N frames")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U))

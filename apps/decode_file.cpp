@@ -12,6 +12,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
+#include "apps/stage_outputs.h"
 #include "apps/stream_follower.h"
 #include "apps/stream_text.h"
 #include "core/config.h"
@@ -113,7 +114,7 @@ std::string schedule_hint(const StreamReport& report) {
 }  // namespace
 
 void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
-    const DecodeOptions options = options_of(arguments);
+    DecodeOptions options = options_of(arguments);
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);
     std::optional<ScheduleCheck> check;
@@ -127,13 +128,17 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
                        {.force = run.force, .live = arguments.follow && !arguments.strict});
+    StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
+    options.stages = stages.sink();
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
     if (report.slots == 0) throw_if_stopped();
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
+    stages.finish();
     const std::string_view end = end_of(report, arguments, follower);
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
+    if (!stages.figures().empty()) figures["convergence"] = stages.figures();
     json.write(figures);
     warn(end, report, arguments, follower);
     run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB",

@@ -15,6 +15,7 @@ struct DecodeArguments {
     std::string method = "fast";
     std::string options;  ///< file of the method's options; empty: none
     std::vector<std::string> settings;
+    std::string stages;  ///< folder; empty: none
     bool strict = false;
     std::int64_t until = 0;      ///< frames wanted; 0: all
     bool follow = false;         ///< the stream is still being written

@@ -6,7 +6,6 @@ namespace stipple {
 namespace {
 
 constexpr std::int64_t kHaloPixels = 32;
-constexpr std::int64_t kMaxCoreSites = std::int64_t{1} << 20;
 
 Stretch part(std::int64_t length, std::int64_t i, std::int64_t parts) {
     const std::int64_t begin = length * i / parts;
@@ -32,13 +31,13 @@ Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots, std::int64_t h
             .end = std::min(core_end + halo, slots)};
 }
 
-std::vector<Tile> frame_tiles(FrameShape shape) {
+std::vector<Tile> frame_tiles(FrameShape shape, std::int64_t max_core_sites) {
     std::int64_t down = 1;
     std::int64_t across = 1;
     const auto ceil_div = [](std::int64_t a, std::int64_t b) { return (a + b - 1) / b; };
     const auto tile_rows = [&] { return ceil_div(shape.rows, down); };
     const auto tile_cols = [&] { return ceil_div(shape.cols, across); };
-    while (tile_rows() * tile_cols() * shape.planes > kMaxCoreSites)
+    while (tile_rows() * tile_cols() * shape.planes > max_core_sites)
         ++(tile_rows() > tile_cols() ? down : across);
     std::vector<Tile> tiles;
     for (std::int64_t row = 0; row < down; ++row)

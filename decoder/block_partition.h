@@ -38,8 +38,11 @@ struct Tile {
     Stretch cols;
 };
 
-/// Cuts a frame into the fewest equal tiles with at most 2^20 sites in their cores; it depends on
-/// the shape only.
-[[nodiscard]] std::vector<Tile> frame_tiles(FrameShape shape);
+inline constexpr std::int64_t kMaxCoreSites = std::int64_t{1} << 20;
+
+/// Cuts a frame into the fewest equal tiles with at most so many sites in their cores; it depends
+/// on the shape only.
+[[nodiscard]] std::vector<Tile> frame_tiles(FrameShape shape,
+                                            std::int64_t max_core_sites = kMaxCoreSites);
 
 }  // namespace stipple

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr NamedDecodeMethod kMethods[] = {
     {"naive", DecodeMethod::kNaive},
     {"fast", DecodeMethod::kFast},
+    {"portz2013", DecodeMethod::kPortz2013},
 };
 
 void read_number(Config& config, std::string_view key, double least, double most, float& value) {
@@ -39,6 +41,56 @@ void read_options(Config& config, MotionTvOptions& fast) {
     read_number(config, "max_step_ratio", 1, 1e4, fast.max_step_ratio);
 }
 
+/// Keys of one stage: `prefix` is "stage1." or "stage2.".
+class StageKeys {
+  public:
+    StageKeys(Config& config, std::string prefix) : config_(config), prefix_(std::move(prefix)) {}
+    void number(const char* key, double least, double most, float& value) {
+        read_number(config_, prefix_ + key, least, most, value);
+    }
+    void integer(const char* key, int least, int most, int& value) {
+        read_integer(config_, prefix_ + key, least, most, value);
+    }
+    void search(MatchSearch& search) {
+        integer("patch_rows", 1, 64, search.size.rows);
+        integer("patch_cols", 1, 64, search.size.cols);
+        integer("patch_slots", 1, 32, search.size.slots);
+        integer("step_px", 1, 64, search.step_px);
+        integer("window_px", 0, 64, search.window_px);
+        integer("window_slots", 0, 64, search.window_slots);
+        number("sigma", 1e-4, 1e3, search.sigma);
+    }
+    void admm(MatchAdmmOptions& admm) {
+        integer("iterations", 0, 10000, admm.iterations);
+        number("rho", 1e-4, 1e6, admm.rho);
+        integer("cg_iterations", 1, 10000, admm.cg_iterations);
+        number("cg_tolerance", 0, 1, admm.cg_tolerance);
+    }
+
+  private:
+    Config& config_;
+    std::string prefix_;
+};
+
+void read_options(Config& config, Portz2013Options& portz) {
+    read_number(config, "values_per_flux", 1e-3, 1e6, portz.values_per_flux);
+    StageKeys first(config, "stage1.");
+    first.search(portz.stage1.search);
+    first.integer("most_matches", 0, 1000, portz.stage1.most_matches);
+    first.number("gamma", 0, 1e4, portz.stage1.gamma);
+    first.admm(portz.stage1.admm);
+    StageKeys second(config, "stage2.");
+    second.search(portz.stage2.search);
+    second.number("search_weight", 0, 1e3, portz.stage2.search.weight);
+    second.integer("most_matches", 0, 1000, portz.stage2.most_matches);
+    second.number("gamma", 0, 1e4, portz.stage2.gamma);
+    second.integer("flow_block_px", 1, 64, portz.stage2.flow.block_px);
+    second.integer("flow_radius_slots", 0, 64, portz.stage2.flow.radius_slots);
+    second.number("flow_consistency_px", 0, 1e3, portz.stage2.flow.consistency_px);
+    second.admm(portz.stage2.admm);
+    portz.stage2.flow.sigma = portz.stage2.search.sigma;
+}
+
 }  // namespace
 
 std::span<const NamedDecodeMethod> decode_methods() {
@@ -61,6 +113,9 @@ DecodeOptions read_decode_options(DecodeMethod method, Config& config) {
             break;
         case DecodeMethod::kFast:
             read_options(config, options.fast);
+            break;
+        case DecodeMethod::kPortz2013:
+            read_options(config, options.portz2013);
             break;
     }
     config.reject_unknown_keys();

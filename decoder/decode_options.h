@@ -5,12 +5,15 @@
 
 #include "core/config.h"
 #include "decoder/motion_tv.h"
+#include "decoder/portz2013.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 
 enum class DecodeMethod {
-    kNaive,  ///< each pixel holds its nearest samples; no model of the scene
-    kFast,   ///< motion-compensated total variation
+    kNaive,      ///< each pixel holds its nearest samples; no model of the scene
+    kFast,       ///< motion-compensated total variation
+    kPortz2013,  ///< the method of the paper, in two stages
 };
 
 struct NamedDecodeMethod {
@@ -28,6 +31,8 @@ struct NamedDecodeMethod {
 struct DecodeOptions {
     DecodeMethod method = DecodeMethod::kFast;
     MotionTvOptions fast = {};
+    Portz2013Options portz2013 = {};
+    StageSink stages = {};
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

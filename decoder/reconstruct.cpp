@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "decoder/block_partition.h"
@@ -59,15 +61,23 @@ class PacketBuffer {
 using Block = std::optional<FluxVideo>;  ///< nothing if stopped
 
 Block decode_block(Measurements measurements, const Calibration& calibration,
-                   const DecodeOptions& options, const Checkpoint& checkpoint) {
+                   const DecodeOptions& options, const StageObserver& observer,
+                   const Checkpoint& checkpoint) {
     switch (options.method) {
         case DecodeMethod::kNaive:
             return nearest_samples(measurements);
         case DecodeMethod::kFast:
             return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
                                     checkpoint);
+        case DecodeMethod::kPortz2013:
+            return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
     }
     return {};
+}
+
+/// Methods that need more memory for a voxel work on smaller tiles.
+std::int64_t max_core_sites(DecodeMethod method) {
+    return method == DecodeMethod::kPortz2013 ? kPortz2013CoreSites : kMaxCoreSites;
 }
 
 /// Where a block's core goes in the frames of its slots.
@@ -94,6 +104,47 @@ void copy_core(const FluxVideo& block, const Placement& at, FluxVideo& video) {
             }
 }
 
+/// Puts together what the tiles of a block of slots tell of their stages.
+class StageRelay {
+  public:
+    StageRelay(const StageSink& sink, FrameShape shape, const Stretch& slots)
+        : sink_(sink), shape_(shape), slots_(slots) {}
+
+    /// The observer of one tile, while this object lives.
+    StageObserver observer(const Tile& tile, std::size_t number) {
+        StageObserver observer;
+        if (sink_.frame)
+            observer.finished = [this, tile](std::string_view stage, const FluxVideo& estimate) {
+                copy_core(estimate, {tile, slots_}, video_of(stage));
+            };
+        if (sink_.step)
+            observer.iterated = [this, number](std::string_view stage, int iteration,
+                                               double objective) {
+                sink_.step(
+                    {slots_.core_begin, static_cast<int>(number), stage, iteration, objective});
+            };
+        return observer;
+    }
+    void deliver() const {
+        for (const auto& [stage, video] : videos_)
+            for (int slot = 0; slot < video.slots(); ++slot)
+                sink_.frame(stage, slots_.core_begin + slot, video.frame(slot));
+    }
+
+  private:
+    FluxVideo& video_of(std::string_view stage) {
+        for (auto& [name, video] : videos_)
+            if (name == stage) return video;
+        const auto slots = static_cast<int>(slots_.core_end - slots_.core_begin);
+        return videos_.emplace_back(std::string(stage), FluxVideo(slots, shape_)).second;
+    }
+
+    const StageSink& sink_;
+    FrameShape shape_;
+    Stretch slots_;
+    std::vector<std::pair<std::string, FluxVideo>> videos_;
+};
+
 VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
     return {.first_slot = slots.begin,
             .slots = static_cast<int>(slots.end - slots.begin),
@@ -112,18 +163,21 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
     const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
     if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
-    const std::vector<Tile> tiles = frame_tiles(shape);
+    const std::vector<Tile> tiles = frame_tiles(shape, max_core_sites(options.method));
+    StageRelay stages(options.stages, shape, slots);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const auto tile_checkpoint = [&](double fraction) {
             return checkpoint((static_cast<double>(i) + fraction) /
                               static_cast<double>(tiles.size()));
         };
         const VideoWindow window = window_of(tiles[i], slots, shape.planes);
-        const Block block = decode_block(collect_measurements(header, packets, window),
-                                         header.calibration, options, tile_checkpoint);
+        const Block block =
+            decode_block(collect_measurements(header, packets, window), header.calibration, options,
+                         stages.observer(tiles[i], i), tile_checkpoint);
         if (!block || !tile_checkpoint(1)) return {};
         copy_core(*block, {tiles[i], slots}, video);
     }
+    stages.deliver();
     return video;
 }
 

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/frame_writer.h"
+#include "core/geometry.h"
+#include "decoder/stage_observer.h"
+
+namespace stipple {
+
+/// Keeps what the stages of a decoding method come to: their frames as NAME.npy in a folder, and
+/// how what they minimise falls, as figures and as a chart (convergence.png) in that folder.
+class StageOutputs {
+  public:
+    /// `folder` is made where it is absent; empty: no files, figures only. \throws InputError if it
+    /// cannot be made.
+    StageOutputs(std::filesystem::path folder, FrameShape shape, bool force);
+
+    /// For DecodeOptions; refers to this object. Its frames throw as FrameWriter.
+    [[nodiscard]] StageSink sink();
+
+    /// Completes the files. \throws as FrameWriter and draw_chart.
+    void finish();
+
+    /// For each block and stage {first_slot, tile, stage, objective: one per iteration}.
+    [[nodiscard]] nlohmann::ordered_json figures() const;
+
+  private:
+    /// The iterations of a stage on a block.
+    struct Descent {
+        std::int64_t first_slot = 0;
+        int tile = 0;
+        std::string stage;
+        std::vector<double> objective;
+    };
+    struct StageFile {
+        std::unique_ptr<FrameWriter> writer;
+        std::int64_t slots = 0;
+    };
+
+    void add(const StageStep& step);
+    void write(std::string_view stage, std::int64_t slot, std::span<const float> frame);
+    void draw() const;
+
+    std::filesystem::path folder_;
+    FrameShape shape_;
+    bool force_;
+    std::vector<Descent> descents_;
+    std::map<std::string, StageFile, std::less<>> files_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.h"
+#include "decoder/measurements.h"
+
+namespace stipple {
+
+/// One sample of a site and the slots that it collected.
+struct TimedSample {
+    std::uint64_t open_slots = 0;  ///< bit i: open in slot first_slot + i; bit 0 is set
+    int first_slot = 0;            ///< of the block
+    int span_slots = 0;            ///< from the first open slot to the last one
+    int open_count = 0;            ///< open slots
+    float light = 0;               ///< y, of the whole exposure
+    bool saturated = false;        ///< the light is `light` or more
+};
+
+/// The samples of a block, found by (site, slot): for methods that follow a pixel through time.
+/// A site is (plane, row, col) as one index.
+class ExposureTable {
+  public:
+    explicit ExposureTable(const Measurements& measurements);
+
+    [[nodiscard]] int slots() const { return slots_; }
+    [[nodiscard]] FrameShape shape() const { return shape_; }
+    [[nodiscard]] int longest_open_count() const { return longest_open_count_; }
+
+    /// The sample that a site's light of a slot is in, or null. Precondition: both are in the
+    /// block.
+    [[nodiscard]] const TimedSample* at(std::size_t site, int slot) const {
+        const std::uint32_t i =
+            index_[site * static_cast<std::size_t>(slots_) + static_cast<std::size_t>(slot)];
+        return i == kNone ? nullptr : &samples_[i];
+    }
+
+  private:
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+    int slots_;
+    FrameShape shape_;
+    int longest_open_count_ = 1;
+    std::vector<TimedSample> samples_;
+    std::vector<std::uint32_t> index_;  ///< order (site, slot)
+};
+
+/// `open_slots` as seen from a first slot that is `slots` later: bits before it fall off.
+[[nodiscard]] constexpr std::uint64_t seen_from(std::uint64_t open_slots, int slots) {
+    if (slots <= -64 || slots >= 64) return 0;
+    return slots >= 0 ? open_slots >> static_cast<unsigned>(slots)
+                      : open_slots << static_cast<unsigned>(-slots);
+}
+
+/// The first `slots` bits, 0..64.
+[[nodiscard]] constexpr std::uint64_t first_bits(int slots) {
+    return slots >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << static_cast<unsigned>(slots)) - 1;
+}
+
+}  // namespace stipple

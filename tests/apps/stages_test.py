@@ -1,0 +1,45 @@
+"""What a decoding method in stages leaves behind: estimates, figures, chart."""
+
+import shutil
+import unittest
+
+import numpy as np
+
+from program import ProgramTest
+
+QUICK = ["--method", "portz2013"]
+for setting in ("stage1.window_px=2", "stage1.iterations=3", "stage2.window_px=2",
+                "stage2.iterations=4", "stage2.flow_radius_slots=1"):
+    QUICK += ["--set", setting]
+
+
+class StagesTest(ProgramTest):
+    def test_the_estimates_of_all_stages_and_what_they_minimise(self):
+        # More than one block of slots: 48 and 22.
+        stream = self.write_stream(slots=70, rows=17, cols=18)
+        folder = ["--stages", "stages"] if shutil.which("gnuplot") else []
+        figures = self.figures("decode", stream, "-o", "out.npy", *QUICK, *folder)
+        steps = [(step["first_slot"], step["tile"], step["stage"], len(step["objective"]))
+                 for step in figures["convergence"]]
+        self.assertEqual(steps, [(0, 0, "stage1", 3), (0, 0, "stage2", 4),
+                                 (48, 0, "stage1", 3), (48, 0, "stage2", 4)])
+        for step in figures["convergence"]:
+            self.assertTrue(all(np.isfinite(step["objective"])))
+        if not folder:
+            self.skipTest("gnuplot is not installed")
+        self.assertEqual([name for name in self.names() if name.startswith("stages/")],
+                         ["stages/convergence.png", "stages/stage1.npy", "stages/stage2.npy",
+                          "stages/start.npy"])
+        self.assertEqual(self.array("stages/stage1.npy").shape, self.array("out.npy").shape)
+        np.testing.assert_array_equal(self.array("stages/stage2.npy"), self.array("out.npy"))
+        self.assertFalse(np.array_equal(self.array("stages/start.npy"), self.array("out.npy")))
+
+    def test_a_method_without_stages_tells_none(self):
+        figures = self.figures("decode", self.write_stream(), "-o", "out.npy", "--method", "naive",
+                               "--stages", "stages")
+        self.assertNotIn("convergence", figures)
+        self.assertEqual(sorted(self.names()), ["clip.stipple", "light.npy", "out.npy", "stages"])
+
+
+if __name__ == "__main__":
+    unittest.main()
