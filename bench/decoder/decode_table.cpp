@@ -1,0 +1,208 @@
+// Speed, memory and quality of every decoding method, clip by clip: the figures of
+// docs/decoder_experiments.md. Each method runs in a process of its own, on the same recording
+// (the paper's sensor, seed 1, colour as luminance, light clipped at 2.0). Quality is without the
+// first and last 4 frames.
+#include "bench/decoder/decode_table.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "apps/name_check.h"
+#include "core/npy_writer.h"
+#include "decoder/decode_options.h"
+#include "scenes/scene.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/pipeline/clip.h"
+
+namespace stipple {
+namespace {
+
+struct TableOptions {
+    std::vector<std::string> clips = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
+                                      "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
+    std::vector<std::string> methods;
+    std::vector<std::string> settings;  ///< "method.key=value"
+    std::string schedule = "random";
+    int side_px = 96;
+    int slots = 24;
+    bool scaling = false;
+};
+
+FluxVideo rendered(const std::string& name, int side_px, int slots) {
+    const FrameShape shape{.rows = side_px, .cols = side_px, .planes = 1};
+    const Scene scene(scene_from_name(name), {.slots = slots, .shape = shape, .time_samples = 1});
+    FluxVideo video(slots, shape);
+    for (int slot = 0; slot < slots; ++slot) {
+        scene.render(slot, video.frame(slot));
+        for (float& light : video.frame(slot)) light = std::min(light, 2.0F);
+    }
+    return video;
+}
+
+/// The middle of the first slots.
+FluxVideo cropped(const FluxVideo& video, int side_px, int slots) {
+    const FrameShape from = video.shape();
+    const FrameShape shape{.rows = std::min(side_px, from.rows),
+                           .cols = std::min(side_px, from.cols),
+                           .planes = from.planes};
+    FluxVideo crop(std::min(slots, video.slots()), shape);
+    const auto left = static_cast<std::size_t>((from.cols - shape.cols) / 2);
+    for (int slot = 0; slot < crop.slots(); ++slot)
+        for (int plane = 0; plane < shape.planes; ++plane)
+            for (int row = 0; row < shape.rows; ++row) {
+                const auto line = video.plane(slot, plane).row(row + (from.rows - shape.rows) / 2);
+                std::copy_n(line.begin() + static_cast<std::ptrdiff_t>(left), shape.cols,
+                            crop.plane(slot, plane).row(row).begin());
+            }
+    return crop;
+}
+
+/// A clip of the footage folder or a scene; nothing if there is no such footage.
+std::optional<FluxVideo> clip_of(const std::string& name, const TableOptions& options) {
+    for (const char* scene : {"pan", "roll", "pencils", "dice", "still"})
+        if (name == scene) return rendered(name, options.side_px, options.slots);
+    const auto video = luminance_clip(name);
+    if (!video) return {};
+    return cropped(*video, options.side_px, options.slots);
+}
+
+RecordedClip record(const FluxVideo& video, const std::string& schedule,
+                    const std::filesystem::path& folder) {
+    const RecordedClip clip{folder / "clip.stipple", folder / "truth.npy"};
+    std::filesystem::remove(clip.stream);
+    write_recording(video, schedule, clip.stream);
+    NpyWriter truth(clip.truth, clip.truth.string(), video.shape());
+    for (int slot = 0; slot < video.slots(); ++slot) truth.write(video.frame(slot));
+    truth.finish();
+    return clip;
+}
+
+std::vector<std::string> settings_of(const std::string& method, const TableOptions& options) {
+    std::vector<std::string> settings;
+    for (const std::string& setting : options.settings)
+        if (setting.starts_with(method + "."))
+            settings.push_back(setting.substr(method.size() + 1));
+    return settings;
+}
+
+void print_row(const std::string& clip, const std::string& method, const MethodFigures& f,
+               double reference_rate) {
+    fmt::print("| {} | {} | {:.4g} | {} | {:.2f} | {:.2f} | {:.2f} | {:.0f} |\n", clip, method,
+               f.voxels_per_second,
+               reference_rate > 0 ? fmt::format("{:.3g}", f.voxels_per_second / reference_rate)
+                                  : std::string("-"),
+               f.psnr_db, f.psnr_gamma_db, f.pu21_psnr_db, static_cast<double>(f.peak_bytes) / 1e6);
+    std::fflush(stdout);
+}
+
+/// All methods on all clips, then the means.
+void print_table(const TableOptions& options) {
+    const TemporaryFolder folder;
+    std::map<std::string, std::vector<MethodFigures>> all;
+    fmt::print(
+        "| clip | method | voxels/s | x portz2013 | PSNR dB | 1/2.2 dB | PU21 dB | MB |\n"
+        "|---|---|---|---|---|---|---|---|\n");
+    for (const std::string& name : options.clips) {
+        const auto video = clip_of(name, options);
+        if (!video) {
+            fmt::print("| {} | not in the footage folder |\n", name);
+            continue;
+        }
+        const RecordedClip clip = record(*video, options.schedule, folder.path());
+        std::map<std::string, MethodFigures> figures;
+        for (const std::string& method : options.methods) {
+            figures[method] = measure_apart(clip, method, settings_of(method, options));
+            all[method].push_back(figures[method]);
+        }
+        const auto reference = figures.find("portz2013");
+        for (const std::string& method : options.methods)
+            print_row(fmt::format("{} {}x{}x{}", name, video->shape().rows, video->shape().cols,
+                                  video->slots()),
+                      method, figures[method],
+                      reference == figures.end() ? 0 : reference->second.voxels_per_second);
+    }
+    const auto mean = [](const std::vector<MethodFigures>& list) {
+        MethodFigures sum;
+        const auto n = static_cast<double>(list.size());
+        for (const MethodFigures& f : list) {
+            sum.voxels_per_second += f.voxels_per_second / n;
+            sum.psnr_db += f.psnr_db / n;
+            sum.psnr_gamma_db += f.psnr_gamma_db / n;
+            sum.pu21_psnr_db += f.pu21_psnr_db / n;
+            sum.peak_bytes = std::max(sum.peak_bytes, f.peak_bytes);
+        }
+        return sum;
+    };
+    const auto reference = all.find("portz2013");
+    for (const std::string& method : options.methods)
+        if (!all[method].empty())
+            print_row("mean; most MB", method, mean(all[method]),
+                      reference == all.end() ? 0 : mean(reference->second).voxels_per_second);
+}
+
+/// Time for a voxel of scenes of four sizes.
+void print_scaling(const TableOptions& options) {
+    const TemporaryFolder folder;
+    fmt::print(
+        "| pan, {} slots | method | voxels | s | us/voxel | MB |\n|---|---|---|---|---|---|\n",
+        options.slots);
+    for (const int side_px : {64, 128, 256, 512}) {
+        const FluxVideo video = rendered("pan", side_px, options.slots);
+        const RecordedClip clip = record(video, options.schedule, folder.path());
+        for (const std::string& method : options.methods) {
+            const MethodFigures f = measure_apart(clip, method, settings_of(method, options));
+            fmt::print("| {}x{} | {} | {} | {:.2f} | {:.3f} | {:.0f} |\n", side_px, side_px, method,
+                       video.voxels(), f.seconds, 1e6 / f.voxels_per_second,
+                       static_cast<double>(f.peak_bytes) / 1e6);
+            std::fflush(stdout);
+        }
+    }
+}
+
+int run(int argc, char** argv) {
+    TableOptions options;
+    for (const NamedDecodeMethod& known : decode_methods())
+        options.methods.emplace_back(known.name);
+    CLI::App app("Speed, memory and quality of the decoding methods, as a table");
+    app.add_option("--clips", options.clips, "clips of the footage folder, or scenes")
+        ->delimiter(',');
+    auto* methods = app.add_option("--methods", options.methods, "of `stipple decode` (all)")
+                        ->delimiter(',')
+                        ->check(name_check(decode_method_from_name));
+    app.add_option("--set", options.settings, "METHOD.KEY=VALUE")->allow_extra_args(false);
+    app.add_option("--schedule", options.schedule, "of config/schedules (random)");
+    app.add_option("--size", options.side_px, "side of the crop, pixels (96)")
+        ->check(CLI::Range(8, 4096));
+    app.add_option("--slots", options.slots, "first slots of the clip (24)")
+        ->check(CLI::Range(1, 100000));
+    app.add_flag("--scaling", options.scaling,
+                 "time for a voxel of four sizes instead; all methods but portz2013");
+    CLI11_PARSE(app, argc, argv);
+    if (options.scaling && methods->count() == 0)
+        std::erase(options.methods, std::string("portz2013"));
+    options.scaling ? print_scaling(options) : print_table(options);
+    return 0;
+}
+
+}  // namespace
+}  // namespace stipple
+
+int main(int argc, char** argv) {
+    try {
+        const std::vector<std::string> arguments(argv + 1, argv + argc);
+        if (arguments.size() >= 4 && arguments[0] == "--child") {
+            stipple::decode_and_print({arguments[1], arguments[2]}, arguments[3],
+                                      {arguments.begin() + 4, arguments.end()});
+            return 0;
+        }
+        return stipple::run(argc, argv);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "bench_decode: {}\n", e.what());
+        return 1;
+    }
+}

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "bench/decoder/decode_table.h"
+#include "core/config.h"
+#include "core/footage_reader.h"
+#include "decoder/reconstruct.h"
+#include "metrics/video_quality.h"
+
+namespace stipple {
+namespace {
+
+constexpr double kBrightest = 2;  // full scale / photons per unit
+
+struct PipeCloser {
+    void operator()(std::FILE* pipe) const { pclose(pipe); }
+};
+
+/// For the shell.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) {
+        if (c == '\'') result += "'\\'";
+        result += c;
+    }
+    result += '\'';
+    return result;
+}
+
+}  // namespace
+
+void decode_and_print(const RecordedClip& clip, const std::string& method,
+                      const std::vector<std::string>& settings) {
+    StreamReader reader(clip.stream, ReadPolicy::kStrict);
+    FootageReader truth(clip.truth);
+    std::vector<float> reference(truth.shape().sites());
+    const auto slots = static_cast<int>(reader.slots().value());
+    QualityMeter meter(truth.shape(),
+                       {.margin = std::min(4, (slots - 1) / 2), .max_value = kBrightest});
+    Config config(settings);
+    const DecodeReport report =
+        decode(reader, read_decode_options(decode_method_from_name(method), config),
+               [&](std::int64_t, std::span<const float> frame) {
+                   truth.read(reference);
+                   meter.add(frame, reference);
+                   return true;
+               });
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const VideoQuality quality = meter.quality();
+    fmt::print("figures {} {} {} {} {} {}\n", report.seconds,
+               static_cast<double>(report.voxels) / report.seconds, quality.psnr_db,
+               quality.psnr_gamma_db, quality.pu21_psnr_db, usage.ru_maxrss * 1024);
+}
+
+MethodFigures measure_apart(const RecordedClip& clip, const std::string& method,
+                            const std::vector<std::string>& settings) {
+    const auto program = std::filesystem::read_symlink("/proc/self/exe");
+    std::string command =
+        fmt::format("{} --child {} {} {}", quoted(program.string()), quoted(clip.stream.string()),
+                    quoted(clip.truth.string()), quoted(method));
+    for (const std::string& setting : settings) command += fmt::format(" {}", quoted(setting));
+    const std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
+    MethodFigures f;
+    long long peak = 0;
+    if (!pipe || std::fscanf(pipe.get(), "figures %lf %lf %lf %lf %lf %lld", &f.seconds,
+                             &f.voxels_per_second, &f.psnr_db, &f.psnr_gamma_db, &f.pu21_psnr_db,
+                             &peak) != 6)
+        throw std::runtime_error(fmt::format("method {} has failed", method));
+    f.peak_bytes = peak;
+    return f;
+}
+
+}  // namespace stipple
