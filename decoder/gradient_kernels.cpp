@@ -35,7 +35,7 @@ void to_factors(Index cols, const DualStep& dual_step, float* HWY_RESTRICT squar
     for (Index i = 0; i < cols; ++i) {
         const float most = dual_step.weight * std::sqrt(dual_step.reference_step / step[i]);
         const float norm = std::sqrt(squares[i]);
-        squares[i] = most / (norm > most ? norm : most);
+        squares[i] = norm > most ? most / norm : 1.0F;  // both may be 0
     }
 }
 

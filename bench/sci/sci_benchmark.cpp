@@ -1,0 +1,133 @@
+// The six-clip video-SCI benchmark: 8 frames of 256 x 256 added up through binary masks, without
+// noise. `bench_sci FOLDER --masks masks.npy` prints the PSNR of each clip beside the published
+// averages; without a folder it runs on stand-ins. docs/sci_benchmark.md says how to get the clips
+// into it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/sci/sci_trial.h"
+#include "core/config.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+struct Arguments {
+    std::string folder;
+    std::string masks;
+    std::vector<std::string> clips = {"kobe32", "traffic48", "runner40",
+                                      "drop40", "aerial32",  "crash32"};
+    std::vector<std::string> methods = {"fast"};
+    std::vector<std::string> settings;
+    double electrons_per_unit = SciSensor{}.electrons_per_unit;
+    int slots = 32;
+    int side = 256;
+};
+
+/// Averages over the six clips, as the design page of the decoder cites them.
+constexpr std::pair<const char*, double> kPublished[] = {
+    {"GAP-TV", 26.93}, {"PnP-FFDNet", 29.25}, {"PnP-FastDVDnet", 31.79}};
+
+std::map<std::string, FluxVideo> read_clips(const Arguments& arguments) {
+    std::map<std::string, FluxVideo> clips;
+    if (arguments.folder.empty()) {
+        const FrameShape shape{arguments.side, arguments.side, 1};
+        for (const char* scene : {"pan", "roll", "pencils", "dice", "still"})
+            clips.emplace(scene, sci_stand_in(scene, arguments.slots, shape));
+        return clips;
+    }
+    for (const std::string& name : arguments.clips)
+        clips.emplace(name, read_sci_clip(arguments.folder, name));
+    return clips;
+}
+
+/// One column of the table: the PSNR of each clip.
+struct Column {
+    std::string method;
+    std::vector<double> psnr_db;
+    double seconds = 0;
+};
+
+Column run_method(const std::string& name, const Arguments& arguments,
+                  const std::map<std::string, FluxVideo>& clips) {
+    Config config(arguments.settings);
+    const DecodeOptions options = read_decode_options(decode_method_from_name(name), config);
+    Column column{.method = name, .psnr_db = {}};
+    const auto begin = std::chrono::steady_clock::now();
+    for (const auto& [clip, video] : clips) {
+        const NpyVolume masks = arguments.masks.empty() ? random_masks(video.shape(), 1)
+                                                        : read_npy_volume(arguments.masks);
+        column.psnr_db.push_back(
+            sci_psnr_db(video, masks, {arguments.electrons_per_unit}, options));
+    }
+    column.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return column;
+}
+
+void print_table(const std::vector<Column>& columns,
+                 const std::map<std::string, FluxVideo>& clips) {
+    fmt::print("| method |");
+    for (const auto& [name, video] : clips) fmt::print(" {} |", name);
+    fmt::print(" average | s |\n|---|");
+    for (std::size_t i = 0; i < clips.size() + 2; ++i) fmt::print("---|");
+    for (const Column& column : columns) {
+        double sum = 0;
+        fmt::print("\n| {} |", column.method);
+        for (const double psnr : column.psnr_db) {
+            fmt::print(" {:.2f} |", psnr);
+            sum += psnr;
+        }
+        fmt::print(" **{:.2f}** | {:.1f} |", sum / static_cast<double>(clips.size()),
+                   column.seconds);
+    }
+    fmt::print("\n");
+}
+
+void run(const Arguments& arguments) {
+    const auto clips = read_clips(arguments);
+    std::vector<Column> columns;
+    for (const std::string& method : arguments.methods)
+        columns.push_back(run_method(method, arguments, clips));
+    print_table(columns, clips);
+    if (arguments.folder.empty()) {
+        fmt::print("\nStand-ins, not the clips of the benchmark: no published figure compares.\n");
+        return;
+    }
+    fmt::print("\nPublished averages:");
+    for (const auto& [name, psnr] : kPublished) fmt::print(" {} {:.2f}", name, psnr);
+    fmt::print("\n");
+}
+
+}  // namespace
+}  // namespace stipple
+
+int main(int argc, char** argv) {
+    stipple::Arguments arguments;
+    CLI::App app("Video-SCI benchmark; docs/sci_benchmark.md");
+    app.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of pictures");
+    app.add_option("--masks", arguments.masks, ".npy of 8 masks of 0 and 1 (random ones)");
+    app.add_option("--clips", arguments.clips, "names in FOLDER (the six)")->delimiter(',');
+    app.add_option("--method", arguments.methods, "methods (fast)")->delimiter(',');
+    app.add_option("--set", arguments.settings, "KEY=VALUE, an option of the method")
+        ->allow_extra_args(false);
+    app.add_option("--electrons", arguments.electrons_per_unit, "of light 1.0 (1e6)")
+        ->check(CLI::Range(1.0, 1.2e6));
+    app.add_option("--slots", arguments.slots, "frames of a stand-in (32)")
+        ->check(CLI::Range(8, 1000));
+    app.add_option("--side", arguments.side, "pixels of a stand-in (256)")
+        ->check(CLI::Range(8, 1024));
+    CLI11_PARSE(app, argc, argv);
+    try {
+        stipple::run(arguments);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "bench_sci: {}\n", e.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,83 @@
+// The video-SCI benchmark on stand-ins: masks, an ideal sensor, 8 frames a measurement.
+#include "bench/sci/sci_trial.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "core/error.h"
+#include "core/npy_writer.h"
+#include "tests/core/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+constexpr FrameShape kShape{64, 64, 1};
+
+double psnr_of(const FluxVideo& video, DecodeMethod method) {
+    return sci_psnr_db(video, random_masks(video.shape(), 1), {}, {.method = method});
+}
+
+TEST(SciTest, TheMasksAreHalfOnesAndDifferFromFrameToFrame) {
+    const NpyVolume masks = random_masks(kShape, 1);
+    ASSERT_EQ(masks.values.size(), 8 * kShape.pixels());
+    double ones = 0;
+    double equal = 0;
+    for (std::size_t i = 0; i < masks.values.size(); ++i) {
+        ones += masks.values[i];
+        equal += masks.values[i] == masks.values[(i + kShape.pixels()) % masks.values.size()];
+    }
+    const double n = static_cast<double>(masks.values.size());
+    EXPECT_NEAR(ones / n, 0.5, 4 * 0.5 / std::sqrt(n));
+    EXPECT_NEAR(equal / n, 0.5, 4 * 0.5 / std::sqrt(n));
+}
+
+// At rest the mean of a measurement is the light, up to the rounding to 16 bits (8 / 65535 / 2).
+TEST(SciTest, AStillPictureIsExactButForRounding) {
+    FluxVideo video(8, kShape);
+    for (int slot = 0; slot < 8; ++slot)
+        for (int row = 0; row < kShape.rows; ++row)
+            for (int col = 0; col < kShape.cols; ++col)
+                video.plane(slot, 0)(row, col) = static_cast<float>(row + col) / 130;
+    // A pixel whose masks are all 0 (1 in 256) is unknown to `naive`.
+    NpyVolume masks = random_masks(kShape, 1);
+    std::fill_n(masks.values.begin(), kShape.pixels(), 1.0);
+    EXPECT_GT(sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kNaive}), 80);
+    EXPECT_GT(sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kFast}), 50);
+}
+
+TEST(SciTest, FastIsFarBetterThanNaive) {
+    const FluxVideo video = sci_stand_in("roll", 16, {128, 128, 1});
+    const double naive = psnr_of(video, DecodeMethod::kNaive);
+    EXPECT_GT(naive, 15);
+    EXPECT_GT(psnr_of(video, DecodeMethod::kFast), naive + 2.5);  // found: 3.2
+}
+
+TEST(SciTest, ReadsWholeMeasurementsOfAClip) {
+    const TemporaryFolder folder;
+    const FluxVideo video = sci_stand_in("pan", 19, {16, 24, 1});
+    NpyWriter writer(folder / "kobe32.npy", "kobe32.npy", video.shape());
+    for (int slot = 0; slot < video.slots(); ++slot) writer.write(video.frame(slot));
+    writer.finish();
+    const FluxVideo clip = read_sci_clip(folder.path(), "kobe32");
+    EXPECT_EQ(clip.slots(), 16);
+    EXPECT_TRUE(std::ranges::equal(clip.frame(15), video.frame(15)));
+    EXPECT_THROW(static_cast<void>(read_sci_clip(folder.path(), "drop40")), InputError);
+}
+
+TEST(SciTest, RefusesMasksOfAnotherSize) {
+    const FluxVideo video = sci_stand_in("pan", 8, {16, 24, 1});
+    const auto psnr = [&](const NpyVolume& masks) {
+        return sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kNaive});
+    };
+    expect_parts(message_of<InputError>([&] { return psnr(random_masks(kShape, 1)); }),
+                 {"masks", "8 x 64 x 64", "8 x 16 x 24"});
+    NpyVolume grey = random_masks(video.shape(), 1);
+    grey.values[5] = 0.5;
+    expect_parts(message_of<InputError>([&] { return psnr(grey); }), {"masks", "0.5"});
+}
+
+}  // namespace
+}  // namespace stipple
