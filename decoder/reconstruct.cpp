@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "decoder/block_partition.h"
+#include "decoder/defects.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
 
@@ -67,6 +68,7 @@ Block decode_block(Measurements measurements, const Calibration& calibration,
         case DecodeMethod::kNaive:
             return nearest_samples(measurements);
         case DecodeMethod::kFast:
+            unobserve_defects(measurements);
             return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
                                     checkpoint);
         case DecodeMethod::kPortz2013:

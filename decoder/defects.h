@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+#include "decoder/measurements.h"
+
+namespace stipple {
+
+/// Takes out the samples of pixels that are stuck, so that a regulariser fills them from around,
+/// and returns how many sites that are. A site of four samples or more is stuck if all but two or
+/// fewer of the sites next to it (eight, at the border fewer, those with samples, three at least)
+/// are sound, and
+/// - all its samples are saturated, and what they say at least is more than three times the light
+/// of
+///   every sound one of these; or
+/// - its samples together are within three standard deviations of no light, and the darkest sound
+/// one
+///   of these has so much that twenty were expected.
+/// Sound is what is neither all saturated nor all dark. Not found: defects side by side in larger
+/// groups, in planes of a mosaic whose next sites are of another colour, or that come and go. A
+/// single bright or black point that is still for a whole block, with a sharp edge all around,
+/// looks the same and is lost.
+std::size_t unobserve_defects(Measurements& measurements);
+
+}  // namespace stipple
