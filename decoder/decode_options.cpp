@@ -36,6 +36,9 @@ void read_options(Config& config, MotionTvOptions& fast) {
     read_number(config, "along_motion.temporal_weight", 0, 1e4, fast.along_motion.temporal_weight);
     read_integer(config, "rounds", 0, 100, fast.rounds);
     read_integer(config, "last_iterations", 0, 10000, fast.last_iterations);
+    read_number(config, "mosaic.spatial_weight", 0, 1e4, fast.mosaic.spatial_weight);
+    read_number(config, "mosaic.chroma_weight", 0, 1e4, fast.mosaic.chroma_weight);
+    read_integer(config, "mosaic.last_iterations", 0, 10000, fast.mosaic.last_iterations);
     read_number(config, "step", 1e-6, 1, fast.step);
     read_number(config, "step_flux", 1e-4, 1e4, fast.step_flux);
     read_number(config, "max_step_ratio", 1, 1e4, fast.max_step_ratio);

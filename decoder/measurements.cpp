@@ -183,6 +183,7 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
         .sum = std::vector<float>(window.voxels()),
         .variance = std::vector<float>(window.voxels()),
         .interleaved = header.schedule.interleaved(),
+        .mosaic = header.cfa != ColourFilter::kNone,
         .dark_variance = {},
         .variance_per_light = {},
     };

@@ -44,6 +44,7 @@ struct Measurements {
     std::vector<float> sum;       ///< y: light of the whole exposure, at its last voxel; else 0
     std::vector<float> variance;  ///< of `sum` at the same voxel; else 0
     bool interleaved = false;     ///< there is a second chain
+    bool mosaic = false;          ///< of colours: each pixel is open in one of three planes only
 
     /// Where pixels differ or have dark current, their own noise at the last voxels: variance of
     /// an exposure without light, and what each unit of light adds. Else empty.

@@ -108,11 +108,21 @@ class WorkCount {
     const Checkpoint& checkpoint_;
 };
 
+MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions options) {
+    if (!measurements.mosaic) return options;
+    options.at_rest.chroma_weight = options.mosaic.chroma_weight;
+    options.along_motion.chroma_weight = options.mosaic.chroma_weight;
+    options.along_motion.spatial_weight = options.mosaic.spatial_weight;
+    options.last_iterations = options.mosaic.last_iterations;
+    return options;
+}
+
 }  // namespace
 
 std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
-                                          const MotionTvOptions& options,
+                                          const MotionTvOptions& all_options,
                                           const Checkpoint& checkpoint) {
+    const MotionTvOptions options = options_for(measurements, all_options);
     WorkCount work(options, checkpoint);
     FluxVideo x = nearest_samples(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,

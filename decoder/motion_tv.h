@@ -10,6 +10,14 @@
 
 namespace stipple {
 
+/// What is different where the planes are a mosaic of colours: a third of the samples, so the prior
+/// weighs less, but colours that change from pixel to pixel are hardly true.
+struct MosaicTvOptions {
+    float spatial_weight = 1.8F;  ///< along motion
+    float chroma_weight = 2;
+    int last_iterations = 60;
+};
+
 /// The method `fast`; the values were found on natural and high-speed footage
 /// (docs/decoder_experiments.md).
 struct MotionTvOptions {
@@ -19,7 +27,8 @@ struct MotionTvOptions {
     TotalVariationOptions along_motion{.iterations = 12};
     int rounds = 3;
     int last_iterations = 30;  ///< of the last round, instead of those of `along_motion`
-    float step = 0.005F;       ///< primal step at `step_flux`, flux^2
+    MosaicTvOptions mosaic;
+    float step = 0.005F;  ///< primal step at `step_flux`, flux^2
     float step_flux = 0.3F;
     float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
 };

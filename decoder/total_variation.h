@@ -18,6 +18,9 @@ struct TotalVariationOptions {
     float spatial_weight = 3.5F;
     float temporal_weight = 45;  ///< all links of a voxel together, at full confidence
     float reference_step = 0.005F;
+    /// 0: all planes share one norm. Else three planes are priced as luma and, apart and by this
+    /// factor more, as two opponents (opponent_planes.h).
+    float chroma_weight = 0;
     std::function<bool()> after_iteration = [] { return true; };  ///< false: that is enough
 };
 
@@ -25,7 +28,8 @@ struct TotalVariationOptions {
 ///   sum_k (y_k - (A x)_k)^2 / (2 variance_k) + spatial sum |grad x| + temporal sum_links c |D x|
 /// where grad x is the forward difference to the right and below, D x = x(partner) - x(voxel)
 /// between slots, c the link's confidence; |.| is the Euclidean norm over directions and planes,
-/// so edges of all planes fall together. Partners are found along `motion` by bilinear
+/// so edges of all planes fall together (or over the planes of luma and of the opponents, each on
+/// their own). Partners are found along `motion` by bilinear
 /// interpolation; without motion, at the same pixel one slot later. `step` is the primal step of
 /// each pixel (order (slot, row, col), flux^2): the larger, the further the pixel moves in an
 /// iteration (Pock and Chambolle, ICCV 2011), and the cheaper its differences are. The same bits

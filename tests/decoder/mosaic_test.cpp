@@ -128,6 +128,46 @@ TEST(MosaicTest, FramesOfAnySizeDecodeToLight) {
         }
 }
 
+/// Mean squared error without the first and last 8 slots.
+double error_of(const FluxVideo& x, const FluxVideo& truth) {
+    double sum = 0;
+    const std::size_t end = x.voxels() - 8 * x.shape().sites();
+    const std::size_t begin = 8 * x.shape().sites();
+    for (std::size_t i = begin; i < end; ++i) {
+        const double error =
+            static_cast<double>(x.data()[i]) - static_cast<double>(truth.data()[i]);
+        sum += error * error;
+    }
+    return sum / static_cast<double>(end - begin);
+}
+
+// Without colour a mosaic says as much as a mono sensor, which need not find out that it is grey:
+// at most 3 dB more error, in each plane, and far less than a bilinear start.
+TEST(MosaicTest, AGreySceneIsNearlyAsGoodAsThatOfAMonoSensor) {
+    const FrameShape shape{48, 64, 3};
+    FluxVideo grey(40, shape);
+    FluxVideo mono(40, {48, 64, 1});
+    for (int slot = 0; slot < 40; ++slot)
+        for (int row = 0; row < shape.rows; ++row)
+            for (int col = 0; col < shape.cols; ++col) {
+                const int x = col - 10 - slot;
+                const int y = row - 24;
+                const int wall = 5 + col / 8 + 4 * ((row / 9 + col / 9) % 2);
+                const float light = static_cast<float>(x * x + y * y < 100 ? 36 : wall) / 64;
+                mono.plane(slot, 0)(row, col) = light;
+                for (int plane = 0; plane < 3; ++plane) grey.plane(slot, plane)(row, col) = light;
+            }
+    const ExposureSchedule schedule = random_schedule(48, 64, kPaperExposureSlots, 1);
+    Recorded one = record_mosaic(grey, ColourFilter::kRggb, schedule);
+    const FluxVideo x = decode_mosaic(one, DecodeMethod::kFast);
+    const FluxVideo start = decode_mosaic(one, DecodeMethod::kNaive);
+    one.header.cfa = ColourFilter::kNone;
+    const double expected = error_of(decode_mosaic(one, DecodeMethod::kFast), mono);
+    RecordProperty("error", std::to_string(error_of(x, grey) / expected));
+    EXPECT_LT(error_of(x, grey), 2 * expected);
+    EXPECT_LT(error_of(x, grey), error_of(start, grey) / 4);
+}
+
 TEST(MosaicTest, TilesFitTogetherAndThreadsDoNotShow) {
     const FrameShape shape{601, 603, 3};  // 2^20 sites are a tile at most
     const FluxVideo video = random_video(3, shape, 1);

@@ -71,6 +71,22 @@ TEST(TotalVariationTest, SharesTheNormOverPlanes) {
     }
 }
 
+/// Planes step by (d1, d2, d3): luma moves by weight * s, the opponents together by the chroma
+/// weight times that. Here the opponents are (0.4, 0) / sqrt(2).
+TEST(TotalVariationTest, PricesLumaAndOpponentsApart) {
+    const auto x = solve(direct_samples(1, {1, 2, 3}, {0, 0.7F, 0, 0.5F, 0, 0.3F}, 0.01F),
+                         {.iterations = 3000, .spatial_weight = 5, .chroma_weight = 2});
+    const double luma = 5 * 0.01 / std::sqrt(3);
+    const double opponent = 2 * 5 * 0.01 / std::sqrt(2);
+    EXPECT_NEAR(x.plane(0, 0)(0, 0), luma + opponent, 1e-4);
+    EXPECT_NEAR(x.plane(0, 1)(0, 0), luma, 1e-4);
+    EXPECT_NEAR(x.plane(0, 2)(0, 0), luma - opponent, 1e-4);
+    EXPECT_NEAR(x.plane(0, 0)(0, 1), 0.7 - luma - opponent, 1e-4);
+    const auto in_time = solve(direct_samples(2, {1, 1, 3}, {0, 0, 0, 0.7F, 0.5F, 0.3F}, 0.01F),
+                               {.iterations = 3000, .temporal_weight = 5, .chroma_weight = 2});
+    EXPECT_NEAR(in_time.data()[0], luma + opponent, 1e-4);
+}
+
 /// A link of confidence c from pixel 0 of slot 0 to pixel (1, 1) of slot 1, and no other.
 TEST(TotalVariationTest, TiesPartnersAlongMotionAsFarAsItIsTrusted) {
     const FrameShape shape{2, 2, 1};

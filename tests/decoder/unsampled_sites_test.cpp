@@ -67,6 +67,27 @@ TEST(UnsampledSitesTest, ContinueRampsOfEachColourOfAMosaic) {
     }
 }
 
+// Lines one pixel wide, which bilinear interpolation turns into colours.
+TEST(UnsampledSitesTest, ContinueGreyLinesAlongThem) {
+    const FrameShape shape{16, 18, 3};
+    for (const bool vertical : {false, true}) {
+        FluxVideo video(1, shape);
+        for (int plane = 0; plane < 3; ++plane)
+            for (int row = 0; row < shape.rows; ++row)
+                for (int col = 0; col < shape.cols; ++col)
+                    video.plane(0, plane)(row, col) =
+                        (vertical ? col : row) % 7 == 4 ? 0.75F : 0.125F;
+        const auto sampled = bayer_sites(ColourFilter::kGbrg, shape);
+        FluxVideo x = masked(video, sampled);
+        fill_unsampled(sampled, x);
+        for (int plane = 0; plane < 3; ++plane)
+            for (int row = 4; row < shape.rows - 4; ++row)
+                for (int col = 4; col < shape.cols - 4; ++col)
+                    ASSERT_NEAR(x.plane(0, plane)(row, col), video.plane(0, plane)(row, col), 1e-4)
+                        << vertical << ' ' << plane << ' ' << row << ' ' << col;
+    }
+}
+
 TEST(UnsampledSitesTest, FollowTheGuideWhereColoursKeepTheirDifference) {
     // Green is all there, red at one pixel, 0.5 above it; blue nowhere.
     const FrameShape shape{5, 4, 3};

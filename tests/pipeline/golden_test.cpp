@@ -37,16 +37,21 @@ std::uint64_t hash_of(std::span<const float> values) {
     return hash.hash();
 }
 
-void expect_golden(const std::string& name, FrameShape shape, DecodeMethod method) {
-    const TemporaryFolder folder;
-    write_recording(discs(shape), "tiled", folder / "clip.stipple");
-    const FluxVideo decoded = read_recording(folder / "clip.stipple", method);
+void expect_golden(const std::string& name, const std::filesystem::path& stream,
+                   DecodeMethod method) {
+    const FluxVideo decoded = read_recording(stream, method);
     const std::string golden_file = STIPPLE_SOURCE_DIR "/tests/golden/decoder/" + name + ".fnv1a";
     if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
         std::ofstream(golden_file) << std::hex << hash_of(decoded.data()) << '\n';
     std::uint64_t golden = 0;
     std::ifstream(golden_file) >> std::hex >> golden;
     EXPECT_EQ(hash_of(decoded.data()), golden) << std::hex << hash_of(decoded.data());
+}
+
+void expect_golden(const std::string& name, FrameShape shape, DecodeMethod method) {
+    const TemporaryFolder folder;
+    write_recording(discs(shape), "tiled", folder / "clip.stipple");
+    expect_golden(name, folder / "clip.stipple", method);
 }
 
 constexpr FrameShape kMono{.rows = 45, .cols = 83, .planes = 1};
@@ -60,6 +65,14 @@ TEST(GoldenDecodeTest, NaiveKeepsItsBits) {
 TEST(GoldenDecodeTest, FastKeepsItsBits) {
     expect_golden("fast_mono", kMono, DecodeMethod::kFast);
     expect_golden("fast_colour", kColour, DecodeMethod::kFast);
+}
+
+TEST(GoldenDecodeTest, AMosaicKeepsItsBits) {
+    const TemporaryFolder folder;
+    write_mosaic(discs(kColour), ColourFilter::kGbrg, schedule_of("tiled", kColour),
+                 folder / "clip.stipple");
+    expect_golden("naive_mosaic", folder / "clip.stipple", DecodeMethod::kNaive);
+    expect_golden("fast_mosaic", folder / "clip.stipple", DecodeMethod::kFast);
 }
 
 }  // namespace
