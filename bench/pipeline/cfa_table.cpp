@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -158,6 +159,7 @@ void print_row(const std::string& name, const FluxVideo& video, DecodeMethod met
                text(quality_of(alone(video, method), video)),
                text(quality_of(demosaic(mosaic, {.root = false}), video)),
                text(quality_of(demosaic(mosaic, {.root = true}), video)));
+    std::fflush(stdout);  // rows take minutes
 }
 
 void print_table(const std::string& method, std::vector<std::string> clips) {
