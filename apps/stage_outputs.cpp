@@ -54,8 +54,8 @@ void StageOutputs::finish() {
 void StageOutputs::draw() const {
     std::set<std::string> stages;
     for (const Descent& descent : descents_) stages.insert(descent.stage);
-    std::string text = fmt::format(
-        "set multiplot layout 1,{}\nset logscale y\nset grid\nunset key\n", stages.size());
+    std::string text =
+        fmt::format("set multiplot layout 1,{}\nset grid\nunset key\n", stages.size());
     for (const std::string& stage : stages) {
         std::string data, plots;
         int lines = 0;

@@ -41,7 +41,7 @@ struct MatchSearch {
     PatchSize size;        ///< cut to the block where that is smaller
     int step_px = 3;       ///< of reference patches, in rows and columns; none overlap in time
     int window_px = 8;     ///< up to so many rows and columns away
-    int window_slots = 4;  ///< and so many slots
+    int window_slots = 2;  ///< and so many slots
     float sigma = 0.05F;   ///< of Eq. 3, flux: w = weight exp(-d / (2 sigma^2))
     float weight = 1;
     bool with_itself = true;  ///< each patch is a match of its own, beside the `most`

@@ -76,7 +76,8 @@ TEST(PatchMatchesTest, FindsACopyInItsWindowAndNoFurther) {
 
 TEST(PatchMatchesTest, KeepsTheNearestInOrder) {
     const FluxVideo video = random_video(6, {20, 20, 1}, 4);
-    const MatchList list = matches_in(video, {.size = {4, 4, 2}, .sigma = 10}, 7);
+    const MatchList list =
+        matches_in(video, {.size = {4, 4, 2}, .window_px = 8, .window_slots = 4, .sigma = 10}, 7);
     for (std::size_t g = 0; g < list.groups.size(); g += 17) {
         const PatchPosition& reference = list.groups[g].reference;
         const std::size_t begin = list.begin_of(g);
@@ -102,7 +103,9 @@ TEST(PatchMatchesTest, AreTheSameForAnyNumberOfThreads) {
     const FluxVideo video = random_video(6, {20, 20, 1}, 4);
     const auto matches = [&](int threads) {
         const ThreadLimit limit(threads);
-        return matches_in(video, {.size = {4, 4, 2}, .sigma = 10}, 7).matches;
+        return matches_in(video,
+                          {.size = {4, 4, 2}, .window_px = 8, .window_slots = 4, .sigma = 10}, 7)
+            .matches;
     };
     const auto one = matches(1);
     const auto two = matches(2);

@@ -56,6 +56,7 @@ void expect_golden(const std::string& name, FrameShape shape, DecodeMethod metho
 
 constexpr FrameShape kMono{.rows = 45, .cols = 83, .planes = 1};
 constexpr FrameShape kColour{.rows = 40, .cols = 56, .planes = 3};
+constexpr FrameShape kSmall{.rows = 20, .cols = 24, .planes = 1};
 
 TEST(GoldenDecodeTest, NaiveKeepsItsBits) {
     expect_golden("naive_mono", kMono, DecodeMethod::kNaive);
@@ -73,6 +74,10 @@ TEST(GoldenDecodeTest, AMosaicKeepsItsBits) {
                  folder / "clip.stipple");
     expect_golden("naive_mosaic", folder / "clip.stipple", DecodeMethod::kNaive);
     expect_golden("fast_mosaic", folder / "clip.stipple", DecodeMethod::kFast);
+}
+
+TEST(GoldenDecodeTest, Portz2013KeepsItsBits) {
+    expect_golden("portz2013_mono", kSmall, DecodeMethod::kPortz2013);
 }
 
 }  // namespace
