@@ -6,6 +6,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 
@@ -104,6 +105,15 @@ HWY_AFTER_NAMESPACE();
 namespace stipple {
 
 HWY_EXPORT(prox_run);
+
+std::vector<SiteRun> site_runs(FrameShape shape) {
+    std::vector<SiteRun> runs;
+    for (std::size_t plane = 0; plane < shape.sites(); plane += shape.pixels())
+        for (std::size_t begin = 0; begin < shape.pixels(); begin += kMaxRunSites)
+            runs.push_back({.begin = plane + begin,
+                            .end = plane + std::min(begin + kMaxRunSites, shape.pixels())});
+    return runs;
+}
 
 void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
                std::span<float> v) noexcept {

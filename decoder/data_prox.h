@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "decoder/measurements.h"
 
@@ -16,6 +17,9 @@ struct SiteRun {
 /// Limits of a run, so that all that belongs to it stays in a core's cache.
 inline constexpr std::size_t kMaxRunSites = 256;
 inline constexpr int kMaxRunSlots = 128;
+
+/// All sites of a frame, in runs as long as may be.
+[[nodiscard]] std::vector<SiteRun> site_runs(FrameShape shape);
 
 /// The proximal map of the data term, in place: the x nearest to v that explains the samples,
 ///   argmin_x  sum_t (x_t - v_t)^2 / (2 step_t) + sum_k (y_k - (A x)_k)^2 / (2 variance_k),

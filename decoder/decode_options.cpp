@@ -16,6 +16,7 @@ namespace {
 constexpr NamedDecodeMethod kMethods[] = {
     {"naive", DecodeMethod::kNaive},
     {"fast", DecodeMethod::kFast},
+    {"best", DecodeMethod::kBest},
     {"portz2013", DecodeMethod::kPortz2013},
 };
 
@@ -94,6 +95,22 @@ void read_options(Config& config, Portz2013Options& portz) {
     portz.stage2.flow.sigma = portz.stage2.search.sigma;
 }
 
+void read_options(Config& config, CollaborativeOptions& best) {
+    read_integer(config, "iterations", 0, 10000, best.iterations);
+    read_integer(config, "motion_every", 1, 10000, best.motion_every);
+    read_integer(config, "match_every", 1, 10000, best.match_every);
+    read_integer(config, "block_step", 1, kBlockSide, best.block_step);
+    read_integer(config, "matching.slots", 0, 32, best.matching.slots);
+    read_integer(config, "matching.own_radius", 0, 32, best.matching.own_radius);
+    read_integer(config, "matching.path_radius", 0, 32, best.matching.path_radius);
+    read_number(config, "first_sigma", 1e-3, 10, best.first_sigma);
+    read_number(config, "last_noise", 0, 100, best.last_noise);
+    read_number(config, "least_sigma", 1e-3, 10, best.least_sigma);
+    read_number(config, "light_offset", 1e-4, 1e3, best.light_offset);
+    read_number(config, "feedback", 0, 2, best.feedback);
+    read_number(config, "feedback_kept", 0, 1, best.feedback_kept);
+}
+
 }  // namespace
 
 std::span<const NamedDecodeMethod> decode_methods() {
@@ -119,6 +136,9 @@ DecodeOptions read_decode_options(DecodeMethod method, Config& config) {
             break;
         case DecodeMethod::kPortz2013:
             read_options(config, options.portz2013);
+            break;
+        case DecodeMethod::kBest:
+            read_options(config, options.best);
             break;
     }
     config.reject_unknown_keys();

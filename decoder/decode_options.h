@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/config.h"
+#include "decoder/collaborative.h"
 #include "decoder/motion_tv.h"
 #include "decoder/portz2013.h"
 #include "decoder/stage_observer.h"
@@ -13,6 +14,7 @@ namespace stipple {
 enum class DecodeMethod {
     kNaive,      ///< each pixel holds its nearest samples; no model of the scene
     kFast,       ///< motion-compensated total variation
+    kBest,       ///< collaborative filter of similar blocks
     kPortz2013,  ///< the method of the paper, in two stages
 };
 
@@ -29,8 +31,9 @@ struct NamedDecodeMethod {
 
 /// A method and the options of each; those of the others have no effect.
 struct DecodeOptions {
-    DecodeMethod method = DecodeMethod::kFast;
+    DecodeMethod method = DecodeMethod::kBest;
     MotionTvOptions fast = {};
+    CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
     StageSink stages = {};
 };

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "decoder/block_partition.h"
+#include "decoder/collaborative.h"
 #include "decoder/defects.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
@@ -73,6 +74,9 @@ Block decode_block(Measurements measurements, const Calibration& calibration,
                                     checkpoint);
         case DecodeMethod::kPortz2013:
             return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
+        case DecodeMethod::kBest:
+            return decode_collaborative(measurements, SampleNoise(calibration), options.best,
+                                        checkpoint);
     }
     return {};
 }

@@ -72,7 +72,7 @@ TEST(DecodeMethodTest, KnowsItsNames) {
     EXPECT_EQ(decode_method_from_name("naive"), DecodeMethod::kNaive);
     EXPECT_EQ(decode_method_from_name("fast"), DecodeMethod::kFast);
     expect_parts(message_of<InputError>([] { return decode_method_from_name("slow"); }),
-                 {"slow", "naive, fast"});
+                 {"slow", "naive, fast, best, portz2013"});
 }
 
 TEST_F(ReconstructTest, DeliversEverySlotOfALongClipWithoutSeams) {

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "core/flux_video.h"
+#include "decoder/block_matching.h"
+#include "decoder/checkpoint.h"
+#include "decoder/measurements.h"
+#include "decoder/motion_tv.h"
+
+namespace stipple {
+
+/// The method `best`; the values were found on natural and high-speed footage
+/// (docs/decoder_experiments.md).
+struct CollaborativeOptions {
+    MotionTvOptions start = {};
+    int iterations = 40;
+    int motion_every = 10;  ///< iterations
+    int match_every = 4;    ///< iterations
+    int block_step = 5;     ///< pixels between reference blocks, 1..6
+    MatchingOptions matching = {};
+    /// Standard deviation that the filter takes for noise, on the scale 2 sqrt(light): falls
+    /// geometrically from the first iteration to the last. The last is in shot noise of one slot,
+    /// 1 / sqrt(electrons_per_unit), but not below `least_sigma`.
+    float first_sigma = 0.1F;
+    float last_noise = 1.25F;
+    float least_sigma = 0.01F;
+    /// Flux that is added before the square root, at least; more where read noise is larger.
+    float light_offset = 0.01F;
+    /// Share of the samples' residuals that is added to them, and what is kept of that in the next
+    /// iteration.
+    float feedback = 0.3F;
+    float feedback_kept = 0.9F;
+};
+
+/// Decodes one block: the estimate of `decode_motion_tv`, then iterations of (collaborative filter,
+/// proximal map of the data term), half-quadratic splitting with a denoiser as its prior
+/// (Venkatakrishnan et al., GlobalSIP 2013; Danielyan et al., IEEE TIP 21(4), 2012). A frame too
+/// small for blocks stays as the start has left it. Changes the sums of `measurements` meanwhile.
+/// Nothing if `checkpoint` has stopped it.
+[[nodiscard]] std::optional<FluxVideo> decode_collaborative(
+    Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
+    const Checkpoint& checkpoint = [](double) { return true; });
+
+}  // namespace stipple
