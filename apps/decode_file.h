@@ -12,7 +12,7 @@ namespace stipple {
 struct DecodeArguments {
     std::string stream;
     std::string output;
-    std::string method = "fast";
+    std::string method = "best";
     std::string options;  ///< file of the method's options; empty: none
     std::vector<std::string> settings;
     std::string stages;  ///< folder; empty: none

@@ -20,14 +20,32 @@ struct BlockPlace {
     int col = 0;
 };
 
+struct ImageSize {
+    int slots = 0;
+    FrameShape shape;
+};
+
+/// Order (slot, row, col), and two values more, which a block in the last corner reads beyond it.
+std::vector<float> first_planes(const FluxVideo& video) {
+    const std::size_t pixels = video.shape().pixels();
+    std::vector<float> image;
+    image.reserve(index(video.slots()) * pixels + 2);
+    for (int slot = 0; slot < video.slots(); ++slot) {
+        const auto plane = video.frame(slot).first(pixels);
+        image.insert(image.end(), plane.begin(), plane.end());
+    }
+    image.resize(image.size() + 2);
+    return image;
+}
+
 /// Finds groups, one after the other.
 class Matcher {
   public:
-    Matcher(std::span<const float> image, FrameShape shape, std::span<const MotionField> motion,
-            const MatchingOptions& options)
+    Matcher(std::span<const float> image, const ImageSize& size,
+            std::span<const MotionField> motion, const MatchingOptions& options)
         : image_(image),
-          shape_(shape),
-          slots_(static_cast<int>(image.size() / shape.pixels())),
+          shape_(size.shape),
+          slots_(size.slots),
           motion_(motion),
           options_(options) {}
 
@@ -123,19 +141,17 @@ class Matcher {
 
 }  // namespace
 
-BlockGroups match_blocks(std::span<const float> image, const BlockGrid& grid,
+BlockGroups match_blocks(const FluxVideo& video, const BlockGrid& grid,
                          std::span<const MotionField> motion, const MatchingOptions& options) {
     const FrameShape shape = grid.shape;
     assert(shape.rows >= kBlockSide && shape.cols >= kBlockSide);
+    const std::vector<float> image = first_planes(video);
     assert(image.size() <= UINT32_MAX);
-    std::vector<float> padded(image.begin(), image.end());
-    padded.resize(image.size() + 2);  // what a block in the last corner reads beyond its rows
-    const int slots = static_cast<int>(image.size() / shape.pixels());
-    BlockGroups result{
-        .grid = grid,
-        .groups = std::vector<BlockGroup>(index(slots) * index(grid.rows()) * index(grid.cols()))};
-    parallel_for(0, slots * grid.rows(), [&](int i) {
-        Matcher matcher(std::span<const float>(padded).first(image.size()), shape, motion, options);
+    BlockGroups result{.grid = grid,
+                       .groups = std::vector<BlockGroup>(index(video.slots()) * index(grid.rows()) *
+                                                         index(grid.cols()))};
+    parallel_for(0, video.slots() * grid.rows(), [&](int i) {
+        Matcher matcher(image, {video.slots(), shape}, motion, options);
         const BlockPlace row{.slot = i / grid.rows(), .row = grid.row(i % grid.rows()), .col = 0};
         for (int col = 0; col < grid.cols(); ++col)
             result.groups[index(i) * index(grid.cols()) + index(col)] =

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/flux_video.h"
 #include "core/geometry.h"
 #include "decoder/motion.h"
 
@@ -73,9 +74,9 @@ struct BlockGroups {
 
 /// For each reference block of the grid the kGroupBlocks blocks with the smallest sum of squared
 /// differences to it, beginning with itself, the most similar first; where there are fewer, they
-/// are repeated. `image` has one plane, order (slot, row, col); `motion` leads to other slots and
-/// is empty or as `estimate_motion` returns it. The same bits for any thread count and SIMD target.
-[[nodiscard]] BlockGroups match_blocks(std::span<const float> image, const BlockGrid& grid,
+/// are repeated. They are compared in the first plane; `motion` leads to other slots and is empty
+/// or as `estimate_motion` returns it. The same bits for any thread count and SIMD target.
+[[nodiscard]] BlockGroups match_blocks(const FluxVideo& video, const BlockGrid& grid,
                                        std::span<const MotionField> motion,
                                        const MatchingOptions& options);
 

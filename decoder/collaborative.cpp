@@ -86,18 +86,7 @@ class CollaborativeSolver {
         // The grid moves, so that the seams between blocks do not stay in one place.
         const int step = options_.block_step;
         const int offset = iteration / options_.match_every * (step / 2 + 1) % step;
-        groups_ =
-            match_blocks(first_planes(pilot_), {shape(), step, offset}, motion_, options_.matching);
-    }
-
-    [[nodiscard]] static std::vector<float> first_planes(const FluxVideo& video) {
-        std::vector<float> image;
-        image.reserve(index(video.slots()) * video.shape().pixels());
-        for (int slot = 0; slot < video.slots(); ++slot) {
-            const auto plane = video.frame(slot).first(video.shape().pixels());
-            image.insert(image.end(), plane.begin(), plane.end());
-        }
-        return image;
+        groups_ = match_blocks(pilot_, {shape(), step, offset}, motion_, options_.matching);
     }
 
     /// What the filter has taken from the samples is added to them, as in generalised alternating

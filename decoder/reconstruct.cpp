@@ -75,6 +75,7 @@ Block decode_block(Measurements measurements, const Calibration& calibration,
         case DecodeMethod::kPortz2013:
             return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
         case DecodeMethod::kBest:
+            unobserve_defects(measurements);
             return decode_collaborative(measurements, SampleNoise(calibration), options.best,
                                         checkpoint);
     }

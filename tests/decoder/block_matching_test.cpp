@@ -51,7 +51,7 @@ TEST(BlockMatchingTest, GroupsAreTheMostSimilarBlocksInReach) {
     const FluxVideo image = random_video(kSlots, kShape, 5);
     const BlockGrid grid{kShape, 4, 1};
     const MatchingOptions options{.slots = 1, .own_radius = 2, .path_radius = 1};
-    const BlockGroups groups = match_blocks(image.data(), grid, {}, options);
+    const BlockGroups groups = match_blocks(image, grid, {}, options);
     constexpr int kSlot = 2;
     for (int i = 0; i < grid.rows(); ++i)
         for (int j = 0; j < grid.cols(); ++j) {
@@ -79,7 +79,7 @@ TEST(BlockMatchingTest, GroupsAreTheMostSimilarBlocksInReach) {
 }
 
 TEST(BlockMatchingTest, AGroupBeginsWithItsReferenceEvenWhereAllIsEqual) {
-    const std::vector<float> flat(static_cast<std::size_t>(kSlots) * kShape.pixels(), 1);
+    const FluxVideo flat(kSlots, kShape);
     const BlockGroups groups = match_blocks(flat, {kShape, 5, 0}, {}, {});
     for (const BlockGroup& group : groups.groups) {
         EXPECT_EQ(std::tuple(group[0].slots, group[0].rows, group[0].cols), std::tuple(0, 0, 0));
@@ -91,7 +91,7 @@ TEST(BlockMatchingTest, AGroupBeginsWithItsReferenceEvenWhereAllIsEqual) {
 }
 
 TEST(BlockMatchingTest, TooFewBlocksAreRepeated) {
-    const std::vector<float> one = random_values(36, 0, 1, 1);
+    const FluxVideo one = random_video(1, {6, 6, 1}, 1);
     const BlockGroups groups = match_blocks(one, {{6, 6, 1}, 5, 0}, {}, {});
     ASSERT_EQ(groups.groups.size(), 1U);
     for (const BlockOffset& block : groups.groups[0])
@@ -118,7 +118,7 @@ TEST(BlockMatchingTest, BlocksAreFoundAlongMotion) {
                     world[static_cast<std::size_t>((row - slot + 8) * 80 + col - 2 * slot + 16)];
     const BlockGrid grid{kLarge, 5, 0};
     const BlockGroups groups =
-        match_blocks(image.data(), grid, motion, {.slots = 4, .own_radius = 1, .path_radius = 0});
+        match_blocks(image, grid, motion, {.slots = 4, .own_radius = 1, .path_radius = 0});
     const BlockGroup& group = groups.group(0, 3, 4);  // row 15, col 20
     for (int slot = 0; slot < kSlots; ++slot) {
         const BlockOffset& block = group[static_cast<std::size_t>(slot)];
@@ -133,7 +133,7 @@ TEST(BlockMatchingTest, OneAndTwoThreadsFindTheSame) {
     const auto find = [&](int threads) {
         const ThreadLimit limit(threads);
         std::vector<int> all;
-        for (const BlockGroup& group : match_blocks(image.data(), {kShape, 3, 2}, {}, {}).groups)
+        for (const BlockGroup& group : match_blocks(image, {kShape, 3, 2}, {}, {}).groups)
             for (const BlockOffset& block : group)
                 all.insert(all.end(), {block.slots, block.rows, block.cols});
         return all;

@@ -74,6 +74,12 @@ TEST(GoldenDecodeTest, AMosaicKeepsItsBits) {
                  folder / "clip.stipple");
     expect_golden("naive_mosaic", folder / "clip.stipple", DecodeMethod::kNaive);
     expect_golden("fast_mosaic", folder / "clip.stipple", DecodeMethod::kFast);
+    expect_golden("best_mosaic", folder / "clip.stipple", DecodeMethod::kBest);
+}
+
+TEST(GoldenDecodeTest, BestKeepsItsBits) {
+    expect_golden("best_mono", kMono, DecodeMethod::kBest);
+    expect_golden("best_colour", kColour, DecodeMethod::kBest);
 }
 
 TEST(GoldenDecodeTest, Portz2013KeepsItsBits) {
