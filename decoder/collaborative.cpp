@@ -15,7 +15,9 @@ namespace stipple {
 namespace {
 
 constexpr double kStartShare = 0.15;  // of all work; for the checkpoint
-constexpr float kLongestSlots = 8;    // exposure whose read noise counts in the light offset
+constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
+constexpr float kMaxSigma = 10;
+constexpr float kLongestSlots = 8;  // exposure whose read noise counts in the light offset
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
@@ -28,10 +30,11 @@ class CollaborativeSolver {
         : measurements_(measurements),
           noise_(noise),
           options_(options),
-          offset_(std::max(options.light_offset,
-                           noise.variance(0) / noise.per_light() / kLongestSlots)),
-          last_sigma_(
-              std::max(options.least_sigma, options.last_noise * std::sqrt(noise.per_light()))),
+          offset_(std::clamp(noise.variance(0) / noise.per_light() / kLongestSlots,
+                             options.light_offset, kMaxOffset)),
+          last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
+                                 options.least_sigma, kMaxSigma)),
+          first_sigma_(std::max(options.first_sigma, last_sigma_)),
           x_(x),
           sampled_(measurements.sum),
           noisy_(x.slots(), x.shape()),
@@ -69,7 +72,7 @@ class CollaborativeSolver {
     /// In steps of 2^-20, so that its bits do not hang on a library's power.
     [[nodiscard]] float sigma_of(int iteration) const {
         const double done = static_cast<double>(iteration) / std::max(1, options_.iterations - 1);
-        const double first = static_cast<double>(options_.first_sigma);
+        const double first = static_cast<double>(first_sigma_);
         const double sigma = first * std::pow(static_cast<double>(last_sigma_) / first, done);
         return static_cast<float>(std::round(sigma * 0x1p20) * 0x1p-20);
     }
@@ -128,6 +131,7 @@ class CollaborativeSolver {
     const CollaborativeOptions& options_;
     float offset_;
     float last_sigma_;
+    float first_sigma_;
     FluxVideo& x_;
     std::vector<float> sampled_;  ///< sums of the samples, without feedback
     FluxVideo noisy_;
