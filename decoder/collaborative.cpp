@@ -17,7 +17,7 @@ namespace {
 constexpr double kStartShare = 0.15;  // of all work; for the checkpoint
 constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
 constexpr float kMaxSigma = 10;
-constexpr float kLongestSlots = 8;  // exposure whose read noise counts in the light offset
+constexpr float kOffsetSlots = 32;  // of an exposure whose read noise sets the light offset
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
@@ -30,7 +30,7 @@ class CollaborativeSolver {
         : measurements_(measurements),
           noise_(noise),
           options_(options),
-          offset_(std::clamp(noise.variance(0) / noise.per_light() / kLongestSlots,
+          offset_(std::clamp(noise.variance(0) / noise.per_light() / kOffsetSlots,
                              options.light_offset, kMaxOffset)),
           last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
                                  options.least_sigma, kMaxSigma)),

@@ -22,14 +22,14 @@ struct CollaborativeOptions {
     /// Standard deviation that the filter takes for noise, on the scale 2 sqrt(light): falls
     /// geometrically from the first iteration to the last. The last is in shot noise of one slot,
     /// 1 / sqrt(electrons_per_unit), but not below `least_sigma`.
-    float first_sigma = 0.1F;
-    float last_noise = 1.25F;
+    float first_sigma = 0.13F;
+    float last_noise = 1.1F;
     float least_sigma = 0.01F;
     /// Flux that is added before the square root, at least; more where read noise is larger.
-    float light_offset = 0.01F;
+    float light_offset = 0.002F;
     /// Share of the samples' residuals that is added to them, and what is kept of that in the next
     /// iteration.
-    float feedback = 0.3F;
+    float feedback = 0.25F;
     float feedback_kept = 0.9F;
 };
 
