@@ -5,8 +5,8 @@
 namespace stipple {
 
 // Light on a scale on which its noise is the same everywhere: 2 sqrt(x + offset) of each plane
-// (Anscombe 1948), then, of three planes, the orthonormal opponent colours (R + G + B) / sqrt 3,
-// (R - B) / sqrt 2, (R - 2 G + B) / sqrt 6. Frames have the order (plane, row, col).
+// (Anscombe 1948), then, of three planes, luma and two opponents (opponent_planes.h). Frames have
+// the order (plane, row, col).
 
 /// Light below 0 counts as 0.
 void stabilise(std::span<const float> light, int planes, float offset, std::span<float> stabilised);
