@@ -78,7 +78,9 @@ std::optional<cv::Vec2f> flow_at(const cv::Mat& flow, cv::Point2f at) {
     const int row = std::min(static_cast<int>(at.y), flow.rows - 2);
     const float right = at.x - static_cast<float>(col);
     const float down = at.y - static_cast<float>(row);
-    const auto between = [right](cv::Vec2f a, cv::Vec2f b) { return a + right * (b - a); };
+    const auto between = [right](const cv::Vec2f& a, const cv::Vec2f& b) {
+        return a + right * (b - a);
+    };
     const cv::Vec2f upper = between(flow.at<cv::Vec2f>(row, col), flow.at<cv::Vec2f>(row, col + 1));
     const cv::Vec2f lower =
         between(flow.at<cv::Vec2f>(row + 1, col), flow.at<cv::Vec2f>(row + 1, col + 1));

@@ -65,10 +65,10 @@ void add_target(const TimedSample& target, int cover, const Blurred& z, SampleDi
 
 }  // namespace
 
-SampleDifference compare_samples(const ExposureTable& table, std::size_t site, int slot,
-                                 std::size_t other_site, int other_slot, int slots) noexcept {
-    const PixelInPatch first{table, site, slot};
-    const PixelInPatch second{table, other_site, other_slot};
+SampleDifference compare_samples(const ExposureTable& table, const SiteInPatch& first_site,
+                                 const SiteInPatch& second_site, int slots) noexcept {
+    const PixelInPatch first{table, first_site.site, first_site.slot};
+    const PixelInPatch second{table, second_site.site, second_site.slot};
     const TimedSample* last_target = nullptr;
     const TimedSample* last_other_target = nullptr;
     SampleDifference sum;
@@ -111,8 +111,8 @@ float patch_distance(const ExposureTable& table, const PatchSize& size,
             const std::size_t b = site(other, plane, row);
             for (int col = 0; col < size.cols; ++col) {
                 const auto i = static_cast<std::size_t>(col);
-                const SampleDifference pixel =
-                    compare_samples(table, a + i, reference.slot, b + i, other.slot, size.slots);
+                const SampleDifference pixel = compare_samples(table, {a + i, reference.slot},
+                                                               {b + i, other.slot}, size.slots);
                 sum.error += pixel.error;
                 sum.weight += pixel.weight;
                 sum.cover += pixel.cover;

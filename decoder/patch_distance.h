@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "decoder/exposure_table.h"
 
 namespace stipple {
@@ -25,6 +27,12 @@ struct SampleDifference {
     int cover = 0;     ///< slots of the patch that were compared
 };
 
+/// A site, and the slot that the patch begins in.
+struct SiteInPatch {
+    std::size_t site = 0;
+    int slot = 0;
+};
+
 /// Compares the samples of two pixels over the `slots` slots of a patch (Portz et al. 2013, Fig.
 /// 2). In each slot the longer of the two samples, or of two equal ones the one that covers more of
 /// the patch, is the target y, once each; the other pixel's samples over the target's exposure are
@@ -34,9 +42,8 @@ struct SampleDifference {
 /// weight c / (1 + variance), c its open slots in the patch. Where the target is saturated and z
 /// >= y, or one of the y_k is and z <= y, the error is 0; where both are, nothing is compared, nor
 /// where z is not known for the whole target.
-[[nodiscard]] SampleDifference compare_samples(const ExposureTable& table, std::size_t site,
-                                               int slot, std::size_t other_site, int other_slot,
-                                               int slots) noexcept;
+[[nodiscard]] SampleDifference compare_samples(const ExposureTable& table, const SiteInPatch& first,
+                                               const SiteInPatch& second, int slots) noexcept;
 
 /// The mean error of two patches, all planes together, in flux^2: of patches of the same light one
 /// to three times the variance of a sample. Infinite if less than an eighth of the patch can be

@@ -112,11 +112,11 @@ class Searcher {
 
 }  // namespace
 
-MatchList find_matches(int slots, FrameShape shape, const MatchSearch& search,
+MatchList find_matches(const VideoSize& video, const MatchSearch& search,
                        const PatchMeasure& measure, const MatchCount& most,
                        const KeepGoing& keep_going) {
     constexpr std::size_t kBatch = 512;  // reference patches between two questions
-    const Searcher searcher(slots, shape, search, measure, most);
+    const Searcher searcher(video.slots, video.shape, search, measure, most);
     const std::vector<PatchPosition> references = searcher.references();
     MatchList result{.size = searcher.size(), .groups = {}, .matches = {}};
     for (std::size_t begin = 0; begin < references.size(); begin += kBatch) {

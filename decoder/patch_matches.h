@@ -61,10 +61,15 @@ using MatchCount = std::function<int(const PatchSize& size, const PatchPosition&
 /// Told now and then, by the thread that called, which fraction is done; false stops.
 using KeepGoing = std::function<bool(double fraction)>;
 
+struct VideoSize {
+    int slots = 0;
+    FrameShape shape;
+};
+
 /// The nearest patches of each reference patch, by exhaustive search of its space-time window; of
 /// equally near ones the earlier, higher, further left. The same for any number of threads. Not
 /// complete if `keep_going` has stopped it.
-[[nodiscard]] MatchList find_matches(int slots, FrameShape shape, const MatchSearch& search,
+[[nodiscard]] MatchList find_matches(const VideoSize& video, const MatchSearch& search,
                                      const PatchMeasure& measure, const MatchCount& most,
                                      const KeepGoing& keep_going);
 

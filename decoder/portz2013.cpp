@@ -78,7 +78,7 @@ class Decoder {
     void stage1() {
         const auto& stage = options_.stage1;
         const std::array lists{find_matches(
-            table_.slots(), table_.shape(), stage.search,
+            {table_.slots(), table_.shape()}, stage.search,
             [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b,
                 float bound) { return patch_distance(table_, size, a, b, bound); },
             [&](const PatchSize&, const PatchPosition&) { return stage.most_matches; },
@@ -95,7 +95,7 @@ class Decoder {
             return stage.most_matches - flow_matches_at(flow, size, at);
         };
         MatchList search = find_matches(
-            table_.slots(), table_.shape(), stage.search,
+            {table_.slots(), table_.shape()}, stage.search,
             [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b,
                 float bound) { return patch_difference(x_, size, a, b, bound); },
             room, [&](double fraction) { return reach(kSearch2, fraction); });

@@ -94,6 +94,7 @@ void evaluate(std::vector<Candidate>& candidates, const ResidualMeter& meter, Fr
 
 double median_of(const std::vector<Candidate>& candidates) {
     std::vector<double> means;
+    means.reserve(candidates.size());
     for (const Candidate& candidate : candidates) means.push_back(candidate.mean);
     const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
     std::nth_element(means.begin(), middle, means.end());
@@ -104,6 +105,7 @@ double median_of(const std::vector<Candidate>& candidates) {
 void keep_finalists(std::vector<Candidate>& candidates) {
     if (candidates.size() <= kFinalists) return;
     std::vector<double> means;
+    means.reserve(candidates.size());
     for (const Candidate& candidate : candidates) means.push_back(candidate.mean);
     const auto last = means.begin() + kFinalists - 1;
     std::nth_element(means.begin(), last, means.end());

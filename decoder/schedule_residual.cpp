@@ -147,7 +147,8 @@ ScheduleResidual ResidualMeter::residual(const ScheduleShift& shift, int rows) c
                 if (above >= 0)
                     add_pair(here, latest[index(above) * cols + index(col)], part, result);
             };
-            visit_due_shifted(header_.schedule, shift, packet.slot, row, header_.shape.cols, take);
+            visit_due_shifted(header_.schedule, shift, {packet.slot, row, header_.shape.cols},
+                              take);
         }
     }
     return result;

@@ -67,7 +67,7 @@ TEST(MatchAdmmTest, MakesTheObjectiveFall) {
     const ExposureTable table(
         measure(random_video(16, shape, 2), random_schedule(16, 16, kPaperExposureSlots, 1)));
     const std::array lists{find_matches(
-        16, shape, {.size = {6, 6, 4}, .sigma = 1},
+        {16, shape}, {.size = {6, 6, 4}, .sigma = 1},
         [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b, float bound) {
             return patch_distance(table, size, a, b, bound);
         },

@@ -20,7 +20,7 @@ ExposureTable figure_2(const HandSample& y1, float y2, const HandSample& y3, flo
 }
 
 SampleDifference compare(const ExposureTable& table) {
-    return compare_samples(table, 0, 2, 1, 2, 4);
+    return compare_samples(table, {0, 2}, {1, 2}, 4);
 }
 
 TEST(PatchDistanceTest, BlursTheShorterSamplesAsInFigure2) {
@@ -30,7 +30,7 @@ TEST(PatchDistanceTest, BlursTheShorterSamplesAsInFigure2) {
     EXPECT_FLOAT_EQ(d.weight, 1.6F);
     EXPECT_FLOAT_EQ(d.error, 1.6F * (5 - 3.5F) * (5 - 3.5F));
     EXPECT_EQ(d.cover, 4);
-    const SampleDifference other_way = compare_samples(table, 1, 2, 0, 2, 4);
+    const SampleDifference other_way = compare_samples(table, {1, 2}, {0, 2}, 4);
     EXPECT_EQ(other_way.error, d.error);
     EXPECT_EQ(other_way.weight, d.weight);
 }
@@ -38,7 +38,7 @@ TEST(PatchDistanceTest, BlursTheShorterSamplesAsInFigure2) {
 TEST(PatchDistanceTest, ShiftsTheOtherPatchInTime) {
     const ExposureTable table(hand_made(
         12, kTwoPixels, {{0, 2, 0b1111, 5}, {1, 5, 0b11, 1}, {1, 7, 0b11, 2}, {1, 9, 0b11, 2}}));
-    const SampleDifference d = compare_samples(table, 0, 2, 1, 6, 4);
+    const SampleDifference d = compare_samples(table, {0, 2}, {1, 6}, 4);
     EXPECT_FLOAT_EQ(d.error, 1.6F * 1.5F * 1.5F);
 }
 
@@ -62,7 +62,7 @@ TEST(PatchDistanceTest, OfEqualSamplesTheOneThatCoversMoreIsTheTarget) {
     // patch, the first one's 2, and only with that as the target is z unknown.
     const ExposureTable table(
         hand_made(6, kTwoPixels, {{0, 2, 0b1111, 1}, {1, 1, 0b1111, 1}, {0, 0, 0b11, 1}}));
-    const SampleDifference d = compare_samples(table, 0, 0, 1, 0, 4);
+    const SampleDifference d = compare_samples(table, {0, 0}, {1, 0}, 4);
     // z = 1 / 2 y + 3 / 4 y = 1.25, variance 1/4 + 9/16 = 13/16.
     EXPECT_EQ(d.cover, 3);
     EXPECT_FLOAT_EQ(d.weight, 3 / (1 + 13 / 16.F));

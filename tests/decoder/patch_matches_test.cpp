@@ -17,7 +17,7 @@ bool always(double) {
 /// Matches of a video with itself.
 MatchList matches_in(const FluxVideo& video, const MatchSearch& search, int most) {
     return find_matches(
-        video.slots(), video.shape(), search,
+        {video.slots(), video.shape()}, search,
         [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b, float bound) {
             return patch_difference(video, size, a, b, bound);
         },

@@ -59,7 +59,7 @@ TEST(ScheduleShiftTest, VisitsWhatTheShiftedScheduleMakesDue) {
                     };
                 };
                 visit_due_pixels(shifted, slot, row, 13, list(expected));
-                visit_due_shifted(schedule, shift, slot, row, 13, list(visited));
+                visit_due_shifted(schedule, shift, {slot, row, 13}, list(visited));
                 EXPECT_EQ(visited, expected) << slot << ' ' << row;
             }
     }
