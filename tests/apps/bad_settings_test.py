@@ -56,10 +56,11 @@ class BadSettingsTest(ProgramTest):
         (self.folder / "mine.toml").write_text("rounds = 2\nlast_iterations = -1\n")
         for parts, options in ((["--set round", "rounds"], ["--set", "round=2"]),
                                (["--set rounds", "0..100"], ["--set", "rounds=-1"]),
-                               (["rounds", "unknown"], ["--method", "naive", "--set", "rounds=2"]),
+                               (["rounds", "unknown"], ["--set", "rounds=2", "--method", "naive"]),
                                (["mine.toml:2", "0..10000"], ["--options", "mine.toml"]),
                                (["there is no such file"], ["--options", "yours.toml"])):
-            self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy", *options)
+            self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy",
+                       *([] if "--method" in options else ["--method", "fast"]), *options)
 
     def test_a_name_that_nobody_knows_with_the_known_ones(self):
         self.refuse(["nobody", "paper"], "--sensor", "nobody")
