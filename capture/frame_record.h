@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "capture/pixel_format.h"
+
+namespace stipple {
+
+/// Where and how the pixels of a frame lie. Region in pixels of the sensor.
+struct FrameLayout {
+    const PixelFormat* format = nullptr;
+    int offset_x = 0;
+    int offset_y = 0;
+    int width = 0;
+    int height = 0;
+    std::size_t stride_bytes = 0;  ///< from row to row; at least format->row_bytes(width)
+
+    /// Bytes that a complete frame has: stride_bytes * (height - 1) + the last row.
+    [[nodiscard]] std::size_t payload_bytes() const;
+    friend bool operator==(const FrameLayout&, const FrameLayout&) = default;
+};
+
+enum class FrameStatus : std::uint8_t {
+    kComplete = 0,
+    kMissingPackets = 1,  ///< the transport lost a part for good
+    kSizeMismatch = 2,    ///< fewer or more bytes than its layout needs
+    kDeviceError = 3,     ///< the device or its driver says that the content is damaged
+};
+
+/// Why frames before this one are missing.
+enum class GapCause : std::uint8_t {
+    kNone = 0,
+    kDevice = 1,        ///< ids that the camera itself left out
+    kTransport = 2,     ///< lost between camera and host
+    kHostUnderrun = 3,  ///< no buffer was free
+    kOwnDrop = 4,       ///< our queue was full, or the policy drops incomplete frames
+    kReconnect = 5,     ///< the camera was gone; how many were lost is not known from its ids
+};
+inline constexpr std::array<std::string_view, 6> kGapCauseNames{
+    "none", "device", "transport", "host_underrun", "own_drop", "reconnect"};
+
+/// Which clock gave a device stamp.
+enum class StampSource : std::uint8_t {
+    kNone = 0,              ///< the device gives no stamp
+    kDeviceClock = 1,       ///< the camera's own clock
+    kHostStartOfFrame = 2,  ///< the driver, host monotonic clock, start of exposure or of frame
+    kHostEndOfFrame = 3,    ///< the driver, host monotonic clock, end of frame
+};
+
+/// What is known of a frame beside its pixels.
+struct FrameRecord {
+    std::uint64_t id = 0;           ///< unwrapped, counts from the session's first frame on
+    std::uint64_t wire_id = 0;      ///< as the device sent it
+    std::uint32_t epoch = 0;        ///< grows with each reconnection and each change of the layout
+    std::uint64_t lost_before = 0;  ///< frames missing between the one before and this one
+    GapCause cause = GapCause::kNone;
+    FrameStatus status = FrameStatus::kComplete;
+    StampSource stamp_source = StampSource::kNone;
+    std::int64_t device_ns = 0;          ///< stamp of the device
+    std::int64_t host_monotonic_ns = 0;  ///< CLOCK_MONOTONIC at arrival
+    std::int64_t host_realtime_ns = 0;   ///< CLOCK_REALTIME at arrival
+    std::optional<double> exposure_us;   ///< of this frame where the device tells, else the setting
+    std::optional<double> gain;          ///< in the unit of the device
+    std::optional<double> black_level_dn;
+    FrameLayout layout;
+    std::size_t bytes_received = 0;
+    std::uint64_t payload_hash = 0;  ///< XXH3, 64 bit, of the stored payload
+};
+
+/// A frame in its wire format.
+struct CapturedFrame {
+    FrameRecord record;
+    std::vector<std::uint8_t> payload;  ///< bytes of the image alone, no chunks; holes are zero
+    std::vector<std::pair<std::size_t, std::size_t>> holes;  ///< [begin, end) of payload, if known
+};
+
+}  // namespace stipple

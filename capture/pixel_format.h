@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/colour_filter.h"
+
+namespace stipple {
+
+/// How the samples of a row lie in memory.
+enum class Packing : std::uint8_t {
+    kBytes,             ///< 1 byte a sample, or 2, little-endian, significant bits lowest
+    kBytesBigEndian,    ///< 2 bytes a sample, big-endian (V4L2 Y16_BE)
+    kLsbPacked,         ///< PFNC "p": a bit string, each sample from its lowest bit on, no padding
+    kGigEVisionPacked,  ///< GigE Vision "Packed": two samples in 3 bytes, their low bits in the
+                        ///< middle
+    kMipiPacked,        ///< MIPI CSI-2, V4L2 "P": high 8 bits of 4 (10 bit) or 2 (12 bit) samples,
+                        ///< then a byte of their low bits
+};
+
+/// A pixel format as cameras send it. Everything that is not in `pixel_formats()` is refused:
+/// nothing is converted on the way in.
+struct PixelFormat {
+    std::string_view name;   ///< GenICam PFNC name ("Mono12p", "BayerRG10"), or V4L2's in its style
+    std::uint32_t pfnc = 0;  ///< PFNC code, 0 if it has none
+    std::uint32_t v4l2 = 0;  ///< V4L2 fourcc, 0 if it has none
+    int bits_per_pixel = 0;  ///< in memory, all planes together
+    int significant_bits = 0;  ///< of a sample: 8 to 16
+    Packing packing = Packing::kBytes;
+    ColourFilter filter = ColourFilter::kNone;
+    int planes = 1;  ///< 3 for interleaved RGB
+
+    /// Bytes of a row of `width` pixels without padding at its end: whole bytes, rounded up.
+    [[nodiscard]] std::size_t row_bytes(int width) const;
+};
+
+/// All formats that are read, in the order of the documentation.
+[[nodiscard]] std::span<const PixelFormat> pixel_formats();
+
+/// The format of that name, code or fourcc; nullptr if it is none of ours.
+[[nodiscard]] const PixelFormat* pixel_format_named(std::string_view name);
+[[nodiscard]] const PixelFormat* pixel_format_of_pfnc(std::uint32_t code);
+[[nodiscard]] const PixelFormat* pixel_format_of_v4l2(std::uint32_t fourcc);
+
+}  // namespace stipple
