@@ -49,6 +49,7 @@ enum class StampSource : std::uint8_t {
     kDeviceClock = 1,       ///< the camera's own clock
     kHostStartOfFrame = 2,  ///< the driver, host monotonic clock, start of exposure or of frame
     kHostEndOfFrame = 3,    ///< the driver, host monotonic clock, end of frame
+    kUnnamedClock = 4,      ///< a stamp on a clock that the driver does not name
 };
 
 /// What is known of a frame beside its pixels.

@@ -33,11 +33,14 @@ function(stipple_verify_headers)
     target_link_libraries(stipple_inner_headers INTERFACE ${arg_LIBS})
 endfunction()
 
-# stipple_test(MODULE file_test.cpp ...): one executable tests/MODULE; every TEST is a ctest entry.
+# stipple_test(MODULE [LABEL label] file_test.cpp ...): one executable tests/MODULE; every TEST is a
+# ctest entry.
 function(stipple_test module)
-    add_executable(${module}_test ${ARGN})
+    cmake_parse_arguments(arg "" "LABEL" "" ${ARGN})
+    add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support GTest::gtest_main)
-    gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60
+                         PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}")
 endfunction()
 
 # stipple_fuzz(NAME file.cpp LIBS lib ... [SECONDS n]): `file.cpp` defines LLVMFuzzerTestOneInput,
