@@ -22,6 +22,7 @@ TABLE = """| module | may include |
 | stream, sensor_model, metrics, emva1288, scenes | core |
 | decoder | stream, core |
 | readout | sensor_model, stream, core |
+| capture | readout, sensor_model, stream, core |
 | apps, tests, bench | everything |
 """
 
