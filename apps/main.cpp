@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     app.footer(kExamples);
     app.require_subcommand(1);
     for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_schedule,
-                           add_timing, add_characterize, add_demo})
+                           add_timing, add_characterize, add_capture, add_demo})
         add(app, action);
     add_run_options_to_all(app, options);
     const auto is_first = [&](const CLI::App* command) { return command->check_name(argv[1]); };

@@ -15,6 +15,7 @@ void add_schedule(CLI::App& app, Action& action);  ///< exposure schedules: its 
 void add_timing(CLI::App& app, Action& action);    ///< how fast a sensor reads
 /// EMVA 1288 figures of an emulated sensor or of images
 void add_characterize(CLI::App& app, Action& action);
-void add_demo(CLI::App& app, Action& action);  ///< all of it on an embedded scene
+void add_capture(CLI::App& app, Action& action);  ///< cameras: its own subcommands
+void add_demo(CLI::App& app, Action& action);     ///< all of it on an embedded scene
 
 }  // namespace stipple

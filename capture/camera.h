@@ -22,6 +22,7 @@ struct CameraDescription {
     std::string genicam_xml_hash;                 ///< XXH3 as hex; empty without GenICam
     std::map<std::string, std::string> features;  ///< every readable feature or control, as text
     std::map<std::string, std::string> transport_facts;  ///< packet size, MTU, socket buffer, ...
+    std::vector<std::string> warnings;  ///< what may cost frames, each with its fix
 };
 
 /// Nothing arrived within the timeout.
@@ -39,9 +40,10 @@ using Arrival = std::variant<CapturedFrame, NoFrame, DeviceLost>;
 
 /// Losses that the transport counts but does not tie to a frame, since `start`.
 struct TransportCounts {
-    std::uint64_t frames_underrun = 0;  ///< no buffer was free
+    std::uint64_t underruns = 0;  ///< no buffer was free: for a frame, or a packet (GigE Vision)
     std::uint64_t packets_resent = 0;
     std::uint64_t packets_missing = 0;
+    std::uint64_t socket_drops = 0;  ///< datagrams that the host's socket had no room for
     std::uint64_t size_mismatches = 0;
 };
 
@@ -76,7 +78,8 @@ using CameraSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// How frames wait on the host.
 struct CameraBuffers {
-    int frames = 32;  ///< 2 to 1024
+    int frames = 32;        ///< 2 to 1024
+    int socket_frames = 4;  ///< GigE Vision: what the socket's receive buffer is to hold
 };
 
 }  // namespace stipple

@@ -154,7 +154,7 @@ void V4l2Camera::count(const V4l2Buffers::Filled& filled, bool waited) {
     const std::uint32_t step = last_sequence_ ? filled.sequence - *last_sequence_ : 1;
     constexpr std::uint32_t kBackwards = 1U << 31U;
     if (step > 1 && step < kBackwards && ready_in_a_row_ >= buffers_.count())
-        counts_.frames_underrun += step - 1;
+        counts_.underruns += step - 1;
     ready_in_a_row_ = waited ? 0 : ready_in_a_row_ + 1;
     last_sequence_ = filled.sequence;
 }

@@ -19,7 +19,7 @@ namespace stipple {
 /// text |
 ///
 /// Frames with V4L2_BUF_FLAG_ERROR are kDeviceError, those of another size than the layout asks for
-/// kSizeMismatch; what was not received is zero. `counts().frames_underrun` are sequence numbers
+/// kSizeMismatch; what was not received is zero. `counts().underruns` are sequence numbers
 /// that are missing after all buffers had been full. Not modelled: formats of several memory
 /// planes, compressed formats, interlaced fields. \throws InputError for settings that cannot be
 /// meant, DeviceError for a device that refuses

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/input_file.h"
@@ -22,7 +23,9 @@ struct Entry {
     const toml::node* value = nullptr;
     std::string place;  ///< "file:line" or "--set"
     bool known = false;
+    std::size_t order = 0;  ///< grows as entries were given
 };
+constexpr std::size_t kAfterFile = std::size_t{1} << 40U;  ///< no file has so many lines
 using Entries = std::map<std::string, Entry, std::less<>>;
 
 /// Adds all values of `table` under their dotted names. Empty tables count as values, so that a
@@ -37,7 +40,7 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
             continue;
         }
         const std::string place = fmt::format("{}:{}", file, key.source().begin.line);
-        if (!entries.try_emplace(name, Entry{&value, place, false}).second)
+        if (!entries.try_emplace(name, Entry{&value, place, false, key.source().begin.line}).second)
             throw InputError(fmt::format("{}: {}", place, name), "is given twice");
     }
 }
@@ -118,7 +121,7 @@ void Config::Impl::set(const std::string& assignment) {
         throw InputError(fmt::format("--set {}", assignment), "write key=value");
     const std::string key = assignment.substr(0, equals);
     tables.push_back(parse_value(std::string_view(assignment).substr(equals + 1)));
-    entries[key] = Entry{tables.back().get("value"), "--set", false};
+    entries[key] = Entry{tables.back().get("value"), "--set", false, kAfterFile + tables.size()};
 }
 
 const toml::node* Config::Impl::find(std::string_view key) {
@@ -255,6 +258,26 @@ std::vector<double> Config::numbers(std::string_view key, std::vector<double> fa
 
 bool Config::contains(std::string_view key) const {
     return impl_->entries.find(key) != impl_->entries.end();
+}
+
+std::vector<std::pair<std::string, std::string>> Config::entries() const {
+    std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> found;
+    for (const auto& [key, entry] : impl_->entries) {
+        const auto* text = entry.value->as_string();
+        if (text == nullptr && !entry.value->is_number() && !entry.value->is_boolean())
+            impl_->fail_type(key, *entry.value, "text, a number, true or false");
+        std::ostringstream out;
+        if (text != nullptr)
+            out << text->get();
+        else
+            entry.value->visit([&](const auto& value) { out << value; });
+        found.emplace_back(entry.order, std::pair(key, out.str()));
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::pair<std::string, std::string>> entries;
+    entries.reserve(found.size());
+    for (auto& [order, entry] : found) entries.push_back(std::move(entry));
+    return entries;
 }
 
 void Config::reject_unknown_keys() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace stipple {
@@ -44,6 +45,10 @@ class Config {
 
     /// A list of texts; empty if absent.
     [[nodiscard]] std::vector<std::string> texts(std::string_view key);
+
+    /// All that was given, as text, in the order in which it was: the file, then the overrides.
+    /// For settings whose names only a device knows. \throws InputError for a list or a date.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> entries() const;
 
     /// \throws InputError for a key that was given but never asked for, with the nearest known
     /// key as a suggestion.

@@ -85,7 +85,7 @@ TEST_P(V4l2CameraOfEachApi, GivesTheBytesOfEveryFrame) {
         ASSERT_EQ(frame.payload, ramp(16 * 8, 7 * i));
         ASSERT_TRUE(frame.holes.empty());
     }
-    EXPECT_EQ(camera->counts().frames_underrun, 0);
+    EXPECT_EQ(camera->counts().underruns, 0);
 }
 
 TEST_P(V4l2CameraOfEachApi, LeavesNoStaleBytesInAShortFrame) {

@@ -8,7 +8,7 @@ from tree import report
 LIST = "scripts/packages.txt"
 FIND = re.compile(r"^\s*find_package\((\w+)|IMPORTED_TARGET (\w+)\)", re.M)
 OF_CMAKE = {"Threads"}  # comes with the compiler
-INCLUDE = re.compile(r"\s*#\s*include\s*<((?!sys/)[^>]+/[^>]+)>")
+INCLUDE = re.compile(r"\s*#\s*include\s*<((?!(?:sys|arpa|net|netinet)/)[^>]+/[^>]+)>")
 IN_TEXT = re.compile(r"\blib[a-z0-9-]+-dev\b")
 
 

@@ -1,0 +1,34 @@
+#include "apps/camera_arguments.h"
+
+#include <CLI/CLI.hpp>
+
+#include "core/config.h"
+
+namespace stipple {
+
+void add_camera_arguments(CLI::App& command, CameraArguments& arguments) {
+    command
+        .add_option("ADDRESS", arguments.address,
+                    "gige:IP, usb:SERIAL, v4l2:/dev/videoN or replay:FILE")
+        ->required();
+    command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
+        ->type_name("FILE");
+    command
+        .add_option("--set", arguments.settings,
+                    "set a feature or control of the camera, over --config")
+        ->allow_extra_args(false)
+        ->type_name("FEATURE=VALUE");
+    command
+        .add_option("--buffers", arguments.buffers.frames,
+                    "frames that the host can hold while we are busy (32)")
+        ->check(CLI::Range(2, 1024))
+        ->type_name("N");
+}
+
+CameraSettings camera_settings(const CameraArguments& arguments) {
+    const Config config = arguments.config.empty() ? Config(arguments.settings)
+                                                   : Config(arguments.config, arguments.settings);
+    return config.entries();
+}
+
+}  // namespace stipple

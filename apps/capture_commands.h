@@ -1,0 +1,12 @@
+#pragma once
+
+#include "apps/run_options.h"
+
+namespace stipple {
+
+// Each function adds one subcommand of `stipple capture`. If the command line names it, parsing
+// sets `action`.
+
+void add_capture_list(CLI::App& capture, Action& action);  ///< cameras that can be opened
+
+}  // namespace stipple

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/capture_commands.h"
+#include "apps/json_file.h"
+#include "capture/camera_listing.h"
+
+namespace stipple {
+namespace {
+
+nlohmann::ordered_json search_json(const CameraSearch& search) {
+    nlohmann::ordered_json json{{"cameras", nlohmann::ordered_json::array()},
+                                {"problems", search.problems}};
+    for (const CameraListing& camera : search.cameras)
+        json["cameras"].push_back({{"address", camera.address},
+                                   {"transport", camera.transport},
+                                   {"vendor", camera.vendor},
+                                   {"model", camera.model},
+                                   {"serial", camera.serial}});
+    return json;
+}
+
+std::string search_text(const CameraSearch& search) {
+    std::string text = search.cameras.empty() ? "no camera found\n" : "";
+    for (const CameraListing& camera : search.cameras)
+        text += fmt::format("{:<28} {:<12} {} {} {}\n", camera.address, camera.transport,
+                            camera.vendor, camera.model, camera.serial);
+    for (const std::string& problem : search.problems) text += fmt::format("! {}\n", problem);
+    return text;
+}
+
+void list(const RunOptions& run) {
+    JsonFile json(run);
+    const CameraSearch search = list_cameras();
+    json.write(search_json(search));
+    run.say(search_text(search));
+}
+
+}  // namespace
+
+void add_capture_list(CLI::App& capture, Action& action) {
+    auto* command = capture.add_subcommand("list", "Cameras that can be opened, with addresses");
+    command->footer(
+        "Example:\n"
+        "  stipple capture list");
+    command->callback([&action] { action = list; });
+}
+
+}  // namespace stipple

@@ -1,0 +1,135 @@
+#include "capture/aravis_camera.h"
+
+#include <arv.h>
+#include <fmt/format.h>
+
+#include "capture/aravis_device.h"
+#include "capture/aravis_stream.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+/// GVSP block ids are 1 to 65535.
+constexpr std::uint64_t kGigeIdPeriod = 65535;
+constexpr std::uint64_t kUsbIdPeriod = ~std::uint64_t{0};
+
+std::string formats_we_read() {
+    std::string text;
+    for (const PixelFormat& format : pixel_formats())
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", format.name);
+    return text;
+}
+
+int read_int(const AravisDevice& device, const char* feature, int fallback) {
+    return static_cast<int>(device.read_number(feature).value_or(fallback));
+}
+
+/// What the camera is set to send.
+FrameLayout layout_of(const AravisDevice& device) {
+    auto* camera = static_cast<ArvCamera*>(device.native());
+    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, nullptr));
+    FrameLayout layout;
+    layout.format = pixel_format_of_pfnc(code);
+    if (layout.format == nullptr)
+        throw InputError(
+            fmt::format("{}: PixelFormat", device.address()),
+            fmt::format("{} (0x{:08x}) is not read; set one of {}",
+                        device.read("PixelFormat").value_or("?"), code, formats_we_read()));
+    layout.width = read_int(device, "Width", 0);
+    layout.height = read_int(device, "Height", 0);
+    layout.offset_x = read_int(device, "OffsetX", 0);
+    layout.offset_y = read_int(device, "OffsetY", 0);
+    if (layout.width <= 0 || layout.height <= 0 || layout.width > 65535 || layout.height > 65535)
+        throw DeviceError(device.address(), fmt::format("says that its frames have {} x {} pixels",
+                                                        layout.width, layout.height));
+    if (layout.width * layout.format->bits_per_pixel % 8 != 0)
+        throw InputError(fmt::format("{}: Width", device.address()),
+                         fmt::format("rows of {} pixels of {} do not end with a byte; choose a "
+                                     "multiple of 4",
+                                     layout.width, layout.format->name));
+    layout.stride_bytes = layout.format->row_bytes(layout.width);
+    return layout;
+}
+
+class AravisCamera : public Camera {
+  public:
+    AravisCamera(const std::string& address, const CameraSettings& settings,
+                 const CameraBuffers& buffers)
+        : device_(address) {
+        if (!device_.is_controller()) {
+            const std::string who = device_.controller();
+            throw DeviceError(address,
+                              fmt::format("another program{} controls the camera: stop it, or wait "
+                                          "some seconds if it has crashed",
+                                          who.empty() ? "" : fmt::format(" ({})", who)));
+        }
+        apply_settings(device_, settings);
+        stream_ = std::make_unique<AravisStream>(device_, layout_of(device_), buffers);
+        for (const auto* name : {"ExposureTime", "ExposureTimeAbs"})
+            if (!exposure_us_) exposure_us_ = device_.read_number(name);
+        for (const auto* name : {"Gain", "GainRaw"})
+            if (!gain_) gain_ = device_.read_number(name);
+        for (const auto* name : {"BlackLevel", "BlackLevelRaw"})
+            if (!black_level_dn_) black_level_dn_ = device_.read_number(name);
+        features_ = device_.features();
+    }
+
+    [[nodiscard]] CameraDescription description() const override;
+    [[nodiscard]] FrameLayout layout() const override { return stream_->layout(); }
+    [[nodiscard]] std::uint64_t wire_id_period() const override {
+        return device_.is_gige() ? kGigeIdPeriod : kUsbIdPeriod;
+    }
+    [[nodiscard]] TransportCounts counts() const override { return stream_->counts(); }
+    void start() override { stream_->start(); }
+    [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout) override;
+    void stop() noexcept override { stream_->stop(); }
+
+  private:
+    AravisDevice device_;
+    std::unique_ptr<AravisStream> stream_;
+    std::optional<double> exposure_us_;
+    std::optional<double> gain_;
+    std::optional<double> black_level_dn_;
+    std::map<std::string, std::string> features_;
+};
+
+CameraDescription AravisCamera::description() const {
+    const auto read = [&](const char* name) { return device_.read(name).value_or(""); };
+    CameraDescription text;
+    text.transport = device_.is_gige() ? "GigE Vision" : "USB3 Vision";
+    text.address = device_.address();
+    text.vendor = read("DeviceVendorName");
+    text.model = read("DeviceModelName");
+    text.serial = read("DeviceSerialNumber");
+    if (text.serial.empty()) text.serial = read("DeviceID");
+    text.firmware = read("DeviceFirmwareVersion");
+    if (text.firmware.empty()) text.firmware = read("DeviceVersion");
+    text.features = features_;
+    text.transport_facts = stream_->facts();
+    text.transport_facts["aravis"] = fmt::format("{}.{}.{}", arv_get_major_version(),
+                                                 arv_get_minor_version(), arv_get_micro_version());
+    text.warnings = stream_->warnings();
+    return text;
+}
+
+Arrival AravisCamera::wait(std::chrono::milliseconds timeout) {
+    Arrival arrival = stream_->wait(timeout);
+    if (auto* frame = std::get_if<CapturedFrame>(&arrival)) {
+        FrameRecord& record = frame->record;
+        if (!record.exposure_us) record.exposure_us = exposure_us_;
+        if (!record.gain) record.gain = gain_;
+        if (!record.black_level_dn) record.black_level_dn = black_level_dn_;
+    }
+    return arrival;
+}
+
+}  // namespace
+
+std::unique_ptr<Camera> open_aravis_camera(const std::string& address,
+                                           const CameraSettings& settings,
+                                           const CameraBuffers& buffers) {
+    return std::make_unique<AravisCamera>(address, settings, buffers);
+}
+
+}  // namespace stipple

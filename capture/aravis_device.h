@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "capture/camera.h"
+
+namespace stipple {
+
+/// The control channel of a GenICam camera: open, its features, what it is.
+class AravisDevice {
+  public:
+    /// `address` as for open_aravis_camera. \throws InputError, DeviceError.
+    explicit AravisDevice(std::string address);
+    ~AravisDevice();
+    AravisDevice(const AravisDevice&) = delete;
+    AravisDevice& operator=(const AravisDevice&) = delete;
+
+    [[nodiscard]] const std::string& address() const { return address_; }
+    [[nodiscard]] bool is_gige() const;
+    /// GigE: whether this program, and no other, controls the camera.
+    [[nodiscard]] bool is_controller() const;
+    /// GigE: "IP:port" of the program that controls the camera, if the camera tells.
+    [[nodiscard]] std::string controller() const;
+
+    [[nodiscard]] bool has(const std::string& feature) const;
+    /// Value as text; empty optional if there is no such feature or it cannot be read.
+    [[nodiscard]] std::optional<std::string> read(const std::string& feature) const;
+    [[nodiscard]] std::optional<double> read_number(const std::string& feature) const;
+    /// Sets a feature and reads it back. ExposureTime, Gain, BlackLevel and AcquisitionFrameRate
+    /// reach older cameras under the names that they have for them.
+    /// \throws InputError if there is no such feature, the text is no value of it or out of range;
+    /// DeviceError if the camera refuses or sets something else.
+    void set(const std::string& feature, const std::string& value);
+    /// All features under Root that can be read.
+    [[nodiscard]] std::map<std::string, std::string> features() const;
+    [[nodiscard]] std::string genicam_xml() const;
+
+    /// The ArvCamera, for the other sources of this module.
+    [[nodiscard]] void* native() const;
+
+  private:
+    struct Impl;
+    std::string address_;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Applies settings in the order in which a camera accepts them: offsets to 0, then format and
+/// size, then offsets, then the rest as given. \throws InputError, DeviceError as set.
+void apply_settings(AravisDevice& device, const CameraSettings& settings);
+
+}  // namespace stipple
