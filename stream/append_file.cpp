@@ -35,6 +35,12 @@ void AppendFile::close() {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail();
 }
 
+void AppendFile::cut(std::uint64_t bytes) noexcept {
+    const auto end = static_cast<off_t>(bytes);
+    if (::ftruncate(descriptor_, end) == 0 && ::lseek(descriptor_, end, SEEK_SET) == end)
+        bytes_ = bytes;
+}
+
 void AppendFile::fail() const {
     throw DeviceError(place_, "cannot be written: " + std::generic_category().message(errno));
 }

@@ -19,6 +19,8 @@ class AppendFile {
 
     void append(std::span<const std::uint8_t> bytes);
     void close();
+    /// Takes back what lies beyond `bytes` bytes, as far as the system lets it: after a failure.
+    void cut(std::uint64_t bytes) noexcept;
 
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
