@@ -12,12 +12,15 @@
 #include <utility>
 
 #include "capture/v4l2_buffers.h"
+#include "capture/v4l2_controls.h"
 #include "capture/v4l2_device.h"
 #include "capture/v4l2_format.h"
 #include "core/error.h"
 
 namespace stipple {
 namespace {
+
+constexpr std::string_view kMemorySetting = "BufferMemory";
 
 using Clock = std::chrono::steady_clock;
 
@@ -36,6 +39,14 @@ StampSource stamp_source(std::uint32_t flags) {
                : StampSource::kHostEndOfFrame;
 }
 
+CameraSettings controls_among(const CameraSettings& settings) {
+    CameraSettings controls;
+    for (const auto& setting : settings)
+        if (!is_v4l2_format_setting(setting.first) && setting.first != kMemorySetting)
+            controls.push_back(setting);
+    return controls;
+}
+
 class V4l2Camera final : public Camera {
   public:
     V4l2Camera(const std::string& path, const CameraSettings& settings, V4l2Memory memory,
@@ -43,7 +54,9 @@ class V4l2Camera final : public Camera {
         : device_(path),
           format_(set_v4l2_format(device_, settings)),
           memory_(memory),
-          buffers_(device_, memory, frames, format_.buffer_bytes) {}
+          buffers_(device_, memory, frames, format_.buffer_bytes) {
+        set_v4l2_controls(device_, controls_among(settings));
+    }
     ~V4l2Camera() override { stop(); }
 
     [[nodiscard]] CameraDescription description() const override;
@@ -65,6 +78,7 @@ class V4l2Camera final : public Camera {
     V4l2Buffers buffers_;
     TransportCounts counts_;
     bool streaming_ = false;
+    V4l2Exposure exposure_;  ///< as it was set when the stream started
     std::optional<std::uint32_t> last_sequence_;
     int ready_in_a_row_ = 0;
 };
@@ -75,6 +89,7 @@ CameraDescription V4l2Camera::description() const {
     about.address = device_.address();
     about.vendor = device_.driver();
     about.model = device_.card();
+    about.features = read_v4l2_controls(device_);
     about.features["Width"] = std::to_string(format_.layout.width);
     about.features["Height"] = std::to_string(format_.layout.height);
     about.features["OffsetX"] = std::to_string(format_.layout.offset_x);
@@ -97,6 +112,7 @@ void V4l2Camera::start() {
     counts_ = {};
     last_sequence_.reset();
     ready_in_a_row_ = 0;
+    exposure_ = read_v4l2_exposure(device_);
     const int error = buffers_.queue_all();
     if (buffers_.queued() == 0)
         throw DeviceError(device_.address(), fmt::format("the driver takes no frame buffer: {}",
@@ -167,6 +183,9 @@ CapturedFrame V4l2Camera::frame_of(const V4l2Buffers::Filled& filled) const {
     record.wire_id = filled.sequence;
     record.stamp_source = stamp_source(filled.flags);
     record.device_ns = filled.stamp_ns;
+    record.exposure_us = exposure_.exposure_us;
+    record.gain = exposure_.gain;
+    record.black_level_dn = exposure_.black_level_dn;
     record.layout = format_.layout;
     record.bytes_received = filled.bytes.size();
     const std::size_t size = record.layout.payload_bytes();
@@ -198,7 +217,7 @@ std::string node_path(const std::string& address) {
 V4l2Memory memory_setting(const std::string& address, const CameraSettings& settings) {
     auto memory = V4l2Memory::kDriver;
     for (const auto& [name, value] : settings) {
-        if (name != "BufferMemory") continue;
+        if (name != kMemorySetting) continue;
         if (value != "driver" && value != "own")
             throw InputError(address,
                              fmt::format("BufferMemory: '{}' is neither driver nor own", value));
