@@ -22,7 +22,8 @@ Json json_of(const CameraDescription& camera) {
             {"firmware", camera.firmware},
             {"genicam_xml_hash", camera.genicam_xml_hash},
             {"features", camera.features},
-            {"transport_facts", camera.transport_facts}};
+            {"transport_facts", camera.transport_facts},
+            {"warnings", camera.warnings}};
 }
 
 CameraDescription camera_of(const Json& json) {
@@ -34,7 +35,8 @@ CameraDescription camera_of(const Json& json) {
             .firmware = json.at("firmware"),
             .genicam_xml_hash = json.at("genicam_xml_hash"),
             .features = json.at("features").get<Texts>(),
-            .transport_facts = json.at("transport_facts").get<Texts>()};
+            .transport_facts = json.at("transport_facts").get<Texts>(),
+            .warnings = json.at("warnings").get<std::vector<std::string>>()};
 }
 
 Json json_of(const ClockFit& fit) {
@@ -99,9 +101,10 @@ std::string encode_end(const RecordingEnd& end) {
                    {"payload_bytes", end.payload_bytes},
                    {"lost", lost},
                    {"transport",
-                    {{"frames_underrun", end.transport.frames_underrun},
+                    {{"underruns", end.transport.underruns},
                      {"packets_resent", end.transport.packets_resent},
                      {"packets_missing", end.transport.packets_missing},
+                     {"socket_drops", end.transport.socket_drops},
                      {"size_mismatches", end.transport.size_mismatches}}},
                    {"clocks", clocks}});
 }
@@ -115,9 +118,10 @@ RecordingEnd decode_end(std::string_view text, std::string_view place) {
         for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
             end.lost[i] = json.at("lost").at(std::string(kGapCauseNames[i]));
         const Json& transport = json.at("transport");
-        end.transport = {.frames_underrun = transport.at("frames_underrun"),
+        end.transport = {.underruns = transport.at("underruns"),
                          .packets_resent = transport.at("packets_resent"),
                          .packets_missing = transport.at("packets_missing"),
+                         .socket_drops = transport.at("socket_drops"),
                          .size_mismatches = transport.at("size_mismatches")};
         for (const Json& fit : json.at("clocks")) end.clocks.push_back(fit_of(fit));
         return end;

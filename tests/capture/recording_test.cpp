@@ -60,14 +60,14 @@ TEST(RecordingTest, TheEndHoldsTotalsLossesAndClock) {
     EXPECT_EQ(writer.totals().lost[5], 12U);
     writer.finish({.reason = "camera lost",
                    .lost = {0, 1, 2, 3, 4, 12},
-                   .transport = {.frames_underrun = 5, .packets_resent = 6}});
+                   .transport = {.underruns = 5, .packets_resent = 6}});
     RecordingReader reader(folder / "a");
     EXPECT_EQ(read_frames(reader).size(), 11U);
     ASSERT_TRUE(reader.end());
     const RecordingEnd& end = *reader.end();
     EXPECT_EQ(end.reason, "camera lost");
     EXPECT_EQ(end.lost, (std::array<std::uint64_t, 6>{0, 1, 2, 3, 4, 12}));
-    EXPECT_EQ(end.transport.frames_underrun, 5U);
+    EXPECT_EQ(end.transport.underruns, 5U);
     EXPECT_EQ(end.transport.packets_resent, 6U);
     EXPECT_EQ(end.frames, 11U);
     EXPECT_EQ(end.incomplete, 1U);
