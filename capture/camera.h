@@ -22,7 +22,7 @@ struct CameraDescription {
     std::string genicam_xml_hash;                 ///< XXH3 as hex; empty without GenICam
     std::map<std::string, std::string> features;  ///< every readable feature or control, as text
     std::map<std::string, std::string> transport_facts;  ///< packet size, MTU, socket buffer, ...
-    std::vector<std::string> warnings;  ///< what may cost frames, each with its fix
+    std::vector<std::string> warnings = {};  ///< what may cost frames, each with its fix
 };
 
 /// Nothing arrived within the timeout.
