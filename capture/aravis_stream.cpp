@@ -70,6 +70,7 @@ struct AravisStream::Impl {
     ArvChunkParser* chunks = nullptr;
     std::size_t buffer_bytes = 0;
     std::uint64_t mismatches_seen = 0;
+    std::uint64_t link_faults_before = 0;
     bool running = false;
     std::atomic<bool> lost = false;
     gulong lost_handler = 0;
@@ -132,6 +133,7 @@ void AravisStream::Impl::set_packet_size() {
     facts["packet_bytes"] = fmt::format("{}", size);
     if (!interface) return;
     facts["interface"] = interface->name;
+    link_faults_before = link_faults(interface->name);
     facts["mtu"] = fmt::format("{}", interface->mtu);
     if (static_cast<int>(size) > interface->mtu)
         warnings.push_back(
@@ -297,6 +299,8 @@ TransportCounts AravisStream::counts() const {
     counts.size_mismatches = impl_->info("n_size_mismatch_errors");
     if (impl_->device.is_gige() && impl_->facts.at("socket") == "udp")
         counts.socket_drops = udp_drops(arv_gv_stream_get_port(ARV_GV_STREAM(impl_->stream)));
+    if (const auto interface = impl_->facts.find("interface"); interface != impl_->facts.end())
+        counts.link_faults = link_faults(interface->second) - impl_->link_faults_before;
     return counts;
 }
 

@@ -44,6 +44,7 @@ struct TransportCounts {
     std::uint64_t packets_resent = 0;
     std::uint64_t packets_missing = 0;
     std::uint64_t socket_drops = 0;  ///< datagrams that the host's socket had no room for
+    std::uint64_t link_faults = 0;   ///< frames that the interface dropped, and times its link went
     std::uint64_t size_mismatches = 0;
 };
 

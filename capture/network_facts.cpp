@@ -121,4 +121,15 @@ std::uint64_t udp_drops(int port) {
     return drops;
 }
 
+std::uint64_t link_faults(const std::string& interface) {
+    std::uint64_t faults = 0;
+    for (const char* const counter : {"statistics/rx_dropped", "statistics/rx_errors",
+                                      "statistics/rx_missed_errors", "carrier_changes"}) {
+        std::ifstream file("/sys/class/net/" + interface + "/" + counter);
+        std::uint64_t count = 0;
+        if (file >> count) faults += count;
+    }
+    return faults;
+}
+
 }  // namespace stipple

@@ -33,4 +33,7 @@ struct NetworkInterface {
 /// Datagrams that the UDP socket bound to `port` had no room for; 0 if there is no such socket.
 [[nodiscard]] std::uint64_t udp_drops(int port);
 
+/// Frames that an interface had to drop or found damaged, and times that its link came or went.
+[[nodiscard]] std::uint64_t link_faults(const std::string& interface);
+
 }  // namespace stipple

@@ -105,6 +105,7 @@ std::string encode_end(const RecordingEnd& end) {
                      {"packets_resent", end.transport.packets_resent},
                      {"packets_missing", end.transport.packets_missing},
                      {"socket_drops", end.transport.socket_drops},
+                     {"link_faults", end.transport.link_faults},
                      {"size_mismatches", end.transport.size_mismatches}}},
                    {"clocks", clocks}});
 }
@@ -122,6 +123,7 @@ RecordingEnd decode_end(std::string_view text, std::string_view place) {
                          .packets_resent = transport.at("packets_resent"),
                          .packets_missing = transport.at("packets_missing"),
                          .socket_drops = transport.at("socket_drops"),
+                         .link_faults = transport.at("link_faults"),
                          .size_mismatches = transport.at("size_mismatches")};
         for (const Json& fit : json.at("clocks")) end.clocks.push_back(fit_of(fit));
         return end;

@@ -1,0 +1,307 @@
+#include "capture/capture_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "capture/camera_reopener.h"
+#include "capture/frame_ids.h"
+
+namespace stipple {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr int kStallPeriods = 5;
+/// How often the transport's counters are read while nothing is amiss: reading them costs more than
+/// a frame of a fast camera does.
+constexpr milliseconds kCountEvery{200};
+
+/// A feature as a number; 0 if there is none.
+double number_of(const CameraDescription& camera, const char* feature) {
+    const auto found = camera.features.find(feature);
+    if (found == camera.features.end()) return 0;
+    double value = 0;
+    const std::string& text = found->second;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    return end.ec == std::errc() && value > 0 ? value : 0;
+}
+
+/// What the settings say of the frame period; 0 if they do not.
+nanoseconds nominal_period(const CameraDescription& camera) {
+    const double rate = number_of(camera, "AcquisitionFrameRate");
+    const double exposure_us =
+        std::max(number_of(camera, "ExposureTime"), number_of(camera, "ExposureTimeAbs"));
+    const double seconds = std::max(rate > 0 ? 1 / rate : 0, exposure_us * 1e-6);
+    return nanoseconds(static_cast<std::int64_t>(std::min(seconds, 3600.0) * 1e9));
+}
+
+bool waits_for_triggers(const CameraDescription& camera) {
+    const auto mode = camera.features.find("TriggerMode");
+    return mode != camera.features.end() && mode->second == "On";
+}
+
+TransportCounts sum(TransportCounts a, const TransportCounts& b) {
+    a.underruns += b.underruns;
+    a.packets_resent += b.packets_resent;
+    a.packets_missing += b.packets_missing;
+    a.socket_drops += b.socket_drops;
+    a.link_faults += b.link_faults;
+    a.size_mismatches += b.size_mismatches;
+    return a;
+}
+
+/// Who lost frames, by what the transport counted before and after.
+GapCause cause_of(const TransportCounts& before, const TransportCounts& after,
+                  bool incomplete_frames) {
+    if (after.underruns > before.underruns) return GapCause::kHostUnderrun;
+    if (after.socket_drops > before.socket_drops || after.link_faults > before.link_faults)
+        return GapCause::kTransport;
+    // Packets of frames that did arrive, incomplete, explain no others.
+    if (after.packets_missing > before.packets_missing && !incomplete_frames)
+        return GapCause::kTransport;
+    return GapCause::kDevice;
+}
+
+/// Frames that are missing before the next one.
+struct Gap {
+    std::array<std::uint64_t, kGapCauseNames.size()> lost{};
+
+    void add(GapCause cause, std::uint64_t frames) {
+        lost[static_cast<std::size_t>(cause)] += frames;
+    }
+    [[nodiscard]] std::uint64_t total() const {
+        std::uint64_t frames = 0;
+        for (const std::uint64_t one : lost) frames += one;
+        return frames;
+    }
+    /// Of most of them.
+    [[nodiscard]] GapCause cause() const {
+        const auto most = std::max_element(lost.begin(), lost.end());
+        return *most == 0 ? GapCause::kNone : static_cast<GapCause>(most - lost.begin());
+    }
+};
+
+}  // namespace
+
+struct CaptureSession::Impl {
+    Opener open;
+    SessionOptions options;
+    std::unique_ptr<Camera> camera;                          ///< null during an outage
+    std::vector<std::unique_ptr<CameraReopener>> reopeners;  ///< the last one is at work
+    CameraDescription description;
+    FrameLayout layout;
+    FrameIds ids{2};
+    std::uint32_t epoch = 0;
+    SessionTotals totals;
+    Gap gap;
+    bool reconnected = false;  ///< no frame since
+
+    TransportCounts earlier_epochs;
+    TransportCounts counted;  ///< of this epoch, at `counted_at`
+    Clock::time_point counted_at;
+    bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
+
+    Clock::time_point last_sign;             ///< start, or the last frame
+    std::optional<FrameRecord> first_frame;  ///< of this epoch
+    std::optional<FrameRecord> last_frame;
+
+    void take_over(std::unique_ptr<Camera> opened);
+    [[nodiscard]] nanoseconds period() const;
+    [[nodiscard]] std::optional<nanoseconds> patience() const;
+    [[nodiscard]] SessionEvent begin_outage(std::string reason);
+    [[nodiscard]] SessionEvent wait_for_camera(milliseconds timeout);
+    [[nodiscard]] SessionEvent wait_for_frame(milliseconds timeout);
+    void count_transport(bool now);
+    void number(FrameRecord& record);
+    void note_reconnection(const FrameRecord& record);
+    [[nodiscard]] SessionEvent deliver(CapturedFrame frame);
+};
+
+void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
+    camera = std::move(opened);
+    description = camera->description();
+    layout = camera->layout();
+    counted = {};
+    counted_at = last_sign = Clock::now();
+    incomplete_since = false;
+    first_frame.reset();
+}
+
+/// As measured in this epoch, else as set; 0 if neither is known.
+nanoseconds CaptureSession::Impl::period() const {
+    if (!first_frame || !last_frame || last_frame->id <= first_frame->id)
+        return nominal_period(description);
+    const auto frames = static_cast<std::int64_t>(last_frame->id - first_frame->id);
+    return nanoseconds(
+        std::max<std::int64_t>(0, last_frame->host_monotonic_ns - first_frame->host_monotonic_ns) /
+        frames);
+}
+
+/// How long the camera may be silent; empty: for ever.
+std::optional<nanoseconds> CaptureSession::Impl::patience() const {
+    if (options.stall <= milliseconds(0) || waits_for_triggers(description)) return std::nullopt;
+    const nanoseconds several = kStallPeriods * period();
+    const milliseconds least = first_frame ? options.stall : options.first_frame;
+    return std::max<nanoseconds>(least, several);
+}
+
+SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
+    count_transport(true);
+    earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
+    ++totals.outages;
+    if (!options.reconnect) {
+        camera->stop();
+        return DeviceLost{std::move(reason)};
+    }
+    std::erase_if(reopeners, [](const auto& old) { return old->is_done(); });
+    reopeners.push_back(std::make_unique<CameraReopener>(std::move(camera), open));
+    return Outage{std::move(reason)};
+}
+
+SessionEvent CaptureSession::Impl::wait_for_camera(milliseconds timeout) {
+    auto back = reopeners.back()->take(timeout);
+    if (back == nullptr) return NoFrame{};
+    const double gone_s = std::chrono::duration<double>(Clock::now() - last_sign).count();
+    take_over(std::move(back));
+    reconnected = true;
+    return Recovery{gone_s};
+}
+
+void CaptureSession::Impl::count_transport(bool now) {
+    if (!now && Clock::now() - counted_at < kCountEvery) return;
+    counted = camera->counts();
+    counted_at = Clock::now();
+    incomplete_since = false;
+}
+
+/// Frames that the camera would have sent while it was gone.
+void CaptureSession::Impl::note_reconnection(const FrameRecord& record) {
+    ++epoch;
+    std::uint64_t missed = 0;
+    const std::int64_t period_ns = nominal_period(description).count();
+    if (last_frame && period_ns > 0) {
+        const std::int64_t silent_ns = record.host_monotonic_ns - last_frame->host_monotonic_ns;
+        missed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, silent_ns / period_ns - 1));
+    }
+    ids.restart(camera->wire_id_period(), missed);
+    gap.add(GapCause::kReconnect, missed);
+    totals.lost[static_cast<std::size_t>(GapCause::kReconnect)] += missed;
+    reconnected = false;
+}
+
+void CaptureSession::Impl::number(FrameRecord& record) {
+    if (reconnected) {
+        note_reconnection(record);
+    } else if (first_frame && record.layout != layout) {
+        ++epoch;
+    }
+    layout = record.layout;
+    const FrameIds::Step step = ids.next(record.wire_id);
+    if (step.restarted) ++epoch;
+    record.id = step.id;
+    record.epoch = epoch;
+    if (step.lost > 0) {
+        const TransportCounts before = counted;
+        const bool explained = incomplete_since;
+        count_transport(true);
+        const GapCause cause = cause_of(before, counted, explained);
+        gap.add(cause, step.lost);
+        totals.lost[static_cast<std::size_t>(cause)] += step.lost;
+    } else {
+        count_transport(false);
+    }
+    if (record.status != FrameStatus::kComplete) incomplete_since = true;
+}
+
+SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
+    FrameRecord& record = frame.record;
+    last_sign = Clock::now();
+    number(record);
+    last_frame = record;
+    if (!first_frame) first_frame = record;
+    const bool complete = record.status == FrameStatus::kComplete;
+    const bool dropped =
+        !complete && (options.incomplete == IncompletePolicy::kDrop ||
+                      (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
+    if (dropped) {
+        gap.add(GapCause::kOwnDrop, 1);
+        ++totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+        return NoFrame{};
+    }
+    if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
+    record.lost_before = gap.total();
+    record.cause = gap.cause();
+    gap = {};
+    ++totals.frames;
+    if (!complete) ++totals.incomplete;
+    return frame;
+}
+
+SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
+    const auto limit = patience();
+    const auto silent = Clock::now() - last_sign;
+    if (limit) {
+        const auto left = std::chrono::ceil<milliseconds>(*limit - silent);
+        timeout = std::clamp(left, milliseconds(0), std::max(timeout, milliseconds(0)));
+    }
+    Arrival arrival = camera->wait(timeout);
+    if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return deliver(std::move(*frame));
+    if (auto* lost = std::get_if<DeviceLost>(&arrival))
+        return begin_outage(std::move(lost->reason));
+    const auto now_silent = std::chrono::ceil<milliseconds>(Clock::now() - last_sign);
+    if (limit && now_silent >= *limit)
+        return begin_outage(fmt::format("nothing came for {} ms", now_silent.count()));
+    return NoFrame{};
+}
+
+CaptureSession::CaptureSession(Opener open, SessionOptions options)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->open = std::move(open);
+    impl_->options = options;
+    auto camera = impl_->open();
+    impl_->ids = FrameIds(camera->wire_id_period());
+    camera->start();
+    impl_->take_over(std::move(camera));
+}
+
+CaptureSession::~CaptureSession() {
+    if (impl_->camera) impl_->camera->stop();
+}
+
+SessionEvent CaptureSession::next(std::chrono::milliseconds timeout) {
+    return impl_->camera ? impl_->wait_for_frame(timeout) : impl_->wait_for_camera(timeout);
+}
+
+void CaptureSession::count_own_drop(const FrameRecord& record) noexcept {
+    impl_->gap.add(record.cause, record.lost_before);
+    impl_->gap.add(GapCause::kOwnDrop, 1);
+    ++impl_->totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+    --impl_->totals.frames;
+    if (record.status != FrameStatus::kComplete) --impl_->totals.incomplete;
+}
+
+const CameraDescription& CaptureSession::description() const {
+    return impl_->description;
+}
+
+const FrameLayout& CaptureSession::layout() const {
+    return impl_->layout;
+}
+
+const SessionTotals& CaptureSession::totals() const {
+    return impl_->totals;
+}
+
+TransportCounts CaptureSession::transport() const {
+    return impl_->camera ? sum(impl_->earlier_epochs, impl_->camera->counts())
+                         : impl_->earlier_epochs;
+}
+
+}  // namespace stipple

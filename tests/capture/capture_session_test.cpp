@@ -1,0 +1,275 @@
+#include "capture/capture_session.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+
+#include "core/error.h"
+#include "tests/capture/scripted_camera.h"
+
+namespace stipple {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLong = 10s;  // a bound that only a broken session reaches
+
+/// Opens one script after another; the last one for ever.
+CaptureSession::Opener plays(std::vector<std::deque<ScriptedStep>> scripts,
+                             CameraDescription description = {}) {
+    auto left = std::make_shared<std::vector<std::deque<ScriptedStep>>>(std::move(scripts));
+    return [left, description] {
+        auto camera = std::make_unique<ScriptedCamera>(left->front(), description);
+        if (left->size() > 1) left->erase(left->begin());
+        return camera;
+    };
+}
+
+std::deque<ScriptedStep> frames(const std::vector<std::uint64_t>& wire_ids) {
+    std::deque<ScriptedStep> steps;
+    for (const std::uint64_t id : wire_ids)
+        steps.push_back(arrives(scripted_frame(id, 5 * static_cast<std::int64_t>(id))));
+    return steps;
+}
+
+/// Waits for the next event of that kind, past those where nothing happened.
+template <typename Event>
+Event wait_for(CaptureSession& session) {
+    const auto end = std::chrono::steady_clock::now() + kLong;
+    while (std::chrono::steady_clock::now() < end) {
+        auto event = session.next(50ms);
+        if (auto* wanted = std::get_if<Event>(&event)) return std::move(*wanted);
+        if (!std::holds_alternative<NoFrame>(event)) {
+            ADD_FAILURE() << "another event came first, of kind " << event.index();
+            return {};
+        }
+    }
+    ADD_FAILURE() << "nothing came";
+    return {};
+}
+
+FrameRecord next_record(CaptureSession& session) {
+    return wait_for<CapturedFrame>(session).record;
+}
+
+CapturedFrame incomplete(std::uint64_t wire_id, bool with_holes = true) {
+    CapturedFrame frame = scripted_frame(wire_id);
+    frame.record.status = FrameStatus::kMissingPackets;
+    if (with_holes) frame.holes = {{0, 4}};
+    return frame;
+}
+
+std::uint64_t lost(const CaptureSession& session, GapCause cause) {
+    return session.totals().lost[static_cast<std::size_t>(cause)];
+}
+
+TEST(CaptureSessionTest, FramesThatFollowEachOtherHaveNoGap) {
+    CaptureSession session(plays({frames({65534, 65535, 1, 2})}), {});
+    for (std::uint64_t id = 0; id < 4; ++id) {
+        const FrameRecord record = next_record(session);
+        EXPECT_EQ(record.id, id);
+        EXPECT_EQ(record.lost_before, 0U);
+        EXPECT_EQ(record.cause, GapCause::kNone);
+        EXPECT_EQ(record.epoch, 0U);
+    }
+    EXPECT_EQ(session.totals().frames, 4U);
+}
+
+TEST(CaptureSessionTest, IdsThatNothingExplainsWereLeftOutByTheCamera) {
+    CaptureSession session(plays({frames({1, 5})}), {});
+    static_cast<void>(next_record(session));
+    const FrameRecord record = next_record(session);
+    EXPECT_EQ(record.id, 4U);
+    EXPECT_EQ(record.lost_before, 3U);
+    EXPECT_EQ(record.cause, GapCause::kDevice);
+    EXPECT_EQ(lost(session, GapCause::kDevice), 3U);
+}
+
+TEST(CaptureSessionTest, TheCauseOfAGapIsWhatTheTransportCountedMeanwhile) {
+    struct Case {
+        TransportCounts counts;
+        GapCause cause;
+    };
+    for (const Case& one : {Case{{.underruns = 1}, GapCause::kHostUnderrun},
+                            Case{{.packets_missing = 7}, GapCause::kTransport},
+                            Case{{.socket_drops = 2}, GapCause::kTransport},
+                            Case{{.link_faults = 1}, GapCause::kTransport},
+                            Case{{.underruns = 1, .socket_drops = 1}, GapCause::kHostUnderrun},
+                            Case{{.packets_resent = 9}, GapCause::kDevice}}) {
+        CaptureSession session(
+            plays({{arrives(scripted_frame(1)), arrives(scripted_frame(3), one.counts)}}), {});
+        static_cast<void>(next_record(session));
+        EXPECT_EQ(next_record(session).cause, one.cause);
+        EXPECT_EQ(lost(session, one.cause), 1U);
+    }
+}
+
+TEST(CaptureSessionTest, PacketsOfAFrameThatArrivedIncompleteExplainNoOtherFrame) {
+    const TransportCounts missing{.packets_missing = 2};
+    CaptureSession session(plays({{arrives(scripted_frame(1)), arrives(incomplete(2), missing),
+                                   arrives(scripted_frame(4), missing)}}),
+                           {});
+    for (int i = 0; i < 2; ++i) static_cast<void>(next_record(session));
+    EXPECT_EQ(next_record(session).cause, GapCause::kDevice);
+}
+
+TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
+    const std::deque<ScriptedStep> script{arrives(scripted_frame(1)), arrives(incomplete(2)),
+                                          arrives(incomplete(3, false)),
+                                          arrives(scripted_frame(4))};
+    struct Case {
+        IncompletePolicy policy;
+        std::uint64_t frames;
+        std::uint64_t dropped;
+    };
+    for (const Case& one :
+         {Case{IncompletePolicy::kDrop, 2, 2}, Case{IncompletePolicy::kMask, 3, 1},
+          Case{IncompletePolicy::kKeep, 4, 0}}) {
+        SCOPED_TRACE(static_cast<int>(one.policy));
+        CaptureSession session(plays({script}), {.incomplete = one.policy});
+        std::uint64_t previous = next_record(session).id;
+        for (std::uint64_t i = 1; i < one.frames; ++i) {
+            const CapturedFrame frame = wait_for<CapturedFrame>(session);
+            EXPECT_EQ(frame.record.id, previous + 1 + frame.record.lost_before);
+            EXPECT_EQ(frame.record.cause,
+                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kOwnDrop);
+            EXPECT_EQ(frame.holes.empty(), one.policy == IncompletePolicy::kKeep ||
+                                               frame.record.status == FrameStatus::kComplete);
+            previous = frame.record.id;
+        }
+        EXPECT_EQ(previous, 3U);
+        EXPECT_EQ(lost(session, GapCause::kOwnDrop), one.dropped);
+        EXPECT_EQ(session.totals().frames, one.frames);
+        EXPECT_EQ(session.totals().incomplete, one.frames - 2);
+    }
+}
+
+TEST(CaptureSessionTest, AFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
+    CaptureSession session(plays({frames({1, 3, 4})}), {});
+    static_cast<void>(next_record(session));
+    session.count_own_drop(next_record(session));
+    const FrameRecord record = next_record(session);
+    EXPECT_EQ(record.id, 3U);
+    EXPECT_EQ(record.lost_before, 2U);  // one of the camera, one of ours
+    EXPECT_EQ(lost(session, GapCause::kDevice), 1U);
+    EXPECT_EQ(lost(session, GapCause::kOwnDrop), 1U);
+    EXPECT_EQ(session.totals().frames, 2U);
+}
+
+TEST(CaptureSessionTest, AnotherLayoutBeginsAnEpoch) {
+    CapturedFrame wide = scripted_frame(2);
+    wide.record.layout = scripted_layout(8);
+    CaptureSession session(plays({{arrives(scripted_frame(1)), arrives(wide)}}), {});
+    EXPECT_EQ(next_record(session).epoch, 0U);
+    EXPECT_EQ(next_record(session).epoch, 1U);
+    EXPECT_EQ(session.layout().width, 8);
+}
+
+TEST(CaptureSessionTest, ACameraThatFallsSilentIsOpenedAnew) {
+    CaptureSession session(plays({frames({100, 101, 102}), frames({1, 2})}), {.stall = 20ms});
+    for (int i = 0; i < 3; ++i) static_cast<void>(next_record(session));
+    const auto outage = wait_for<Outage>(session);
+    EXPECT_NE(outage.reason.find("nothing came for"), std::string::npos);
+    EXPECT_GE(wait_for<Recovery>(session).gone_s, 0.02);
+    const FrameRecord record = next_record(session);
+    EXPECT_EQ(record.epoch, 1U);
+    EXPECT_EQ(record.wire_id, 1U);
+    EXPECT_EQ(next_record(session).epoch, 1U);
+    EXPECT_EQ(session.totals().outages, 1U);
+}
+
+TEST(CaptureSessionTest, FramesOfAnOutageAreEstimatedFromTheFramePeriod) {
+    CameraDescription camera;
+    camera.features["AcquisitionFrameRate"] = "100";  // 10 ms
+    CaptureSession session(plays({{arrives(scripted_frame(7, 0)), is_lost("unplugged")},
+                                  {arrives(scripted_frame(1, 500))}},
+                                 camera),
+                           {});
+    EXPECT_EQ(next_record(session).id, 0U);
+    EXPECT_EQ(wait_for<Outage>(session).reason, "unplugged");
+    static_cast<void>(wait_for<Recovery>(session));
+    const FrameRecord record = next_record(session);
+    EXPECT_EQ(record.lost_before, 49U);  // 500 ms / 10 ms - 1
+    EXPECT_EQ(record.id, 50U);
+    EXPECT_EQ(record.cause, GapCause::kReconnect);
+    EXPECT_EQ(lost(session, GapCause::kReconnect), 49U);
+}
+
+TEST(CaptureSessionTest, ASlowCameraIsNotTakenForASilentOne) {
+    CameraDescription camera;
+    camera.features["AcquisitionFrameRate"] = "0.01";  // five periods: 500 s
+    std::deque<ScriptedStep> script = frames({1});
+    CaptureSession session(plays({script}, camera), {.stall = 1ms});
+    static_cast<void>(next_record(session));
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(session.next(50ms)));
+}
+
+TEST(CaptureSessionTest, ACameraThatWaitsForTriggersMayBeSilent) {
+    CameraDescription camera;
+    camera.features["TriggerMode"] = "On";
+    CaptureSession session(plays({frames({1})}, camera), {.stall = 1ms, .first_frame = 1ms});
+    static_cast<void>(next_record(session));
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(session.next(30ms)));
+}
+
+TEST(CaptureSessionTest, WithoutReconnectionALostCameraEndsTheSession) {
+    CaptureSession session(plays({{is_lost("unplugged")}}), {.reconnect = false});
+    EXPECT_EQ(wait_for<DeviceLost>(session).reason, "unplugged");
+}
+
+TEST(CaptureSessionTest, ACameraThatCannotBeOpenedYetIsTriedAgain) {
+    std::atomic<int> tries = 0;
+    const auto first = plays({{is_lost("unplugged")}});
+    const auto later = plays({frames({1})});
+    CaptureSession session(
+        [&]() -> std::unique_ptr<Camera> {
+            const int now = tries++;
+            if (now == 0) return first();
+            if (now < 3) throw DeviceError("camera", "is not there");
+            return later();
+        },
+        {});
+    static_cast<void>(wait_for<Outage>(session));
+    static_cast<void>(wait_for<Recovery>(session));
+    EXPECT_EQ(tries, 4);
+    EXPECT_EQ(next_record(session).epoch, 1U);
+}
+
+TEST(CaptureSessionTest, ClosingADeadCameraHoldsNothingUp) {
+    // Its end comes after the new camera's first frame has.
+    std::promise<void> got_frame;
+    const auto wait_for_frame = got_frame.get_future().share();
+    std::atomic<int> opened = 0;
+    {
+        CaptureSession session(
+            [&]() -> std::unique_ptr<Camera> {
+                if (opened++ > 0) return std::make_unique<ScriptedCamera>(frames({1}));
+                auto dead = std::make_unique<ScriptedCamera>(
+                    std::deque<ScriptedStep>{is_lost("unplugged")});
+                dead->on_close = [&] { wait_for_frame.wait_for(kLong); };
+                return dead;
+            },
+            {});
+        static_cast<void>(wait_for<Outage>(session));
+        static_cast<void>(wait_for<Recovery>(session));
+        static_cast<void>(next_record(session));
+        got_frame.set_value();
+    }
+    EXPECT_EQ(opened, 2);
+}
+
+TEST(CaptureSessionTest, ASessionCanEndDuringAnOutage) {
+    std::atomic<int> opened = 0;
+    CaptureSession session(
+        [&]() -> std::unique_ptr<Camera> {
+            if (opened++ > 0) throw DeviceError("camera", "is not there");
+            return std::make_unique<ScriptedCamera>(std::deque<ScriptedStep>{is_lost("unplugged")});
+        },
+        {});
+    static_cast<void>(wait_for<Outage>(session));
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(session.next(1ms)));
+}
+
+}  // namespace
+}  // namespace stipple
