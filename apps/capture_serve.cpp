@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/capture_commands.h"
+#include "apps/fault_arguments.h"
+#include "apps/footage_arguments.h"
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/served_source.h"
+#include "apps/timing_arguments.h"
+#include "capture/gige_server.h"
+
+namespace stipple {
+namespace {
+
+struct ServeOptions {
+    ServedSourceChoice source;
+    GigeServerOptions server;
+};
+
+nlohmann::ordered_json counts_json(const GigeServerCounts& counts) {
+    return {{"starts", counts.starts},
+            {"frames", counts.frames},
+            {"late_frames", counts.late_frames},
+            {"packets", counts.packets},
+            {"packets_resent", counts.packets_resent}};
+}
+
+std::string ready_text(const FrameSource& source, const GigeServerOptions& options) {
+    const ServedImage& image = source.image();
+    return fmt::format("READY gige:{} {} x {} {} at {:g} frames/s", options.address, image.width,
+                       image.height, image.formats.front()->name, image.frames_per_s);
+}
+
+void serve(const ServeOptions& options, const RunOptions& run) {
+    const auto source = open_served_source(options.source);
+    GigeServerOptions settings = options.server;
+    settings.model = source->image().coded_header.empty() ? "Recording" : "Coded sensor";
+    settings.version = STIPPLE_VERSION;
+    JsonFile json(run);
+    GigeServer server(*source, settings);
+    fmt::print("{}\n", ready_text(*source, settings));
+    std::fflush(stdout);
+    server.run([] { return stop_signal() != 0; });
+    json.write(counts_json(server.counts()));
+}
+
+void add_source_arguments(CLI::App& command, ServedSourceChoice& source) {
+    command
+        .add_option("SOURCE", source.path,
+                    "footage, or in mode frames a recording of `capture record`")
+        ->required();
+    command.add_option("--mode", source.mode, "frames as they are, or the samples of a sensor")
+        ->check(CLI::IsMember({"frames", "coded"}))
+        ->type_name("frames|coded");
+    command
+        .add_option("--fps", source.frames_per_s,
+                    "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
+        ->check(CLI::Range(0.01, 100000.0))
+        ->type_name("N");
+    command.add_option("--format", source.format, "pixel format of footage (Mono8)")
+        ->type_name("NAME");
+    command.add_option("--sensor", source.sensor.sensor, "sensor of mode coded (paper)")
+        ->type_name("NAME|FILE");
+    command.add_option("--schedule", source.sensor.schedule, "schedule of mode coded (random)")
+        ->type_name("NAME|FILE");
+    command
+        .add_option("--set", source.sensor.settings,
+                    "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command.add_option("--seed", source.sensor.seed, "of noise and schedule (1)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
+    add_footage_arguments(command, source.reading);
+    add_max_value(command, source.reading.max_value);
+    add_overrun(command, source.sensor.overrun);
+}
+
+}  // namespace
+
+void add_capture_serve(CLI::App& capture, Action& action) {
+    auto* command = capture.add_subcommand("serve", "Frames or a coded stream as a GigE camera");
+    const auto options = std::make_shared<ServeOptions>();
+    add_source_arguments(*command, options->source);
+    command->add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
+        ->type_name("IP");
+    command->add_option("--serial", options->server.serial, "serial number (1)")->type_name("TEXT");
+    command->add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
+    add_fault_arguments(*command, options->server);
+    command->footer(
+        "Examples:\n"
+        "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
+        "  stipple capture serve scene --mode coded --address 127.0.0.2");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { serve(*options, run); };
+    });
+}
+
+}  // namespace stipple

@@ -1,0 +1,30 @@
+#include "apps/served_source.h"
+
+#include <fmt/format.h>
+
+#include "capture/footage_frames.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+constexpr double kFramesPerS = 25;
+
+std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
+    const PixelFormat* format = nullptr;
+    if (!choice.format.empty()) {
+        format = pixel_format_named(choice.format);
+        if (format == nullptr)
+            throw InputError("--format " + choice.format, "is no pixel format that is known");
+    }
+    return std::make_unique<FootageFrames>(choice.path, choice.reading,
+                                           choice.frames_per_s.value_or(kFramesPerS), format);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
+    return open_footage(choice);
+}
+
+}  // namespace stipple

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/sensor_setup.h"
+#include "capture/frame_source.h"
+#include "core/footage_reader.h"
+
+namespace stipple {
+
+/// What `capture serve` shall serve.
+struct ServedSourceChoice {
+    std::string path;
+    std::string mode = "frames";  ///< or "coded"
+    std::optional<double> frames_per_s;
+    std::string format;  ///< of footage in mode frames; empty: Mono8
+    FootageOptions reading;
+    SensorChoice sensor;  ///< of mode coded
+};
+
+/// \throws InputError naming what cannot be used.
+[[nodiscard]] std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice);
+
+}  // namespace stipple
