@@ -28,6 +28,8 @@ using std::chrono::nanoseconds;
 constexpr int kPollMs = 100;
 constexpr int kSendBufferBytes = 8 << 20;
 constexpr std::uint32_t kLimitedBroadcast = 0xFFFFFFFF;
+/// Begin of a MAC address that is given out locally, not by a maker; the IPv4 address follows.
+constexpr std::uint64_t kLocalMac = 0x0253;
 /// A stream that is late by more is not hurried: its due times move on.
 constexpr int kMostPeriodsBehind = 8;
 
@@ -113,7 +115,7 @@ GigeServer::Impl::Impl(FrameSource& frames, const GigeServerOptions& settings)
       sender(data, options.faults),
       device({.address = address,
               .netmask = interface.netmask,
-              .mac = interface.mac != 0 ? interface.mac : 0x020000000000U | (address & 0xFFFFFFU),
+              .mac = kLocalMac << 32U | address,
               .model = options.model,
               .version = options.version,
               .serial = options.serial,

@@ -4,7 +4,6 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
-#include <netpacket/packet.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -54,18 +53,6 @@ InterfaceList interfaces() {
     return {list, &freeifaddrs};
 }
 
-std::uint64_t mac_of(const ifaddrs* list, const char* name) {
-    for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
-        if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_PACKET) continue;
-        if (std::string_view(at->ifa_name) != name) continue;
-        const auto& link = *reinterpret_cast<const sockaddr_ll*>(at->ifa_addr);
-        std::uint64_t mac = 0;
-        for (int i = 0; i < 6; ++i) mac = mac << 8U | link.sll_addr[i];
-        return mac;
-    }
-    return 0;
-}
-
 /// The interface by which a datagram came in.
 int interface_in(msghdr& message) {
     for (cmsghdr* control = CMSG_FIRSTHDR(&message); control != nullptr;
@@ -96,8 +83,7 @@ std::optional<NetworkInterface> interface_of(std::uint32_t address) {
         const std::uint32_t own = address_of(at->ifa_addr);
         const std::uint32_t mask = address_of(at->ifa_netmask);
         if (own == 0 || (own & mask) != (address & mask)) continue;
-        return NetworkInterface{at->ifa_name, static_cast<int>(if_nametoindex(at->ifa_name)), mask,
-                                mac_of(list.get(), at->ifa_name)};
+        return NetworkInterface{at->ifa_name, static_cast<int>(if_nametoindex(at->ifa_name)), mask};
     }
     return {};
 }

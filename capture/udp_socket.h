@@ -25,7 +25,6 @@ struct NetworkInterface {
     std::string name;
     int index = 0;
     std::uint32_t netmask = 0xFFFFFF00;
-    std::uint64_t mac = 0;
 };
 
 /// The interface whose network `address` lies in; nothing if there is none.
