@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <map>
 
 #include "capture/gige_registers.h"
@@ -62,7 +64,7 @@ class GigeServerTest : public ::testing::Test {
     }
     std::size_t whole() const {
         std::size_t count = 0;
-        for (const auto& [id, block] : blocks_) count += block.is_whole() ? 1 : 0;
+        for (const auto& [id, block] : blocks_) count += block.is_whole() ? 1U : 0U;
         return count;
     }
 
@@ -75,7 +77,10 @@ class GigeServerTest : public ::testing::Test {
 };
 
 TEST_F(GigeServerTest, AnswersADiscoveryWithItsAddressAndNames) {
-    open({.model = "Chip", .serial = "ab12"});
+    GigeServerOptions options;
+    options.model = "Chip";
+    options.serial = "ab12";
+    open(options);
     const auto answer = client_->ask(GvcpCode::kDiscovery, {});
     ASSERT_TRUE(answer);
     ASSERT_EQ(answer->content.size(), 0xF8U);
@@ -204,7 +209,9 @@ TEST_F(GigeServerTest, MultiFrameEndsByItselfAndCanStartAgain) {
 }
 
 TEST_F(GigeServerTest, RepeatedFramesGoOnCounting) {
-    open({.repeat = true});
+    GigeServerOptions options;
+    options.repeat = true;
+    open(options);
     start();
     ASSERT_TRUE(receive_until([&] { return whole() == 45; }));
     EXPECT_EQ(blocks_[41].payload(), source_.bytes(0, *pixel_format_named("Mono8")));

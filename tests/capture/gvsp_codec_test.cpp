@@ -54,7 +54,7 @@ TEST(GvspCodecTest, ChunksAreAnnouncedInLeaderAndTrailer) {
 }
 
 TEST(GvspCodecTest, PiecesMakeUpThePayload) {
-    for (const std::size_t bytes : {1, 3, 4, 5, 8, 1001}) {
+    for (const std::size_t bytes : {1U, 3U, 4U, 5U, 8U, 1001U}) {
         const GvspBlock block = block_of(bytes, 4);
         Bytes payload;
         for (std::uint32_t i = 1; i + 1 < block.packets(); ++i) {
@@ -87,7 +87,7 @@ TEST(GvspCodecTest, BlockIdsSkipZeroAndWrap) {
 }
 
 TEST(GvspCodecTest, ATestPacketFillsItsSize) {
-    for (const std::size_t size : {36, 128, 1500, 9000})
+    for (const std::size_t size : {36U, 128U, 1500U, 9000U})
         EXPECT_EQ(gvsp_test_packet(size).size(), size - 28);
 }
 

@@ -34,7 +34,7 @@ TEST(GvspFaultsTest, SharesAreKeptAndRepeatable) {
     for (std::uint64_t frame = 0; frame < 100; ++frame) {
         const Packets order = packets_to_send(faults, frame, 1000);
         EXPECT_EQ(order, packets_to_send(faults, frame, 1000));
-        for (std::size_t i = 1; i < order.size(); ++i) twice += order[i] == order[i - 1] ? 1 : 0;
+        for (std::size_t i = 1; i < order.size(); ++i) twice += order[i] == order[i - 1] ? 1U : 0U;
         sent += order.size();
     }
     const double dropped = 100000.0 - static_cast<double>(sent - twice);
