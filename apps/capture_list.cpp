@@ -23,11 +23,11 @@ nlohmann::ordered_json search_json(const CameraSearch& search) {
 }
 
 std::string search_text(const CameraSearch& search) {
-    std::string text = search.cameras.empty() ? "no camera found\n" : "";
+    std::string text = search.cameras.empty() ? "no camera found" : "";
     for (const CameraListing& camera : search.cameras)
-        text += fmt::format("{:<28} {:<12} {} {} {}\n", camera.address, camera.transport,
-                            camera.vendor, camera.model, camera.serial);
-    for (const std::string& problem : search.problems) text += fmt::format("! {}\n", problem);
+        text += fmt::format("{}{:<28} {:<12} {} {} {}", text.empty() ? "" : "\n", camera.address,
+                            camera.transport, camera.vendor, camera.model, camera.serial);
+    for (const std::string& problem : search.problems) text += fmt::format("\n{}", problem);
     return text;
 }
 

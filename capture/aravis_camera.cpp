@@ -5,6 +5,7 @@
 
 #include "capture/aravis_device.h"
 #include "capture/aravis_stream.h"
+#include "capture/recording_format.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -19,6 +20,10 @@ std::string formats_we_read() {
     for (const PixelFormat& format : pixel_formats())
         text += fmt::format("{}{}", text.empty() ? "" : ", ", format.name);
     return text;
+}
+
+std::uint64_t hash_of(const std::string& text) {
+    return payload_hash(std::vector<std::uint8_t>(text.begin(), text.end()));
 }
 
 int read_int(const AravisDevice& device, const char* feature, int fallback) {
@@ -72,7 +77,8 @@ class AravisCamera : public Camera {
             if (!gain_) gain_ = device_.read_number(name);
         for (const auto* name : {"BlackLevel", "BlackLevelRaw"})
             if (!black_level_dn_) black_level_dn_ = device_.read_number(name);
-        features_ = device_.features();
+        features_ = all_features(settings);
+        xml_hash_ = fmt::format("{:016x}", hash_of(device_.genicam_xml()));
     }
 
     [[nodiscard]] CameraDescription description() const override;
@@ -91,8 +97,26 @@ class AravisCamera : public Camera {
     std::optional<double> exposure_us_;
     std::optional<double> gain_;
     std::optional<double> black_level_dn_;
+    [[nodiscard]] std::map<std::string, std::string> all_features(
+        const CameraSettings& settings) const;
+
     std::map<std::string, std::string> features_;
+    std::string xml_hash_;
 };
+
+/// Those that the camera lists, and those that it has without listing them.
+std::map<std::string, std::string> AravisCamera::all_features(
+    const CameraSettings& settings) const {
+    std::map<std::string, std::string> found = device_.features();
+    const auto add = [&](const std::string& name) {
+        if (const auto value = device_.read(name)) found.emplace(name, *value);
+    };
+    for (const auto* name : {"AcquisitionFrameRate", "ExposureTime", "Gain", "GainRaw", "GainAuto",
+                             "BlackLevel", "TriggerMode"})
+        add(name);
+    for (const auto& [name, value] : settings) add(name);
+    return found;
+}
 
 CameraDescription AravisCamera::description() const {
     const auto read = [&](const char* name) { return device_.read(name).value_or(""); };
@@ -105,6 +129,7 @@ CameraDescription AravisCamera::description() const {
     if (text.serial.empty()) text.serial = read("DeviceID");
     text.firmware = read("DeviceFirmwareVersion");
     if (text.firmware.empty()) text.firmware = read("DeviceVersion");
+    text.genicam_xml_hash = xml_hash_;
     text.features = features_;
     text.transport_facts = stream_->facts();
     text.transport_facts["aravis"] = fmt::format("{}.{}.{}", arv_get_major_version(),

@@ -109,6 +109,7 @@ struct CaptureSession::Impl {
     bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
 
     Clock::time_point last_sign;             ///< start, or the last frame
+    nanoseconds period_before{};             ///< of the epoch before
     std::optional<FrameRecord> first_frame;  ///< of this epoch
     std::optional<FrameRecord> last_frame;
 
@@ -153,6 +154,7 @@ std::optional<nanoseconds> CaptureSession::Impl::patience() const {
 }
 
 SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
+    period_before = period();
     count_transport(true);
     earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
     ++totals.outages;
@@ -185,7 +187,7 @@ void CaptureSession::Impl::count_transport(bool now) {
 void CaptureSession::Impl::note_reconnection(const FrameRecord& record) {
     ++epoch;
     std::uint64_t missed = 0;
-    const std::int64_t period_ns = nominal_period(description).count();
+    const std::int64_t period_ns = period_before.count();
     if (last_frame && period_ns > 0) {
         const std::int64_t silent_ns = record.host_monotonic_ns - last_frame->host_monotonic_ns;
         missed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, silent_ns / period_ns - 1));

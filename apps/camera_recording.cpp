@@ -1,0 +1,189 @@
+#include "apps/camera_recording.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/progress.h"
+#include "capture/open_camera.h"
+#include "capture/recording_writer.h"
+#include "core/error.h"
+#include "core/pending_output.h"
+
+namespace stipple {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// How often a signal is looked for.
+constexpr milliseconds kPatience{100};
+
+std::int64_t realtime_ns() {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// `output`, or a file in it that is named by the time.
+std::filesystem::path file_for(const std::string& output) {
+    const std::filesystem::path path(output);
+    if (!std::filesystem::is_directory(path)) return path;
+    return path / fmt::format("{:%Y%m%d_%H%M%S}.strec", fmt::gmtime(std::time(nullptr)));
+}
+
+SessionRecord session_record(const CameraDescription& camera, const CameraSettings& settings) {
+    SessionRecord record;
+    record.camera = camera;
+    record.settings = settings;
+    record.host = host_facts();
+    record.host["stipple"] = STIPPLE_VERSION;
+    record.started_realtime_ns = realtime_ns();
+    return record;
+}
+
+/// A recording at work, and what it has come to.
+class CameraRecording {
+  public:
+    CameraRecording(const CameraRecordingArguments& arguments, const RunOptions& run)
+        : arguments_(arguments),
+          output_(file_for(arguments.output), run.force),
+          settings_(camera_settings(arguments.camera)),
+          session_([this] { return open(); }, arguments.session),
+          writer_(output_.partial(), session_record(session_.description(), settings_),
+                  output_.final_path().string()) {
+        for (const std::string& warning : session_.description().warnings)
+            fmt::print(stderr, "stipple: {}\n", warning);
+    }
+
+    void run(const RunOptions& run);
+    void finish();
+    [[nodiscard]] nlohmann::ordered_json json() const;
+    [[nodiscard]] std::string text() const;
+
+  private:
+    [[nodiscard]] std::unique_ptr<Camera> open() const {
+        return open_camera(arguments_.camera.address, settings_, arguments_.camera.buffers);
+    }
+    [[nodiscard]] bool wants_more(double seconds) const;
+    void take(CapturedFrame frame);
+    void take(const NoFrame&) {}
+    void take(const Outage& outage) {
+        fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n", outage.reason);
+    }
+    void take(const Recovery& recovery) {
+        fmt::print(stderr, "stipple: the camera is back after {:.1f} s\n", recovery.gone_s);
+    }
+    void take(const DeviceLost& lost) { end_reason_ = fmt::format("camera lost: {}", lost.reason); }
+
+    const CameraRecordingArguments& arguments_;
+    PendingOutput output_;
+    CameraSettings settings_;
+    CaptureSession session_;
+    RecordingWriter writer_;
+    std::string end_reason_;
+    std::optional<DeviceError> failure_;
+    double seconds_ = 0;
+};
+
+bool CameraRecording::wants_more(double seconds) const {
+    return end_reason_.empty() && stop_signal() == 0 &&
+           (arguments_.frames == 0 || writer_.totals().frames < arguments_.frames) &&
+           (arguments_.seconds == 0 || seconds < arguments_.seconds);
+}
+
+void CameraRecording::take(CapturedFrame frame) {
+    try {
+        writer_.write(frame);
+    } catch (const DeviceError& e) {
+        session_.count_own_drop(frame.record);
+        end_reason_ = e.what();
+        failure_ = e;
+    }
+}
+
+void CameraRecording::run(const RunOptions& run) {
+    const auto total = arguments_.frames == 0
+                           ? std::nullopt
+                           : std::optional(static_cast<std::int64_t>(arguments_.frames));
+    Progress progress(run, "recording", total);
+    while (wants_more(progress.seconds())) {
+        std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
+                   session_.next(kPatience));
+        progress.reach(static_cast<double>(writer_.totals().frames));
+    }
+    seconds_ = progress.seconds();
+}
+
+void CameraRecording::finish() {
+    RecordingEnd end;
+    end.reason = end_reason_.empty() ? "stopped" : end_reason_;
+    end.lost = session_.totals().lost;
+    end.transport = session_.transport();
+    try {
+        writer_.finish(end);
+    } catch (const DeviceError& e) {
+        if (!failure_) failure_ = e;
+    }
+    if (writer_.totals().frames > 0)
+        output_.commit();
+    else
+        throw_if_stopped();
+    if (failure_) throw DeviceError(*failure_);
+    if (!end_reason_.empty()) throw DeviceError(arguments_.camera.address, end_reason_);
+}
+
+nlohmann::ordered_json CameraRecording::json() const {
+    const RecordingEnd totals = writer_.totals();
+    const TransportCounts transport = session_.transport();
+    nlohmann::ordered_json lost;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        lost[std::string(kGapCauseNames[i])] = session_.totals().lost[i];
+    return {{"file", output_.final_path().string()},
+            {"frames", totals.frames},
+            {"incomplete", totals.incomplete},
+            {"lost", lost},
+            {"outages", session_.totals().outages},
+            {"transport",
+             {{"underruns", transport.underruns},
+              {"packets_resent", transport.packets_resent},
+              {"packets_missing", transport.packets_missing},
+              {"socket_drops", transport.socket_drops},
+              {"link_faults", transport.link_faults},
+              {"size_mismatches", transport.size_mismatches}}},
+            {"payload_bytes", totals.payload_bytes},
+            {"seconds", seconds_},
+            {"frames_per_s", static_cast<double>(totals.frames) / seconds_}};
+}
+
+std::string CameraRecording::text() const {
+    const RecordingEnd totals = writer_.totals();
+    std::string text =
+        fmt::format("{}: {} frames, {:.1f} per second, {:.1f} MB", output_.final_path().string(),
+                    totals.frames, static_cast<double>(totals.frames) / seconds_,
+                    static_cast<double>(totals.payload_bytes) * 1e-6);
+    if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
+    std::string lost;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        if (const auto frames = session_.totals().lost[i]; frames > 0)
+            lost += fmt::format("{}{} {}", lost.empty() ? "" : ", ", frames, kGapCauseNames[i]);
+    return fmt::format("{}\nlost: {}", text, lost.empty() ? "none" : lost);
+}
+
+}  // namespace
+
+void record_camera(const CameraRecordingArguments& arguments, const RunOptions& run) {
+    JsonFile json(run);
+    CameraRecording recording(arguments, run);
+    recording.run(run);
+    recording.finish();
+    json.write(recording.json());
+    run.say(recording.text());
+}
+
+}  // namespace stipple

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/camera_arguments.h"
+#include "apps/run_options.h"
+#include "capture/capture_session.h"
+
+namespace stipple {
+
+/// What `stipple capture record` was asked for.
+struct CameraRecordingArguments {
+    CameraArguments camera;
+    SessionOptions session;
+    std::string output;        ///< file, or a folder in which a file named by the time is made
+    std::uint64_t frames = 0;  ///< 0: until stopped
+    double seconds = 0;        ///< 0: until stopped
+};
+
+/// Records a camera until the frames or seconds are reached, a signal asks to stop, or the camera
+/// is lost for good, and says what became of every frame. What was recorded is kept whatever
+/// happens. \throws InputError, DeviceError (after the recording was put in place, if frames are in
+/// it).
+void record_camera(const CameraRecordingArguments& arguments, const RunOptions& run);
+
+}  // namespace stipple

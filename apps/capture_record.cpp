@@ -1,0 +1,35 @@
+#include <CLI/CLI.hpp>
+
+#include "apps/camera_recording.h"
+#include "apps/capture_commands.h"
+#include "apps/session_arguments.h"
+
+namespace stipple {
+
+void add_capture_record(CLI::App& capture, Action& action) {
+    auto* command = capture.add_subcommand("record", "Record a camera, every frame accounted for");
+    const auto options = std::make_shared<CameraRecordingArguments>();
+    add_camera_arguments(*command, options->camera);
+    command
+        ->add_option("-o,--output", options->output,
+                     "recording, or a folder for one that is named by the time")
+        ->type_name("FILE|DIR")
+        ->required();
+    command->add_option("--frames", options->frames, "stop after so many (until Ctrl-C)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+    command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    add_session_arguments(*command, options->session);
+    command->footer(
+        "Examples:\n"
+        "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
+        "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
+        "      --set PixelFormat=Mono12p --set ExposureTime=2000");
+    command->callback([options, &action] {
+        action = [options](const RunOptions& run) { record_camera(*options, run); };
+    });
+}
+
+}  // namespace stipple
