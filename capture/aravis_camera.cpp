@@ -3,6 +3,8 @@
 #include <arv.h>
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "capture/aravis_device.h"
 #include "capture/aravis_stream.h"
 #include "capture/recording_format.h"
@@ -57,6 +59,18 @@ FrameLayout layout_of(const AravisDevice& device) {
     return layout;
 }
 
+/// The packet size of a GigE Vision camera is a register of the standard, feature or not.
+constexpr std::string_view kPacketSize = "GevSCPSPacketSize";
+
+int packet_bytes_of(const std::string& address, const std::string& text) {
+    int bytes = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
+    if (error != std::errc() || end != text.data() + text.size() || bytes < 220 || bytes > 65500)
+        throw InputError(fmt::format("{}: {}", address, kPacketSize),
+                         fmt::format("\"{}\" is no number from 220 to 65500", text));
+    return bytes;
+}
+
 class AravisCamera : public Camera {
   public:
     AravisCamera(const std::string& address, const CameraSettings& settings,
@@ -69,8 +83,16 @@ class AravisCamera : public Camera {
                                           "some seconds if it has crashed",
                                           who.empty() ? "" : fmt::format(" ({})", who)));
         }
-        apply_settings(device_, settings);
-        stream_ = std::make_unique<AravisStream>(device_, layout_of(device_), buffers);
+        CameraSettings features;
+        std::optional<int> packet_bytes;
+        for (const auto& setting : settings)
+            if (setting.first == kPacketSize && device_.is_gige())
+                packet_bytes = packet_bytes_of(address, setting.second);
+            else
+                features.push_back(setting);
+        apply_settings(device_, features);
+        stream_ =
+            std::make_unique<AravisStream>(device_, layout_of(device_), buffers, packet_bytes);
         for (const auto* name : {"ExposureTime", "ExposureTimeAbs"})
             if (!exposure_us_) exposure_us_ = device_.read_number(name);
         for (const auto* name : {"Gain", "GainRaw"})

@@ -86,8 +86,8 @@ struct AravisStream::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    void create();
-    void set_packet_size();
+    void create(std::optional<int> packet_bytes);
+    void set_packet_size(std::optional<int> wanted);
     void set_socket_buffer();
     void push_buffers();
     void reuse(ArvBuffer* buffer) const;
@@ -104,8 +104,8 @@ AravisStream::Impl::~Impl() {
     g_clear_object(&chunks);
 }
 
-void AravisStream::Impl::create() {
-    if (device.is_gige()) set_packet_size();
+void AravisStream::Impl::create(std::optional<int> packet_bytes) {
+    if (device.is_gige()) set_packet_size(packet_bytes);
     GError* error = nullptr;
     stream = arv_camera_create_stream(camera, stamp, nullptr, &error);
     if (stream == nullptr) {
@@ -121,15 +121,18 @@ void AravisStream::Impl::create() {
     push_buffers();
 }
 
-void AravisStream::Impl::set_packet_size() {
+void AravisStream::Impl::set_packet_size(std::optional<int> wanted) {
     const auto interface = interface_towards(device.address().substr(5));
     const auto before = arv_camera_gv_get_packet_size(camera, nullptr);
-    auto size = arv_camera_gv_auto_packet_size(camera, nullptr);
     // A camera that answers no test packets keeps its size; on loopback no switch is in between.
-    if (interface && interface->is_loopback && size <= before) {
-        arv_camera_gv_set_packet_size(camera, kLoopbackPacketBytes, nullptr);
-        size = arv_camera_gv_get_packet_size(camera, nullptr);
+    if (!wanted && arv_camera_gv_auto_packet_size(camera, nullptr) <= before && interface &&
+        interface->is_loopback)
+        wanted = kLoopbackPacketBytes;
+    if (wanted) {
+        arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
+        arv_camera_gv_set_packet_size(camera, *wanted, nullptr);
     }
+    const auto size = arv_camera_gv_get_packet_size(camera, nullptr);
     facts["packet_bytes"] = fmt::format("{}", size);
     if (!interface) return;
     facts["interface"] = interface->name;
@@ -270,9 +273,9 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
 }
 
 AravisStream::AravisStream(AravisDevice& device, const FrameLayout& layout,
-                           const CameraBuffers& buffers)
+                           const CameraBuffers& buffers, std::optional<int> packet_bytes)
     : impl_(std::make_unique<Impl>(device, layout, buffers)) {
-    impl_->create();
+    impl_->create(packet_bytes);
 }
 
 AravisStream::~AravisStream() {

@@ -14,8 +14,10 @@ namespace stipple {
 class AravisStream {
   public:
     /// Makes stream and buffers; `device` must outlive it and be opened by this program as its
-    /// controller. \throws DeviceError.
-    AravisStream(AravisDevice& device, const FrameLayout& layout, const CameraBuffers& buffers);
+    /// controller. GigE packets, headers included, have `packet_bytes`, or as many as the path
+    /// carries. \throws DeviceError.
+    AravisStream(AravisDevice& device, const FrameLayout& layout, const CameraBuffers& buffers,
+                 std::optional<int> packet_bytes);
     ~AravisStream();
     AravisStream(const AravisStream&) = delete;
     AravisStream& operator=(const AravisStream&) = delete;
