@@ -156,8 +156,11 @@ class FormatSetter {
     /// The part of the sensor, where the driver lets us choose one. Done first: a format smaller
     /// than the region would be scaled.
     void set_region(const Picture& wanted) {
-        const bool asked =
-            value_of(settings_, "OffsetX") != nullptr || value_of(settings_, "OffsetY") != nullptr;
+        const auto given = [this](const char* name) {
+            return value_of(settings_, name) != nullptr;
+        };
+        const bool asked = given("OffsetX") || given("OffsetY");
+        if (!asked && !given("Width") && !given("Height")) return;
         v4l2_selection region{};
         region.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;  // selections know this type alone
         region.target = V4L2_SEL_TGT_CROP;
