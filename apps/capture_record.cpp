@@ -2,6 +2,7 @@
 
 #include "apps/camera_recording.h"
 #include "apps/capture_commands.h"
+#include "apps/coded_recording.h"
 #include "apps/session_arguments.h"
 
 namespace stipple {
@@ -9,6 +10,7 @@ namespace stipple {
 void add_capture_record(CLI::App& capture, Action& action) {
     auto* command = capture.add_subcommand("record", "Record a camera, every frame accounted for");
     const auto options = std::make_shared<CameraRecordingArguments>();
+    const auto coded = std::make_shared<bool>(false);
     add_camera_arguments(*command, options->camera);
     command
         ->add_option("-o,--output", options->output,
@@ -21,14 +23,19 @@ void add_capture_record(CLI::App& capture, Action& action) {
     command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
         ->check(CLI::PositiveNumber)
         ->type_name("S");
+    command->add_flag("--coded", *coded,
+                      "the samples of a camera of `capture serve --mode coded`, as `emulate` "
+                      "writes them");
     add_session_arguments(*command, options->session);
     command->footer(
         "Examples:\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
         "      --set PixelFormat=Mono12p --set ExposureTime=2000");
-    command->callback([options, &action] {
-        action = [options](const RunOptions& run) { record_camera(*options, run); };
+    command->callback([options, coded, &action] {
+        action = [options, coded](const RunOptions& run) {
+            *coded ? record_coded_stream(*options, run) : record_camera(*options, run);
+        };
     });
 }
 

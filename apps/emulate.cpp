@@ -12,6 +12,7 @@
 #include "apps/progress.h"
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
+#include "apps/slot_emulator.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
 #include "apps/waveform_file.h"
@@ -29,12 +30,6 @@ struct EmulateOptions {
     SensorChoice sensor;
 };
 
-/// The name of the footage without its folders.
-std::string name_of(const std::string& footage) {
-    const std::filesystem::path path(footage);
-    return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape());
@@ -43,7 +38,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     std::optional<FrameWriter> truth;
     if (!options.truth.empty())
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
-    Recording recording(options.output, run.force, setup, name_of(options.footage));
+    Recording recording(options.output, run.force, setup, footage_name(options.footage));
     Progress progress(run, "emulating", footage.slots());
     for (auto frame = footage.next(); !frame.empty() && stop_signal() == 0;
          frame = footage.next()) {

@@ -5,58 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/account_text.h"
-#include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
-namespace {
-
-StreamHeader header_of(const SensorSetup& setup, const std::string& footage) {
-    return {.shape = setup.shape,
-            .slot_us = setup.params.slot_us,
-            .calibration = calibration_of(setup.params),
-            .schedule = setup.schedule.schedule,
-            .schedule_source = setup.schedule.source,
-            .schedule_name = setup.schedule.name,
-            .provenance = provenance_of(setup, footage),
-            .cfa = setup.params.physical.cfa};
-}
-
-}  // namespace
-
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
                      const std::string& footage)
-    : setup_(setup),
-      output_(file, force),
-      sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed),
-      writer_(output_.partial(), header_of(setup, footage), output_.final_path().string()) {
-    if (!setup.timing) return;
-    const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
-    account_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
-}
+    : output_(file, force),
+      emulator_(setup),
+      writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {}
 
 void Recording::expose(std::span<const float> frame) {
-    const ColourFilter filter = setup_.params.physical.cfa;
-    if (filter != ColourFilter::kNone) {
-        mosaic_.resize(setup_.shape.pixels());
-        take_mosaic(filter, setup_.footage, frame, mosaic_);
-        frame = mosaic_;
-    }
-    sensor_.expose(frame, packet_);
-    account_ ? write_what_fits(account_->add_next()) : writer_.write(packet_);
-}
-
-void Recording::write_what_fits(const SlotAccount& slot) {
-    if (slot.end_row == packet_.rows) {
-        packet_.flags = slot.overrun ? SamplePacket::kOverrun : 0;
-        writer_.write(packet_);
-        return;
-    }
-    const SamplePacket dropped{
-        packet_.slot, slot.end_row, packet_.rows - slot.end_row, SamplePacket::kDropped, {}};
-    packet_.rows = slot.end_row;
-    packet_.dn.resize(slot.counts.samples);
-    if (packet_.rows > 0) writer_.write(packet_);
-    writer_.write(dropped);
+    for (const SamplePacket& packet : emulator_.expose(frame)) writer_.write(packet);
 }
 
 void Recording::finish() {
@@ -65,16 +23,16 @@ void Recording::finish() {
 }
 
 std::uint64_t Recording::samples() const {
-    return stats().samples - (account_ ? account_->totals().dropped_samples : 0);
+    return stats().samples - (account() ? account()->totals().dropped_samples : 0);
 }
 
 std::uint64_t Recording::payload_bits() const {
-    return samples() * static_cast<std::uint64_t>(setup_.params.bit_depth);
+    return samples() * static_cast<std::uint64_t>(setup().params.bit_depth);
 }
 
 double Recording::compression_ratio() const {
     const double light_values =
-        static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.sites());
+        static_cast<double>(stats().slots) * static_cast<double>(setup().shape.sites());
     return light_values / static_cast<double>(samples());
 }
 

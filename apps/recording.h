@@ -2,15 +2,11 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "apps/sensor_setup.h"
+#include "apps/slot_emulator.h"
 #include "core/pending_output.h"
-#include "readout/coded_sensor.h"
-#include "readout/readout_account.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {
@@ -30,8 +26,8 @@ class Recording {
     /// Puts the file in place. \throws DeviceError.
     void finish();
 
-    [[nodiscard]] const SensorSetup& setup() const { return setup_; }
-    [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    [[nodiscard]] const SensorSetup& setup() const { return emulator_.setup(); }
+    [[nodiscard]] const ReadoutStats& stats() const { return emulator_.stats(); }
     /// Samples in the stream.
     [[nodiscard]] std::uint64_t samples() const;
     [[nodiscard]] std::uint64_t payload_bits() const;
@@ -40,19 +36,13 @@ class Recording {
     /// Share of the samples at full scale, dropped ones too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutAccount* account() { return account_ ? &*account_ : nullptr; }
-    [[nodiscard]] const ReadoutAccount* account() const { return account_ ? &*account_ : nullptr; }
+    [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
+    [[nodiscard]] const ReadoutAccount* account() const { return emulator_.account(); }
 
   private:
-    void write_what_fits(const SlotAccount& slot);
-
-    const SensorSetup& setup_;
     PendingOutput output_;
-    CodedSensor sensor_;
+    SlotEmulator emulator_;
     StreamWriter writer_;
-    std::optional<ReadoutAccount> account_;
-    SamplePacket packet_;
-    std::vector<float> mosaic_;  ///< the light behind the colour filters, if there are any
 };
 
 /// What was recorded, for programs: the keys of `emulate` in docs/cli.md.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/coded_frames.h"
 #include "capture/footage_frames.h"
 #include "core/error.h"
 
@@ -24,6 +25,9 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
+    if (choice.mode == "coded")
+        return std::make_unique<CodedFrames>(choice.path, choice.reading, choice.sensor,
+                                             choice.frames_per_s);
     return open_footage(choice);
 }
 

@@ -37,7 +37,9 @@ GigeOutcome GigeDevice::execute(const GvcpCommand& command, UdpEndpoint peer, Ti
     GigeOutcome outcome;
     if (const auto* resend = std::get_if<GvcpPacketResend>(&command.body)) {
         const bool can = (word(gige::kCapability) & gige::kCanResend) != 0;
-        if (can && is_controller(peer) && resend->channel == 0) outcome.resend = *resend;
+        // Clients ask from the port of their stream, which is not that of their commands.
+        const bool allowed = controller_ && controller_->address == peer.address;
+        if (can && allowed && resend->channel == 0) outcome.resend = *resend;
         return outcome;
     }
     const Reply reply =

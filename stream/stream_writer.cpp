@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "stream/append_file.h"
-#include "stream/bit_packing.h"
 #include "stream/due_count.h"
 #include "stream/header_codec.h"
 #include "stream/packet_codec.h"
 #include "stream/packet_order.h"
+#include "stream/sample_codec.h"
 #include "stream/slot_index.h"
 
 namespace stipple {
@@ -27,7 +27,6 @@ struct StreamWriter::Impl {
     AppendFile file;
     PacketOrder order;
     SlotIndex index;
-    std::vector<std::uint8_t> bytes;
 };
 
 bool StreamWriter::Impl::is_due(const SamplePacket& packet) const {
@@ -50,18 +49,9 @@ StreamWriter::~StreamWriter() = default;
 
 void StreamWriter::write(const SamplePacket& packet) {
     assert(impl_->is_due(packet));
-    const int bit_depth = impl_->header.calibration.bit_depth;
-    PacketHeader header;
-    header.flags = packet.flags;
-    header.slot = static_cast<std::uint64_t>(packet.slot);
-    header.first_row = static_cast<std::uint16_t>(packet.first_row);
-    header.rows = static_cast<std::uint16_t>(packet.rows);
-    header.samples = static_cast<std::uint32_t>(packet.dn.size());
-    auto& bytes = impl_->bytes;
-    bytes.resize(kPacketHeaderBytes + packed_bytes(packet.dn.size(), bit_depth));
-    pack_bits(packet.dn, bit_depth, std::span(bytes).subspan(kPacketHeaderBytes));
-    frame_packet(header, bytes);
-    if (packet.first_row == 0) impl_->index.add({header.slot, impl_->file.bytes()});
+    const auto bytes = encode_samples(packet, impl_->header.calibration.bit_depth);
+    if (packet.first_row == 0)
+        impl_->index.add({static_cast<std::uint64_t>(packet.slot), impl_->file.bytes()});
     impl_->file.append(bytes);
     impl_->order.advance(packet.rows);
 }
@@ -75,8 +65,7 @@ void StreamWriter::finish() {
     header.kind = PacketKind::kIndex;
     header.slot = static_cast<std::uint64_t>(impl_->order.expected().slot);
     header.samples = static_cast<std::uint32_t>(entries.size());
-    auto& bytes = impl_->bytes;
-    bytes.resize(kPacketHeaderBytes + entries.size() * kIndexEntryBytes);
+    std::vector<std::uint8_t> bytes(kPacketHeaderBytes + entries.size() * kIndexEntryBytes);
     store_index(entries, std::span(bytes).subspan(kPacketHeaderBytes));
     frame_packet(header, bytes);
     const auto marker = encode_end_marker(impl_->file.bytes());

@@ -182,12 +182,13 @@ TEST_F(GigeDeviceTest, TheXmlIsWhereTheUrlSays) {
     EXPECT_EQ(read_status(end + 4), 0x8003);
 }
 
-TEST_F(GigeDeviceTest, OnlyTheControllerCanAskForPackets) {
+TEST_F(GigeDeviceTest, OnlyTheMachineInControlCanAskForPackets) {
     const GvcpCommand resend{0x40, 1, false, GvcpPacketResend{0, 5, 1, 2}};
     EXPECT_FALSE(execute(resend, kFirst).resend);
     take_control();
     EXPECT_TRUE(execute(resend, kFirst).resend);
-    EXPECT_FALSE(execute(resend, kSecond).resend);
+    EXPECT_TRUE(execute(resend, kSecond).resend);  // another port of the same machine
+    EXPECT_FALSE(execute(resend, {0x7F000002, 5000}).resend);
     EXPECT_TRUE(execute(resend, kFirst).reply.empty());
 }
 

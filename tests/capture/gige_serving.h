@@ -22,7 +22,9 @@ class NoiseFrames final : public FrameSource {
     NoiseFrames(int width, int height, std::vector<std::string> formats, std::uint64_t frames) {
         image_.width = width;
         image_.height = height;
-        for (const auto& name : formats) image_.formats.push_back(pixel_format_named(name));
+        for (const auto& name : formats)
+            if (const PixelFormat* format = pixel_format_named(name))
+                image_.formats.push_back(format);
         image_.frames_per_s = 200;
         image_.frames = frames;
     }

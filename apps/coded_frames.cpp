@@ -1,0 +1,37 @@
+#include "apps/coded_frames.h"
+
+#include "capture/coded_payload.h"
+#include "core/error.h"
+
+namespace stipple {
+
+CodedFrames::CodedFrames(const std::string& footage, const FootageOptions& reading,
+                         const SensorChoice& sensor, std::optional<double> slots_per_s)
+    : footage_(footage),
+      reading_(reading),
+      reader_(footage_, reading_),
+      setup_(set_up_sensor(sensor, reader_.shape())),
+      header_(stream_header_of(setup_, footage_name(footage))),
+      image_(coded_image(header_)),
+      light_(setup_.footage.sites()) {
+    if (slots_per_s) image_.frames_per_s = *slots_per_s;
+    if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);
+}
+
+void CodedFrames::start(const PixelFormat&) {
+    reader_ = FootageReader(footage_, reading_);
+    if (reader_.shape() != setup_.footage)
+        throw InputError(footage_.string(), "has changed its size while it was served");
+    emulator_.emplace(setup_);
+    slot_ = 0;
+}
+
+std::optional<ServedFrame> CodedFrames::next() {
+    if (!reader_.read(light_)) return {};
+    ServedFrame frame;
+    frame.payload = coded_payload(emulator_->expose(light_), header_, image_);
+    frame.number = slot_++;
+    return frame;
+}
+
+}  // namespace stipple

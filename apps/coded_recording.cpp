@@ -1,0 +1,152 @@
+#include "apps/coded_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "capture/coded_payload.h"
+#include "capture/open_camera.h"
+#include "core/error.h"
+#include "core/pending_output.h"
+#include "stream/packet_order.h"
+#include "stream/stream_writer.h"
+
+namespace stipple {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kWait{100};
+/// A camera that sends nothing for so long has come to its end.
+constexpr std::chrono::seconds kSilence{3};
+/// A longer gap than this is no loss but another stream.
+constexpr std::int64_t kMostMissing = 1'000'000;
+
+/// A feature that a camera with a coded stream must have.
+std::string coded_feature(const CameraDescription& camera, const std::string& name) {
+    const auto found = camera.features.find(name);
+    if (found != camera.features.end()) return found->second;
+    throw InputError(camera.address,
+                     fmt::format("has no feature {}, so it sends no coded stream; record it "
+                                 "without --coded, or serve one with --mode coded",
+                                 name));
+}
+
+/// Writes slots as they come, and drops those that do not.
+class SlotRecorder {
+  public:
+    SlotRecorder(const std::string& output, bool force, const StreamHeader& header)
+        : header_(header),
+          output_(output, force),
+          writer_(output_.partial(), header, output_.final_path().string()),
+          order_(header.shape.rows) {}
+
+    /// \throws DeviceError if the output cannot be written, InputError if slots are no stream.
+    void take(const CapturedFrame& frame) {
+        const CodedSlot slot = decode_coded_payload(header_, frame.payload, order_.expected());
+        if (!slot.fault.empty()) ++damaged_;
+        for (const SamplePacket& packet : slot.packets) {
+            drop_before({packet.slot, packet.first_row});
+            write(packet);
+        }
+    }
+    /// Drops what is missing before `next`.
+    void drop_before(StreamPosition next) {
+        if (next.slot - order_.expected().slot > kMostMissing)
+            throw InputError("the coded stream", fmt::format("jumps from slot {} to {}",
+                                                             order_.expected().slot, next.slot));
+        while (order_.expected() < next) {
+            const StreamPosition at = order_.expected();
+            const int end = at.slot < next.slot ? header_.shape.rows : next.row;
+            if (at.row == 0) ++missing_;
+            write({at.slot, at.row, end - at.row, SamplePacket::kDropped, {}});
+        }
+    }
+    void finish() {
+        writer_.finish();
+        output_.commit();
+    }
+
+    [[nodiscard]] std::int64_t slots() const { return order_.expected().slot; }
+    [[nodiscard]] std::int64_t missing() const { return missing_; }
+    [[nodiscard]] std::int64_t damaged() const { return damaged_; }
+
+  private:
+    void write(const SamplePacket& packet) {
+        writer_.write(packet);
+        order_.advance(packet.rows);
+    }
+
+    StreamHeader header_;
+    PendingOutput output_;
+    StreamWriter writer_;
+    PacketOrder order_;
+    std::int64_t missing_ = 0;
+    std::int64_t damaged_ = 0;
+};
+
+/// How many slots there will be, 0 if that is not known.
+std::int64_t slots_to_come(const CameraDescription& camera,
+                           const CameraRecordingArguments& arguments) {
+    const auto told = camera.features.find("SourceFrameCount");
+    const std::int64_t of_source = told == camera.features.end() ? 0 : std::stoll(told->second);
+    if (arguments.frames == 0) return of_source;
+    const auto wanted = static_cast<std::int64_t>(arguments.frames);
+    return of_source == 0 ? wanted : std::min(wanted, of_source);
+}
+
+/// Until all slots are there, the camera falls silent or goes, or somebody stops it. True if it
+/// was not stopped.
+bool record_slots(Camera& camera, SlotRecorder& recorder, std::int64_t slots, double seconds) {
+    const auto begin = Clock::now();
+    auto last = begin;
+    while (slots == 0 || recorder.slots() < slots) {
+        if (stop_signal() != 0) return false;
+        const auto now = Clock::now();
+        const double elapsed_s = std::chrono::duration<double>(now - begin).count();
+        if (seconds > 0 && elapsed_s >= seconds) return false;
+        const Arrival arrival = camera.wait(kWait);
+        if (const auto* frame = std::get_if<CapturedFrame>(&arrival)) {
+            recorder.take(*frame);
+            last = Clock::now();
+        } else if (std::holds_alternative<DeviceLost>(arrival) || now - last > kSilence) {
+            break;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void record_coded_stream(const CameraRecordingArguments& arguments, const RunOptions& run) {
+    const auto camera = open_camera(arguments.camera.address, camera_settings(arguments.camera),
+                                    arguments.camera.buffers);
+    const CameraDescription description = camera->description();
+    const StreamHeader header = decode_coded_header(coded_feature(description, "CodedStreamHeader"),
+                                                    description.address + ": CodedStreamHeader");
+    const std::int64_t slots = slots_to_come(description, arguments);
+    JsonFile json(run);
+    SlotRecorder recorder(arguments.output, run.force, header);
+    camera->start();
+    const bool to_the_end = record_slots(*camera, recorder, slots, arguments.seconds);
+    camera->stop();
+    if (recorder.slots() == 0) {
+        throw_if_stopped();
+        throw DeviceError(description.address, "no slot of the coded stream arrived");
+    }
+    if (to_the_end && slots > 0) recorder.drop_before({slots, 0});
+    recorder.finish();
+    json.write({{"slots", recorder.slots()},
+                {"missing_slots", recorder.missing()},
+                {"damaged_frames", recorder.damaged()}});
+    run.say(fmt::format("{}: {} slots, {} of them missing, {} frames damaged", arguments.output,
+                        recorder.slots(), recorder.missing(), recorder.damaged()));
+}
+
+}  // namespace stipple

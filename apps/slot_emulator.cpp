@@ -1,0 +1,55 @@
+#include "apps/slot_emulator.h"
+
+#include <filesystem>
+
+#include "sensor_model/colour_mosaic.h"
+
+namespace stipple {
+
+StreamHeader stream_header_of(const SensorSetup& setup, const std::string& footage) {
+    return {.shape = setup.shape,
+            .slot_us = setup.params.slot_us,
+            .calibration = calibration_of(setup.params),
+            .schedule = setup.schedule.schedule,
+            .schedule_source = setup.schedule.source,
+            .schedule_name = setup.schedule.name,
+            .provenance = provenance_of(setup, footage),
+            .cfa = setup.params.physical.cfa};
+}
+
+std::string footage_name(const std::string& footage) {
+    const std::filesystem::path path(footage);
+    return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+SlotEmulator::SlotEmulator(const SensorSetup& setup)
+    : setup_(setup), sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
+    if (!setup.timing) return;
+    const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
+    account_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
+}
+
+std::span<const SamplePacket> SlotEmulator::expose(std::span<const float> frame) {
+    const ColourFilter filter = setup_.params.physical.cfa;
+    if (filter != ColourFilter::kNone) {
+        mosaic_.resize(setup_.shape.pixels());
+        take_mosaic(filter, setup_.footage, frame, mosaic_);
+        frame = mosaic_;
+    }
+    sensor_.expose(frame, packets_[0]);
+    return account_ ? what_fits(account_->add_next()) : std::span(packets_).first(1);
+}
+
+std::span<const SamplePacket> SlotEmulator::what_fits(const SlotAccount& slot) {
+    SamplePacket& whole = packets_[0];
+    if (slot.end_row == whole.rows) {
+        whole.flags = slot.overrun ? SamplePacket::kOverrun : 0;
+        return std::span(packets_).first(1);
+    }
+    packets_[1] = {whole.slot, slot.end_row, whole.rows - slot.end_row, SamplePacket::kDropped, {}};
+    whole.rows = slot.end_row;
+    whole.dn.resize(slot.counts.samples);
+    return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);
+}
+
+}  // namespace stipple

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/sensor_setup.h"
+#include "readout/coded_sensor.h"
+#include "readout/readout_account.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// The header of the stream that this sensor makes of `footage` (its name, for the provenance).
+[[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, const std::string& footage);
+
+/// The name of footage without its folders.
+[[nodiscard]] std::string footage_name(const std::string& footage);
+
+/// A sensor that turns light into the packets of a stream, slot by slot.
+class SlotEmulator {
+  public:
+    /// `setup` must outlive the emulator.
+    explicit SlotEmulator(const SensorSetup& setup);
+
+    /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)). The
+    /// packets of the slot, valid until the next call: one, or two where the readout has no time
+    /// for its last rows and they are dropped.
+    [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
+
+    [[nodiscard]] const SensorSetup& setup() const { return setup_; }
+    [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    /// Of the readout; null if the sensor has no timing.
+    [[nodiscard]] ReadoutAccount* account() { return account_ ? &*account_ : nullptr; }
+    [[nodiscard]] const ReadoutAccount* account() const { return account_ ? &*account_ : nullptr; }
+
+  private:
+    [[nodiscard]] std::span<const SamplePacket> what_fits(const SlotAccount& slot);
+
+    const SensorSetup& setup_;
+    CodedSensor sensor_;
+    std::optional<ReadoutAccount> account_;
+    std::array<SamplePacket, 2> packets_;
+    std::vector<float> mosaic_;  ///< the light behind the colour filters, if there are any
+};
+
+}  // namespace stipple
