@@ -1,4 +1,5 @@
 #include "capture/aravis_camera.h"
+#include "capture/network_doctor.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -11,6 +12,11 @@ std::unique_ptr<Camera> open_aravis_camera(const std::string& address, const Cam
 std::vector<CameraListing> list_aravis_cameras() {
     throw DeviceError("GenICam cameras",
                       "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
+}
+
+std::vector<DoctorFinding> examine_genicam_camera(const std::string&) {
+    return {{DoctorFinding::Level::kProblem, "camera", "built without Aravis",
+             "configure with -DSTIPPLE_ARAVIS=ON"}};
 }
 
 }  // namespace stipple

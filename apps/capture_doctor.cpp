@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "apps/capture_commands.h"
+#include "apps/json_file.h"
+#include "capture/network_doctor.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::array<const char*, 3> kLevels{"good", "warning", "problem"};
+
+const char* name_of(DoctorFinding::Level level) {
+    return kLevels[static_cast<std::size_t>(level)];
+}
+
+std::vector<DoctorFinding> examine(const std::string& address) {
+    std::vector<DoctorFinding> findings = examine_network();
+    const auto add = [&](const std::vector<DoctorFinding>& more) {
+        findings.insert(findings.end(), more.begin(), more.end());
+    };
+    if (address.starts_with("gige:") || address.starts_with("usb:"))
+        add(examine_genicam_camera(address));
+    return findings;
+}
+
+nlohmann::ordered_json findings_json(const std::vector<DoctorFinding>& findings) {
+    auto list = nlohmann::ordered_json::array();
+    for (const DoctorFinding& finding : findings)
+        list.push_back({{"level", name_of(finding.level)},
+                        {"subject", finding.subject},
+                        {"fact", finding.fact},
+                        {"fix", finding.fix}});
+    return {{"findings", list}};
+}
+
+std::string findings_text(const std::vector<DoctorFinding>& findings) {
+    std::string text;
+    for (const DoctorFinding& finding : findings) {
+        text += fmt::format("{}{:<8} {:<24} {}", text.empty() ? "" : "\n", name_of(finding.level),
+                            finding.subject, finding.fact);
+        if (!finding.fix.empty()) text += fmt::format("\n{:9}fix: {}", "", finding.fix);
+    }
+    return text;
+}
+
+void doctor(const std::string& address, const RunOptions& run) {
+    JsonFile json(run);
+    const std::vector<DoctorFinding> findings = examine(address);
+    json.write(findings_json(findings));
+    run.say(findings_text(findings));
+}
+
+}  // namespace
+
+void add_capture_doctor(CLI::App& capture, Action& action) {
+    auto* command = capture.add_subcommand(
+        "doctor", "What of this machine, or of a camera, would cost frames, with its fix");
+    const auto address = std::make_shared<std::string>();
+    command->add_option("ADDRESS", *address, "a camera to look at: gige:IP or usb:SERIAL");
+    command->footer(
+        "Examples:\n"
+        "  stipple capture doctor\n"
+        "  stipple capture doctor gige:192.168.0.5");
+    command->callback([address, &action] {
+        action = [address](const RunOptions& run) { doctor(*address, run); };
+    });
+}
+
+}  // namespace stipple
