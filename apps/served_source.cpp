@@ -4,6 +4,7 @@
 
 #include "apps/coded_frames.h"
 #include "capture/footage_frames.h"
+#include "capture/recording_frames.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -28,7 +29,11 @@ std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice
     if (choice.mode == "coded")
         return std::make_unique<CodedFrames>(choice.path, choice.reading, choice.sensor,
                                              choice.frames_per_s);
-    return open_footage(choice);
+    if (!is_recording(choice.path)) return open_footage(choice);
+    if (!choice.format.empty())
+        throw InputError("--format " + choice.format,
+                         "a recording is served in the format it was recorded in; leave it out");
+    return std::make_unique<RecordingFrames>(choice.path, choice.frames_per_s);
 }
 
 }  // namespace stipple
