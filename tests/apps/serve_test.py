@@ -1,0 +1,170 @@
+"""The program as a GigE Vision camera, met by our own client and by Aravis' tools."""
+
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import threading
+import unittest
+
+import numpy as np
+from program import DEVICE, INPUT, PROGRAM, USAGE, ProgramTest
+
+BUILT_WITHOUT = "built without Aravis"
+
+
+def own_address(number):
+    """A loopback address that no other test process uses."""
+    return f"127.{100 + number}.{os.getpid() >> 8 & 255}.{os.getpid() & 255 or 1}"
+
+
+def frames_of(recording):
+    """Records and payloads, read as docs/recording_format.md says."""
+    data, at, frames = recording.read_bytes(), 16, []
+    while at + 32 <= len(data):
+        kind, _, length, payload = struct.unpack_from("<4xIIIQ", data, at)
+        record, at = data[at + 32:at + 32 + length], at + 32 + length + payload
+        if kind == 1:
+            dtype = np.dtype([tuple(field) for field in json.loads(record)["frame_record"]])
+        elif kind == 2:
+            frames.append((np.frombuffer(record, dtype, 1)[0], data[at - payload:at]))
+    return frames
+
+
+class ServeTest(ProgramTest):
+    count = 0
+
+    def serve(self, *arguments):
+        """Starts a server and waits for its READY line; its address."""
+        ServeTest.count += 1
+        address = own_address(ServeTest.count)
+        server = subprocess.Popen(
+            [PROGRAM, "capture", "serve", *map(str, arguments), "--address", address],
+            cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(self.stop, server)
+        watchdog = threading.Timer(60, server.kill)
+        watchdog.start()
+        ready = server.stdout.readline()
+        watchdog.cancel()
+        self.assertIn(f"READY gige:{address}", ready, server.stderr.read() if not ready else "")
+        return address
+
+    def stop(self, server):
+        server.send_signal(signal.SIGINT)
+        try:
+            server.communicate(timeout=30)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            server.communicate()
+
+    def record(self, address, output, *arguments):
+        done = self.run_program("capture", "record", "gige:" + address, "-o", output, *arguments)
+        if BUILT_WITHOUT in done.stderr:
+            self.skipTest(BUILT_WITHOUT)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def tool(self, name, *arguments):
+        """Output of one of Aravis' programs."""
+        program = shutil.which(name)
+        if program is None:
+            self.skipTest(f"{name} is not installed")
+        done = subprocess.run([program, *map(str, arguments)], text=True, capture_output=True,
+                              timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def scene(self, slots=24, rows=40, cols=64):
+        light = np.random.default_rng(3).random((slots, rows, cols), np.float32)
+        return self.write_array("scene.npy", light)
+
+    def same_bytes(self, one, other):
+        return (self.folder / one).read_bytes() == (self.folder / other).read_bytes()
+
+    def test_a_coded_stream_arrives_as_emulate_writes_it(self):
+        choice = [self.scene(), "--seed", 7, "--set", "bit_depth=10", "--schedule", "tiled"]
+        self.succeed("emulate", *choice, "-o", "emulated.stipple")
+        address = self.serve(*choice, "--mode", "coded")
+        for output in ("first.stipple", "second.stipple"):  # each start begins with slot 0
+            self.record(address, output, "--coded")
+            self.assertTrue(self.same_bytes(output, "emulated.stipple"))
+
+    def test_packets_that_come_late_change_nothing(self):
+        self.succeed("emulate", self.scene(), "-o", "emulated.stipple")
+        address = self.serve("scene.npy", "--mode", "coded", "--fault-drop", 0.1,
+                             "--fault-reorder")
+        self.record(address, "clip.stipple", "--coded", "--set", "GevSCPSPacketSize=576")
+        self.assertTrue(self.same_bytes("clip.stipple", "emulated.stipple"))
+
+    def test_slots_that_are_lost_are_dropped_packets(self):
+        self.scene()
+        address = self.serve("scene.npy", "--mode", "coded", "--fault-gap-at", 10,
+                             "--fault-gap", 3, "--fault-lose", 0.05)
+        done = self.record(address, "clip.stipple", "--coded", "--json", "-", "--set",
+                           "GevSCPSPacketSize=576")
+        report = json.loads(done.stdout)
+        self.assertEqual(report["slots"], 24)
+        self.assertGreater(report["missing_slots"], 0)
+        self.assertEqual(self.figures("info", "clip.stipple")["slots"], 24)
+
+    def test_a_camera_without_coded_stream_says_so(self):
+        address = self.serve(self.scene())
+        done = self.run_program("capture", "record", "gige:" + address, "--coded", "-o", "x.stipple")
+        if BUILT_WITHOUT in done.stderr:
+            self.skipTest(BUILT_WITHOUT)
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        self.assertIn("--mode coded", done.stderr)
+        self.assertNotIn("x.stipple", self.names())
+
+    def test_a_recording_is_served_with_the_same_bytes_and_stamps(self):
+        dn = np.random.default_rng(5).integers(0, 65536, (12, 40, 64)).astype(np.uint16)
+        self.write_array("dn.npy", dn, np.uint16)
+        address = self.serve("dn.npy", "--format", "Mono16", "--fps", 100)
+        self.record(address, "one.strec", "--frames", 12)
+        again = self.serve("one.strec")
+        self.record(again, "two.strec", "--frames", 12)
+        one, two = frames_of(self.folder / "one.strec"), frames_of(self.folder / "two.strec")
+        self.assertEqual([payload for _, payload in one], [frame.tobytes() for frame in dn])
+        self.assertEqual([payload for _, payload in two], [payload for _, payload in one])
+        for name in ("device_ns", "width", "height", "payload_hash"):
+            self.assertEqual([record[name] for record, _ in two],
+                             [record[name] for record, _ in one], name)
+
+    def test_arv_tool_finds_reads_and_sets(self):
+        address = self.serve(self.scene(), "--serial", "ab12")
+        features = self.tool("arv-tool-0.8", "-a", address, "features")
+        for name in ("PixelFormat", "ChunkExposureMapID", "SourceFrameCount", "GevSCPSPacketSize"):
+            self.assertIn(f"'{name}'", features)
+        values = self.tool("arv-tool-0.8", "-a", address, "control", "Width=32", "Width", "OffsetX=8",
+                           "PixelFormat=Mono16", "PayloadSize", "DeviceSerialNumber",
+                           "SourceFrameCount")
+        self.assertIn("PayloadSize = 2560", values)  # 32 x 40 x 2
+        self.assertIn("DeviceSerialNumber = ab12", values)
+        self.assertIn("SourceFrameCount = 24", values)
+
+    def test_arv_camera_test_streams_without_loss(self):
+        address = self.serve(self.scene(), "--repeat", "--fps", 50)
+        report = self.tool("arv-camera-test-0.8", "-n", address, "--duration", 3, "-i", 1500)
+        figures = dict(line.split("=") for line in report.splitlines() if "=" in line)
+        figures = {name.strip(): value.strip() for name, value in figures.items()}
+        self.assertGreater(int(figures["n_completed_buffers"]), 20)
+        for name in ("n_failures", "n_size_mismatch_errors", "n_error_packets"):
+            self.assertEqual(figures[name], "0", report)
+
+    def test_what_cannot_be_served_is_named(self):
+        scene = self.scene()
+        taken = self.serve(scene)
+        self.fails(DEVICE, [taken, "--address"], "capture", "serve", scene, "--address", taken)
+        self.fails(INPUT, ["nowhere"], "capture", "serve", scene, "--address", "nowhere")
+        self.fails(INPUT, ["Mono99"], "capture", "serve", scene, "--format", "Mono99", "--address",
+                   own_address(90))
+        self.fails(INPUT, ["absent.npy"], "capture", "serve", "absent.npy")
+        self.fails(INPUT, ["no.such.sensor"], "capture", "serve", scene, "--mode", "coded", "--sensor",
+                   "no.such.sensor")
+        self.fails(USAGE, ["--fault-drop"], "capture", "serve", scene, "--fault-drop", 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
