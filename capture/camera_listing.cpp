@@ -1,6 +1,7 @@
 #include "capture/camera_listing.h"
 
 #include "capture/aravis_camera.h"
+#include "capture/v4l2_listing.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -19,7 +20,7 @@ void add_cameras(CameraSearch& search, std::vector<CameraListing> (*source)()) {
 
 CameraSearch list_cameras() {
     CameraSearch search;
-    for (const auto source : {list_aravis_cameras}) add_cameras(search, source);
+    for (const auto source : {list_aravis_cameras, list_v4l2_cameras}) add_cameras(search, source);
     return search;
 }
 
