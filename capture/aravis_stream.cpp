@@ -25,24 +25,27 @@ std::int64_t clock_ns(clockid_t clock) {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-/// Memory of a buffer, and when its frame was complete.
+/// Memory of a buffer.
 struct Slot {
     explicit Slot(std::size_t bytes) : memory(bytes) {}
     std::vector<std::uint8_t> memory;
-    std::int64_t monotonic_ns = 0;
-    std::int64_t realtime_ns = 0;
 };
 
 Slot& slot_of(ArvBuffer* buffer) {
     return *static_cast<Slot*>(const_cast<void*>(arv_buffer_get_user_data(buffer)));
 }
 
-/// Called in Aravis' thread, as soon as a frame is done with.
-void stamp(void*, ArvStreamCallbackType type, ArvBuffer* buffer) {
-    if (type != ARV_STREAM_CALLBACK_TYPE_BUFFER_DONE || buffer == nullptr) return;
-    slot_of(buffer).monotonic_ns = clock_ns(CLOCK_MONOTONIC);
-    slot_of(buffer).realtime_ns = clock_ns(CLOCK_REALTIME);
+/// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
+/// the frame arrived before now.
+void stamp_arrival(ArvBuffer* buffer, FrameRecord& record) {
+    const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
+    const auto first_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
+    record.host_realtime_ns = first_ns != 0 ? first_ns : now_ns;
+    record.host_monotonic_ns = clock_ns(CLOCK_MONOTONIC) - (now_ns - record.host_realtime_ns);
 }
+
+/// A frame whose leader was lost keeps what its buffer said before: this.
+constexpr std::uint64_t kNoId = ~std::uint64_t{0};
 
 FrameStatus status_of(ArvBufferStatus status) {
     switch (status) {
@@ -71,6 +74,7 @@ struct AravisStream::Impl {
     std::size_t buffer_bytes = 0;
     std::uint64_t mismatches_seen = 0;
     std::uint64_t link_faults_before = 0;
+    std::uint64_t last_wire_id = 0;
     bool running = false;
     std::atomic<bool> lost = false;
     gulong lost_handler = 0;
@@ -107,7 +111,7 @@ AravisStream::Impl::~Impl() {
 void AravisStream::Impl::create(std::optional<int> packet_bytes) {
     if (device.is_gige()) set_packet_size(packet_bytes);
     GError* error = nullptr;
-    stream = arv_camera_create_stream(camera, stamp, nullptr, &error);
+    stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
     if (stream == nullptr) {
         const std::string why = error == nullptr ? "no reason given" : error->message;
         g_clear_error(&error);
@@ -182,6 +186,8 @@ void AravisStream::Impl::push_buffers() {
 void AravisStream::Impl::reuse(ArvBuffer* buffer) const {
     mark_unwritten(slot_of(buffer).memory);
     arv_buffer_set_timestamp(buffer, 0);
+    arv_buffer_set_system_timestamp(buffer, 0);
+    arv_buffer_set_frame_id(buffer, kNoId);
     arv_stream_push_buffer(stream, buffer);
 }
 
@@ -233,12 +239,14 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     FrameRecord& record = frame.record;
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
     const Slot& slot = slot_of(buffer);
-    record.wire_id = arv_buffer_get_frame_id(buffer);
+    const bool has_leader = arv_buffer_get_frame_id(buffer) != kNoId;
+    // Frames come in order, so the least that it can be is the next one.
+    record.wire_id = has_leader ? arv_buffer_get_frame_id(buffer) : last_wire_id % 65535 + 1;
+    last_wire_id = record.wire_id;
     record.status = status_of(status);
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
-    record.host_monotonic_ns = slot.monotonic_ns;
-    record.host_realtime_ns = slot.realtime_ns;
+    stamp_arrival(buffer, record);
     if (status == ARV_BUFFER_STATUS_SUCCESS) {
         const FrameLayout now = layout_of(buffer);
         const bool usable = now.format != nullptr && now.payload_bytes() <= kMostPayloadBytes;
@@ -262,7 +270,8 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
         frame.holes = clear_holes(frame.payload);
         for (const auto& [begin, end] : frame.holes) record.bytes_received -= end - begin;
         // Only the trailer was lost: every byte of the image is there.
-        if (record.status == FrameStatus::kMissingPackets && record.bytes_received == wanted)
+        if (has_leader && record.status == FrameStatus::kMissingPackets &&
+            record.bytes_received == wanted)
             record.status = FrameStatus::kComplete;
     }
     if (kept < wanted) {

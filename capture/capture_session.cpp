@@ -225,6 +225,9 @@ void CaptureSession::Impl::number(FrameRecord& record) {
 SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     FrameRecord& record = frame.record;
     last_sign = Clock::now();
+    // A packet that was resent too late: Aravis makes a frame of it again, long after the frame.
+    if (!reconnected && record.status != FrameStatus::kComplete && ids.is_past(record.wire_id))
+        return NoFrame{};
     number(record);
     last_frame = record;
     if (!first_frame) first_frame = record;

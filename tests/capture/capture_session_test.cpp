@@ -145,6 +145,20 @@ TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
     }
 }
 
+TEST(CaptureSessionTest, ALatePacketOfAFrameThatWasAccountedForIsNoFrame) {
+    CaptureSession session(
+        plays({{arrives(scripted_frame(40)), arrives(incomplete(41)), arrives(scripted_frame(42)),
+                arrives(incomplete(41)), arrives(scripted_frame(43))}}),
+        {});
+    for (std::uint64_t id = 0; id < 4; ++id) {
+        const FrameRecord record = next_record(session);
+        EXPECT_EQ(record.id, id);
+        EXPECT_EQ(record.epoch, 0U);
+        EXPECT_EQ(record.lost_before, 0U);
+    }
+    EXPECT_EQ(session.totals().frames, 4U);
+}
+
 TEST(CaptureSessionTest, AFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
     CaptureSession session(plays({frames({1, 3, 4})}), {});
     static_cast<void>(next_record(session));
