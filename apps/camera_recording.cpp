@@ -12,6 +12,7 @@
 #include "apps/json_file.h"
 #include "apps/progress.h"
 #include "capture/open_camera.h"
+#include "capture/recording_queue.h"
 #include "capture/recording_writer.h"
 #include "core/error.h"
 #include "core/pending_output.h"
@@ -20,6 +21,9 @@ namespace stipple {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// What may wait for the disk: 2 s of 640 x 480 pixels of 16 bits at 200 frames/s.
+constexpr std::size_t kQueueBytes = std::size_t{1} << 28U;
 
 /// How often a signal is looked for.
 constexpr milliseconds kPatience{100};
@@ -56,7 +60,8 @@ class CameraRecording {
           settings_(camera_settings(arguments.camera)),
           session_([this] { return open(); }, arguments.session),
           writer_(output_.partial(), session_record(session_.description(), settings_),
-                  output_.final_path().string()) {
+                  output_.final_path().string()),
+          queue_(writer_, kQueueBytes) {
         for (const std::string& warning : session_.description().warnings)
             fmt::print(stderr, "stipple: {}\n", warning);
     }
@@ -86,6 +91,9 @@ class CameraRecording {
     CameraSettings settings_;
     CaptureSession session_;
     RecordingWriter writer_;
+    RecordingQueue queue_;
+    std::uint64_t taken_ = 0;    ///< frames that the queue took
+    std::uint64_t refused_ = 0;  ///< frames that it had no room for
     std::string end_reason_;
     std::optional<DeviceError> failure_;
     double seconds_ = 0;
@@ -93,18 +101,19 @@ class CameraRecording {
 
 bool CameraRecording::wants_more(double seconds) const {
     return end_reason_.empty() && stop_signal() == 0 &&
-           (arguments_.frames == 0 || writer_.totals().frames < arguments_.frames) &&
+           (arguments_.frames == 0 || taken_ < arguments_.frames) &&
            (arguments_.seconds == 0 || seconds < arguments_.seconds);
 }
 
 void CameraRecording::take(CapturedFrame frame) {
-    try {
-        writer_.write(frame);
-    } catch (const DeviceError& e) {
-        session_.count_own_drop(frame.record);
-        end_reason_ = e.what();
-        failure_ = e;
+    const FrameRecord record = frame.record;
+    if (queue_.push(std::move(frame))) {
+        ++taken_;
+        return;
     }
+    ++refused_;
+    session_.count_own_drop(record);
+    if (queue_.failed()) end_reason_ = "the disk";  // `finish` finds out why
 }
 
 void CameraRecording::run(const RunOptions& run) {
@@ -115,15 +124,23 @@ void CameraRecording::run(const RunOptions& run) {
     while (wants_more(progress.seconds())) {
         std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
                    session_.next(kPatience));
-        progress.reach(static_cast<double>(writer_.totals().frames));
+        progress.reach(static_cast<double>(taken_));
     }
     seconds_ = progress.seconds();
 }
 
 void CameraRecording::finish() {
     RecordingEnd end;
+    try {
+        queue_.drain();
+    } catch (const DeviceError& e) {
+        end_reason_ = e.what();
+        failure_ = e;
+    }
     end.reason = end_reason_.empty() ? "stopped" : end_reason_;
     end.lost = session_.totals().lost;
+    // Frames that the queue took and could not write after all.
+    end.lost[static_cast<std::size_t>(GapCause::kOwnDrop)] += queue_.dropped() - refused_;
     end.transport = session_.transport();
     try {
         writer_.finish(end);

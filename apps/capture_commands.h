@@ -7,10 +7,11 @@ namespace stipple {
 // Each function adds one subcommand of `stipple capture`. If the command line names it, parsing
 // sets `action`.
 
-void add_capture_doctor(CLI::App& capture,
-                        Action& action);                   ///< what would cost frames, and its fix
-void add_capture_list(CLI::App& capture, Action& action);  ///< cameras that can be opened
+void add_capture_list(CLI::App& capture, Action& action);    ///< cameras that can be opened
+void add_capture_doctor(CLI::App& capture, Action& action);  ///< what would cost frames, its fix
+void add_capture_live(CLI::App& capture, Action& action);    ///< a camera to a sample stream
 void add_capture_record(CLI::App& capture, Action& action);  ///< a camera to a recording
+void add_capture_replay(CLI::App& capture, Action& action);  ///< a recording as footage
 void add_capture_serve(CLI::App& capture, Action& action);   ///< a source as a GigE camera
 
 }  // namespace stipple

@@ -2,15 +2,44 @@
 
 #include <utility>
 
+#include "core/error.h"
+
 namespace stipple {
+namespace {
+
+std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem::path& source,
+                                                           const FootageOptions& options) {
+    if (!is_recording(source))
+        return std::variant<FootageReader, RecordingFootage>(std::in_place_type<FootageReader>,
+                                                             source, options);
+    if (options.transfer != Transfer::kLinear || options.luminance || options.max_value)
+        throw InputError(source.string(),
+                         "is a recording of a camera, whose numbers are linear: --transfer, "
+                         "--luminance and --max-value are for other footage");
+    return std::variant<FootageReader, RecordingFootage>(std::in_place_type<RecordingFootage>,
+                                                         source);
+}
+
+}  // namespace
 
 ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options)
-    : reader_(source, options), current_(shape().sites()), coming_(shape().sites()) {
+    : reader_(open_footage(source, options)), current_(shape().sites()), coming_(shape().sites()) {
     start_reading();
 }
 
+FrameShape ReadAhead::shape() const {
+    return std::visit([](const auto& reader) { return reader.shape(); }, reader_);
+}
+
+std::optional<int> ReadAhead::slots() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage == nullptr ? std::nullopt : footage->slots();
+}
+
 void ReadAhead::start_reading() {
-    reading_ = std::async(std::launch::async, [this] { return reader_.read(coming_); });
+    reading_ = std::async(std::launch::async, [this] {
+        return std::visit([this](auto& reader) { return reader.read(coming_); }, reader_);
+    });
 }
 
 std::span<const float> ReadAhead::next() {

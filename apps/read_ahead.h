@@ -3,32 +3,36 @@
 #include <future>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
+#include "capture/recording_footage.h"
 #include "core/footage_reader.h"
 
 namespace stipple {
 
-/// Footage whose next frame is read in the background while one is worked on.
+/// Footage, or a recording of a camera, whose next frame is read in the background while one is
+/// worked on.
 class ReadAhead {
   public:
-    /// \throws InputError as FootageReader.
+    /// \throws InputError as FootageReader and RecordingFootage; if a recording shall have another
+    /// transfer than linear or be reduced to luminance.
     ReadAhead(const std::filesystem::path& source, const FootageOptions& options);
     ~ReadAhead() = default;
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;
 
-    [[nodiscard]] FrameShape shape() const { return reader_.shape(); }
-    [[nodiscard]] std::optional<int> slots() const { return reader_.slots(); }
+    [[nodiscard]] FrameShape shape() const;
+    [[nodiscard]] std::optional<int> slots() const;
 
     /// The next frame, valid until the next call, or an empty span at the end.
-    /// \throws InputError as FootageReader::read.
+    /// \throws InputError as FootageReader::read and RecordingFootage::read.
     std::span<const float> next();
 
   private:
     void start_reading();
 
-    FootageReader reader_;
+    std::variant<FootageReader, RecordingFootage> reader_;
     std::vector<float> current_;
     std::vector<float> coming_;
     std::future<bool> reading_;  ///< last: waits for the reader before its memory goes

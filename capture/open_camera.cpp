@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "capture/aravis_camera.h"
+#include "capture/replay_camera.h"
 #include "capture/v4l2_camera.h"
 #include "core/error.h"
 
@@ -15,10 +16,10 @@ std::unique_ptr<Camera> open_camera(const std::string& address, const CameraSett
         throw InputError("buffers", fmt::format("{} is outside 2..1024", buffers.frames));
     if (kind == "gige:" || kind == "usb:") return open_aravis_camera(address, settings, buffers);
     if (kind == "v4l2:") return open_v4l2_camera(address, settings, buffers);
+    if (kind == "replay:") return open_replay_camera(address, settings, buffers);
     throw InputError(address,
-                     "is no address of a camera: write gige:IP, usb:SERIAL or v4l2:/dev/videoN "
-                     "(`stipple capture "
-                     "list` shows what there is)");
+                     "is no address of a camera: write gige:IP, usb:SERIAL, v4l2:/dev/videoN or "
+                     "replay:FILE (`stipple capture list` shows what there is)");
 }
 
 }  // namespace stipple

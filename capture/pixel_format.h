@@ -17,8 +17,8 @@ enum class Packing : std::uint8_t {
     kLsbPacked,         ///< PFNC "p": a bit string, each sample from its lowest bit on, no padding
     kGigEVisionPacked,  ///< GigE Vision "Packed": two samples in 3 bytes, their low bits in the
                         ///< middle
-    kMipiPacked,        ///< MIPI CSI-2, V4L2 "P": high 8 bits of 4 (10 bit) or 2 (12 bit) samples,
-                        ///< then a byte of their low bits
+    kMipiPacked,        ///< MIPI CSI-2, V4L2 "P": the high 8 bits of 4 (10, 14 bit) or 2 (12 bit)
+                        ///< samples, then their low bits as a bit string
 };
 
 /// A pixel format as cameras send it. Everything that is not in `pixel_formats()` is refused:
@@ -33,7 +33,8 @@ struct PixelFormat {
     ColourFilter filter = ColourFilter::kNone;
     int planes = 1;  ///< 3 for interleaved RGB
 
-    /// Bytes of a row of `width` pixels without padding at its end: whole bytes, rounded up.
+    /// Bytes of a row of `width` pixels without padding at its end: whole bytes, of kMipiPacked
+    /// whole groups, rounded up.
     [[nodiscard]] std::size_t row_bytes(int width) const;
 };
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 
 #include "core/error.h"
 
@@ -38,16 +36,6 @@ void remove_padding(std::vector<std::uint8_t>& payload, const FrameLayout& layou
 }
 
 }  // namespace
-
-bool is_recording(const std::filesystem::path& file) {
-    if (!std::filesystem::is_regular_file(file)) return false;
-    std::ifstream stream(file, std::ios::binary);
-    std::array<char, kRecordingVersionOffset> start{};
-    stream.read(start.data(), start.size());
-    return stream &&
-           std::equal(start.begin(), start.end(), kRecordingMagic.begin(),
-                      [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
-}
 
 RecordingFrames::RecordingFrames(const std::filesystem::path& file,
                                  std::optional<double> frames_per_s)

@@ -33,7 +33,4 @@ class RecordingFrames final : public FrameSource {
     std::uint64_t first_id_ = 0;
 };
 
-/// Whether a file begins like a recording.
-[[nodiscard]] bool is_recording(const std::filesystem::path& file);
-
 }  // namespace stipple

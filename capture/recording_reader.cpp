@@ -184,6 +184,14 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
     }
 }
 
+bool is_recording(const std::filesystem::path& path) {
+    if (!std::filesystem::is_regular_file(path)) return false;
+    FileWindow file(path);
+    const Bytes start = file.peek(kRecordingVersionOffset);
+    return std::equal(start.begin(), start.end(), kRecordingMagic.begin(),
+                      kRecordingMagic.begin() + kRecordingVersionOffset);
+}
+
 RecordingReader::RecordingReader(std::filesystem::path file)
     : file_(std::move(file)), impl_(std::make_unique<Impl>(file_)) {}
 RecordingReader::~RecordingReader() = default;

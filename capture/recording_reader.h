@@ -28,6 +28,9 @@ struct RecordingReport {
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };
 
+/// True if `path` is a regular file that begins as a recording does.
+[[nodiscard]] bool is_recording(const std::filesystem::path& path);
+
 /// Reads a recording frame by frame (docs/recording_format.md). Damage costs the frames that it
 /// hits and is reported. Memory: one frame.
 class RecordingReader {

@@ -1,0 +1,73 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/capture_commands.h"
+#include "apps/json_file.h"
+#include "apps/live_emulation.h"
+#include "apps/session_arguments.h"
+#include "apps/timing_arguments.h"
+
+namespace stipple {
+namespace {
+
+void live(const LiveArguments& arguments, const RunOptions& run) {
+    JsonFile json(run);
+    LiveEmulation emulation(arguments, run);
+    emulation.run(run);
+    emulation.finish();
+    json.write(emulation.json());
+    run.say(emulation.text());
+}
+
+void add_sensor_arguments(CLI::App& command, SensorChoice& sensor) {
+    command.add_option("--sensor", sensor.sensor, "sensor (paper)")->type_name("NAME|FILE");
+    command.add_option("--schedule", sensor.schedule, "who exposes when (random)")
+        ->type_name("NAME|FILE");
+    command
+        .add_option("--sensor-set", sensor.settings,
+                    "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
+    add_overrun(command, sensor.overrun);
+}
+
+}  // namespace
+
+void add_capture_live(CLI::App& capture, Action& action) {
+    auto* command = capture.add_subcommand("live", "A camera through the sensor as it runs");
+    const auto options = std::make_shared<LiveArguments>();
+    add_camera_arguments(*command, options->camera);
+    command->add_option("-o,--output", options->output, "sample stream")
+        ->type_name("FILE")
+        ->required();
+    command->add_option("--frames", options->frames, "stop after so many (until Ctrl-C)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+    command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    add_sensor_arguments(*command, options->sensor);
+    add_session_arguments(*command, options->session);
+    command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("DN");
+    command->add_option("--queue", options->queue_frames, "frames that may wait (16)")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    command
+        ->add_option("--late-after", options->late_after_slots,
+                     "a packet is late so many slots after its frame (2)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N");
+    command->footer(
+        "Examples:\n"
+        "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
+        "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
+    command->callback(
+        [options, &action] { action = [options](const RunOptions& run) { live(*options, run); }; });
+}
+
+}  // namespace stipple

@@ -1,0 +1,101 @@
+#include "apps/live_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "capture/open_camera.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{50};
+
+SessionOptions options_for(bool replay, SessionOptions options) {
+    if (!replay) return options;
+    options.reconnect = false;  // a replay has an end, and pauses where the recording has them
+    options.stall = std::chrono::milliseconds(0);
+    return options;
+}
+
+}  // namespace
+
+LiveCamera::LiveCamera(const CameraArguments& camera, const SessionOptions& session,
+                       std::size_t waiting_frames)
+    : replay_(camera.address.rfind("replay:", 0) == 0),
+      session_(
+          [camera, settings = camera_settings(camera)] {
+              return open_camera(camera.address, settings, camera.buffers);
+          },
+          options_for(replay_, session)),
+      layout_(session_.layout()),
+      description_(session_.description()),
+      most_(waiting_frames),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+LiveCamera::~LiveCamera() {
+    stop();
+}
+
+SessionTotals LiveCamera::stop() {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+    return session_.totals();
+}
+
+void LiveCamera::begin() {
+    const std::lock_guard lock(mutex_);
+    begun_ = true;
+    changed_.notify_all();
+}
+
+void LiveCamera::take(CapturedFrame frame) {
+    const std::lock_guard lock(mutex_);
+    if (!begun_) return;
+    if (frames_.size() >= most_) return session_.count_own_drop(frame.record);
+    frames_.push_back(std::move(frame));
+    peak_ = std::max(peak_, frames_.size());
+    changed_.notify_all();
+}
+
+void LiveCamera::run(const std::stop_token& stop) {
+    if (replay_) {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, stop, [&] { return begun_; });
+    }
+    while (!stop.stop_requested()) {
+        SessionEvent event = session_.next(kPatience);
+        if (auto* const frame = std::get_if<CapturedFrame>(&event)) take(std::move(*frame));
+        if (const auto* const outage = std::get_if<Outage>(&event))
+            fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n",
+                       outage->reason);
+        if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
+            const std::lock_guard lock(mutex_);
+            end_reason_ = lost->reason;
+            changed_.notify_all();
+            return;
+        }
+    }
+}
+
+std::optional<CapturedFrame> LiveCamera::next(std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return !frames_.empty() || !end_reason_.empty(); });
+    if (frames_.empty()) return std::nullopt;
+    CapturedFrame frame = std::move(frames_.front());
+    frames_.pop_front();
+    return frame;
+}
+
+std::string LiveCamera::end_reason() const {
+    const std::lock_guard lock(mutex_);
+    return frames_.empty() ? end_reason_ : std::string();
+}
+
+std::size_t LiveCamera::peak() const {
+    const std::lock_guard lock(mutex_);
+    return peak_;
+}
+
+}  // namespace stipple

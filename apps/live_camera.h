@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "apps/camera_arguments.h"
+#include "capture/capture_session.h"
+
+namespace stipple {
+
+/// A camera whose frames a thread takes and keeps, a few of them, until somebody has time. When as
+/// many as that wait, further ones are dropped; the next frame says how many (kOwnDrop).
+class LiveCamera {
+  public:
+    /// Opens and starts the camera; until `begin`, its frames are let go, but those of a replay
+    /// wait. \throws InputError, DeviceError.
+    LiveCamera(const CameraArguments& camera, const SessionOptions& session,
+               std::size_t waiting_frames);
+    ~LiveCamera();
+    LiveCamera(const LiveCamera&) = delete;
+    LiveCamera& operator=(const LiveCamera&) = delete;
+
+    /// As the camera was opened; every frame says its own.
+    [[nodiscard]] const FrameLayout& layout() const { return layout_; }
+    [[nodiscard]] const CameraDescription& description() const { return description_; }
+
+    void begin();
+    /// The next frame; nothing if none comes in time or the camera is lost for good.
+    [[nodiscard]] std::optional<CapturedFrame> next(std::chrono::milliseconds timeout);
+    /// Why no frame will come any more; empty while one may.
+    [[nodiscard]] std::string end_reason() const;
+    /// Frames that waited at most.
+    [[nodiscard]] std::size_t peak() const;
+    /// Stops the camera. What became of its frames.
+    SessionTotals stop();
+
+  private:
+    void run(const std::stop_token& stop);
+    void take(CapturedFrame frame);
+
+    bool replay_;
+    CaptureSession session_;
+    FrameLayout layout_;
+    CameraDescription description_;
+    std::size_t most_;
+    mutable std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::deque<CapturedFrame> frames_;
+    std::size_t peak_ = 0;
+    bool begun_ = false;
+    std::string end_reason_;
+    std::jthread thread_;  ///< last: starts when all else is there
+};
+
+}  // namespace stipple

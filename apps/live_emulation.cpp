@@ -1,0 +1,135 @@
+#include "apps/live_emulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/interrupt.h"
+#include "apps/progress.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPatience{50};
+constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
+
+constexpr std::string_view kReplay = "replay:";
+
+bool is_replay(const std::string& address) {
+    return address.rfind(kReplay, 0) == 0;
+}
+
+/// What the stream says of where its light came from: no address, no time.
+std::string source_name(const std::string& address, const CameraDescription& camera) {
+    if (!is_replay(address)) return camera.model;
+    return std::filesystem::path(address.substr(kReplay.size())).filename().string();
+}
+
+std::int64_t monotonic_ns() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& run)
+    : arguments_(arguments),
+      camera_(arguments.camera, arguments.session, arguments.queue_frames),
+      to_light_(camera_.layout(), arguments.black_level_dn),
+      setup_(set_up_sensor(arguments.sensor, to_light_.shape())),
+      recording_(arguments.output, run.force, setup_,
+                 source_name(arguments.camera.address, camera_.description())),
+      light_(to_light_.shape().sites()) {
+    for (const std::string& warning : camera_.description().warnings)
+        fmt::print(stderr, "stipple: {}\n", warning);
+}
+
+bool LiveEmulation::wants_more(double seconds) const {
+    return end_reason_.empty() && stop_signal() == 0 &&
+           (arguments_.frames == 0 || latencies_us_.size() < arguments_.frames) &&
+           (arguments_.seconds == 0 || seconds < arguments_.seconds);
+}
+
+void LiveEmulation::run(const RunOptions& run) {
+    const auto total = arguments_.frames == 0
+                           ? std::nullopt
+                           : std::optional(static_cast<std::int64_t>(arguments_.frames));
+    Progress progress(run, "emulating live", total);
+    camera_.begin();
+    while (wants_more(progress.seconds())) {
+        if (const auto frame = camera_.next(kPatience))
+            take(*frame);
+        else
+            end_reason_ = camera_.end_reason();
+        progress.reach(static_cast<double>(latencies_us_.size()));
+    }
+    seconds_ = progress.seconds();
+}
+
+void LiveEmulation::hold(std::uint64_t slots) {
+    if (latencies_us_.empty()) return;  // nothing stands in for what came before the first frame
+    slots = std::min(slots, kMaxHeld);
+    for (std::uint64_t slot = 0; slot < slots; ++slot) recording_.expose(light_);
+    held_slots_ += slots;
+}
+
+void LiveEmulation::take(const CapturedFrame& frame) {
+    if (frame.record.layout != camera_.layout()) {
+        end_reason_ = "the camera sends another region or pixel format";
+        return;
+    }
+    hold(frame.record.lost_before);
+    to_light_.convert(frame.payload, light_);
+    recording_.expose(light_);
+    const auto latency_us =
+        static_cast<double>(monotonic_ns() - frame.record.host_monotonic_ns) * 1e-3;
+    latencies_us_.push_back(static_cast<float>(latency_us));
+    if (latency_us > arguments_.late_after_slots * setup_.params.slot_us) ++late_slots_;
+}
+
+void LiveEmulation::finish() {
+    totals_ = camera_.stop();
+    if (latencies_us_.empty()) {
+        throw_if_stopped();
+        throw DeviceError(arguments_.camera.address,
+                          end_reason_.empty() ? "no frame came" : end_reason_);
+    }
+    recording_.finish();
+    std::sort(latencies_us_.begin(), latencies_us_.end());
+    if (!end_reason_.empty() && !is_replay(arguments_.camera.address))
+        throw DeviceError(arguments_.camera.address, end_reason_);
+}
+
+double LiveEmulation::latency_us(double share) const {
+    const auto last = static_cast<double>(latencies_us_.size() - 1);
+    return static_cast<double>(latencies_us_[static_cast<std::size_t>(share * last + 0.5)]);
+}
+
+nlohmann::ordered_json LiveEmulation::json() const {
+    nlohmann::ordered_json lost;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        lost[std::string(kGapCauseNames[i])] = totals_.lost[i];
+    nlohmann::ordered_json json = recording_json(recording_, seconds_);
+    json["frames"] = latencies_us_.size();
+    json["lost"] = lost;
+    json["held_slots"] = held_slots_;
+    json["late_slots"] = late_slots_;
+    json["queue_peak_frames"] = camera_.peak();
+    json["latency_us"] = {
+        {"median", latency_us(0.5)}, {"p99", latency_us(0.99)}, {"max", latency_us(1)}};
+    return json;
+}
+
+std::string LiveEmulation::text() const {
+    return fmt::format(
+        "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
+        "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
+        recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
+        arguments_.late_after_slots, held_slots_, latency_us(0.5) * 1e-3, latency_us(0.99) * 1e-3,
+        latency_us(1) * 1e-3);
+}
+
+}  // namespace stipple

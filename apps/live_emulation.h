@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/camera_arguments.h"
+#include "apps/live_camera.h"
+#include "apps/recording.h"
+#include "apps/run_options.h"
+#include "apps/sensor_setup.h"
+#include "capture/frame_light.h"
+
+namespace stipple {
+
+/// What `stipple capture live` was asked for.
+struct LiveArguments {
+    CameraArguments camera;
+    SessionOptions session;
+    SensorChoice sensor;
+    std::string output;
+    double black_level_dn = 0;
+    std::uint64_t frames = 0;  ///< 0: until stopped
+    double seconds = 0;        ///< 0: until stopped
+    std::size_t queue_frames = 16;
+    double late_after_slots = 2;
+};
+
+/// A camera's frames through the emulated sensor as they come, a slot each. Where frames are
+/// missing, the one before stands in, so that each slot keeps its time.
+class LiveEmulation {
+  public:
+    /// Opens camera and output. \throws InputError, DeviceError.
+    LiveEmulation(const LiveArguments& arguments, const RunOptions& run);
+
+    /// Until the frames or seconds are reached, a signal asks to stop, or the camera is lost.
+    void run(const RunOptions& run);
+    /// Stops the camera and puts the stream in place. \throws DeviceError if the camera was lost.
+    void finish();
+
+    [[nodiscard]] nlohmann::ordered_json json() const;
+    [[nodiscard]] std::string text() const;
+
+  private:
+    [[nodiscard]] bool wants_more(double seconds) const;
+    void take(const CapturedFrame& frame);
+    void hold(std::uint64_t slots);
+    /// Microseconds that a share of the frames took at most, from arrival to packet.
+    [[nodiscard]] double latency_us(double share) const;
+
+    const LiveArguments& arguments_;
+    LiveCamera camera_;
+    FrameLight to_light_;
+    SensorSetup setup_;
+    Recording recording_;
+    SessionTotals totals_;
+    std::vector<float> light_;
+    std::vector<float> latencies_us_;  ///< of each frame
+    std::uint64_t held_slots_ = 0;
+    std::uint64_t late_slots_ = 0;
+    double seconds_ = 0;
+    std::string end_reason_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "capture/frame_record.h"
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// Turns captured frames into frames of light: light = max(0, DN - black level) / (full scale -
+/// black level), full scale 2^significant_bits - 1. Frames of a colour filter array stay mosaics of
+/// one plane.
+class FrameLight {
+  public:
+    /// \throws InputError unless 0 <= black_level_dn < full scale.
+    FrameLight(const FrameLayout& layout, double black_level_dn);
+
+    [[nodiscard]] FrameShape shape() const { return shape_; }
+    /// Fills `light`, order (plane, row, col). What the payload is too short for is black.
+    /// Precondition: light.size() == shape().sites().
+    void convert(std::span<const std::uint8_t> payload, std::span<float> light);
+
+  private:
+    FrameLayout layout_;
+    FrameShape shape_;
+    std::vector<float> light_of_dn_;  ///< for all numbers that a sample can hold
+    std::vector<std::uint16_t> samples_;
+};
+
+}  // namespace stipple

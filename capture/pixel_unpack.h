@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "capture/frame_record.h"
+
+namespace stipple {
+
+/// The samples of a row of pixels, by column and plane, as the numbers that the camera sent: 0 to
+/// 2^significant_bits - 1, and beyond only where the device sets bits that should be 0.
+/// Precondition: samples.size() is a multiple of format.planes; row.size() >=
+/// format.row_bytes(samples.size() / planes).
+void unpack_row(const PixelFormat& format, std::span<const std::uint8_t> row,
+                std::span<std::uint16_t> samples) noexcept;
+
+/// The samples of a frame by row, column and plane; `samples` is resized. What `payload` is too
+/// short for is 0.
+void unpack_frame(const FrameLayout& layout, std::span<const std::uint8_t> payload,
+                  std::vector<std::uint16_t>& samples);
+
+}  // namespace stipple

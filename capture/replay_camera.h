@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "capture/camera.h"
+
+namespace stipple {
+
+/// A recording, or footage, that comes as if a camera sent it. `address` is "replay:PATH".
+///
+/// Settings: `AcquisitionFrameRate` in Hz, 0 for as fast as it is taken (default: a recording by
+/// its stamps, footage at 200 Hz); `Loop` 0 or 1; `PixelFormat` of footage, Mono8, Mono16 or RGB8.
+///
+/// Payloads, device stamps, exposure, gain, black level, layout, status and holes are those of the
+/// recording, and wire ids leave out what it left out; arrival stamps are new. Whoever takes frames
+/// later than `buffers.frames` of them loses the oldest, as with a camera: they count as underruns.
+/// At the end comes DeviceLost.
+/// \throws InputError if the file is neither, or for a setting that it does not have.
+[[nodiscard]] std::unique_ptr<Camera> open_replay_camera(const std::string& address,
+                                                         const CameraSettings& settings,
+                                                         const CameraBuffers& buffers);
+
+}  // namespace stipple

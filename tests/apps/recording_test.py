@@ -1,0 +1,114 @@
+"""Recordings of cameras: what docs/recording_format.md says of them, and what is made of them."""
+
+import re
+import struct
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import numpy as np
+from program import DEVICE, INPUT, ProgramTest
+
+DOCUMENT = Path(__file__).parents[2] / "docs/recording_format.md"
+FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+
+
+def lines_of_the_document():
+    return re.search(r"```python\n(.*?)```", DOCUMENT.read_text(), re.S)[1]
+
+
+class RecordingTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        random = np.random.default_rng(5)
+        self.dn = random.integers(0, 65536, (6, 5, 8), dtype=np.uint16)
+        np.save(self.folder / "light.npy", self.dn)
+
+    def record(self, *more):
+        """A recording of 6 frames, whose samples are self.dn."""
+        return self.figures("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST,
+                            "--frames", 6, *more)
+
+    def test_the_python_of_the_document_reads_every_frame(self):
+        lines = lines_of_the_document()
+        self.assertLessEqual(len([line for line in lines.splitlines() if line.strip()]), 12)
+        self.record()
+        check = lines + "\n".join((
+            "images = [np.frombuffer(pixels, '<u2').reshape(record['height'], -1)"
+            "[:, :record['width']] for record, pixels in frames]",
+            "np.save(sys.argv[2], np.array(images))",
+            "assert session['camera']['transport'] == 'replay'",
+            "assert [int(record['id']) for record, _ in frames] == list(range(6))",
+            "assert all(record['format'] == b'Mono16' for record, _ in frames)",
+            "assert frames[1][0]['device_ns'] - frames[0][0]['device_ns'] == 5000000"))
+        done = subprocess.run([sys.executable, "-c", check, "clip.strec", "read.npy"],
+                              cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        np.testing.assert_array_equal(self.array("read.npy"), self.dn)
+
+    def test_the_session_says_what_was_asked_for(self):
+        self.record()
+        content = (self.folder / "clip.strec").read_bytes()
+        for word in (b'"AcquisitionFrameRate"', b'"kernel"', b'"stipple"', b'"reason": "stopped"'):
+            self.assertIn(word, content)
+
+    def test_a_recording_comes_back_as_the_light_it_was_made_of(self):
+        self.record()
+        figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
+        self.assertEqual(figures, {"slots": 6, "held_slots": 0, "missing_frames": 0,
+                                   "damaged_places": 0, "cut_off": False})
+        np.testing.assert_array_equal(self.array("again.npy"),
+                                      (self.dn / 65535).astype(np.float32))
+
+    def test_the_emulator_takes_a_recording_as_footage(self):
+        self.record()
+        self.succeed("emulate", "clip.strec", "-o", "a.stipple")
+        self.succeed("capture", "replay", "clip.strec", "-o", "again.npy")
+        (self.folder / "again.npy").rename(self.folder / "clip.npy")
+        self.succeed("emulate", "clip.npy", "-o", "b.stipple")
+        a, b = ((self.folder / name).read_bytes().replace(b"clip.strec", b"clip.npy")
+                for name in ("a.stipple", "b.stipple"))
+        header = struct.unpack_from("<I", b, 12)[0]
+        slots = slice(header, b.rindex(b"\xc5SPK"))  # the index has offsets, the header a CRC
+        self.assertEqual(a[slots], b[slots])
+
+    def test_an_emulator_beside_a_camera_gives_the_same_stream(self):
+        self.record()
+        self.succeed("emulate", "clip.strec", "-o", "a.stipple")
+        figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)
+        self.assertEqual((figures["frames"], figures["held_slots"], figures["slots"]), (6, 0, 6))
+        self.assertEqual((self.folder / "a.stipple").read_bytes(),
+                         (self.folder / "b.stipple").read_bytes())
+
+    def test_a_recording_that_was_cut_off_is_readable(self):
+        self.record()
+        content = (self.folder / "clip.strec").read_bytes()
+        last = content.rindex(b"\xc5FRM", 0, content.rindex(b"\xc5FRM"))
+        (self.folder / "clip.strec").write_bytes(content[:last + 100])
+        figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
+        self.assertEqual((figures["slots"], figures["cut_off"]), (5, True))
+
+    def test_a_full_disk_keeps_what_was_recorded(self):
+        shell = 'ulimit -f 3 && exec "$0" "$@"'  # 3 blocks of 1024 bytes: two frames or so
+        from program import PROGRAM
+        done = subprocess.run(["bash", "-c", shell, PROGRAM, "capture", "record",
+                               "replay:light.npy", "-o", "clip.strec", *FAST], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        self.assertIn("clip.strec: cannot be written: File too large", done.stderr)
+        figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
+        self.assertGreaterEqual(figures["slots"], 1)
+        np.testing.assert_array_equal(
+            self.array("again.npy"), (self.dn / 65535).astype(np.float32)[:figures["slots"]])
+
+    def test_other_files_are_refused(self):
+        self.fails(INPUT, ["light.npy", "not a recording"], "capture", "replay", "light.npy", "-o",
+                   "again.npy")
+        self.record()
+        self.fails(INPUT, ["clip.strec", "numbers are linear"], "emulate", "clip.strec", "-o",
+                   "a.stipple", "--luminance")
+
+
+if __name__ == "__main__":
+    unittest.main()
