@@ -8,6 +8,8 @@
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
 #include "capture/network_doctor.h"
+#include "capture/usb_findings.h"
+#include "capture/v4l2_listing.h"
 
 namespace stipple {
 namespace {
@@ -25,6 +27,8 @@ std::vector<DoctorFinding> examine(const std::string& address) {
     };
     if (address.starts_with("gige:") || address.starts_with("usb:"))
         add(examine_genicam_camera(address));
+    add(usb_findings());
+    add(v4l2_findings());
     return findings;
 }
 
