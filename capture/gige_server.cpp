@@ -146,11 +146,11 @@ void GigeServer::Impl::run_control(const std::function<bool()>& stop) {
 /// arrive, for clients with packet sockets listen on that interface.
 void GigeServer::Impl::answer(const UdpSocket& socket) {
     while (const auto datagram = socket.receive()) {
-        if (datagram->interface != interface.index) continue;
+        const bool broadcast = &socket != &control;
+        if (broadcast && datagram->interface != interface.index) continue;
         if (is_loopback(address) != is_loopback(datagram->from.address)) continue;
         const auto command = decode_gvcp(datagram->bytes);
         if (!command) continue;
-        const bool broadcast = &socket != &control;
         if (broadcast && !std::holds_alternative<GvcpDiscovery>(command->body)) continue;
         const std::unique_lock lock(mutex);
         const GigeOutcome outcome =
@@ -274,6 +274,7 @@ void GigeServer::run(const std::function<bool()>& stop) {
 }
 
 GigeServerCounts GigeServer::counts() const {
+    const std::scoped_lock lock(impl_->mutex);
     return {.frames = impl_->frames_sent,
             .late_frames = impl_->late_frames,
             .packets = impl_->sender.packets_sent(),
