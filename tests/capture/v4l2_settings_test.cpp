@@ -219,10 +219,10 @@ TEST(V4l2SettingsTest, RefusesNodesThatAreNoCamera) {
     driver.capabilities = V4L2_CAP_READWRITE;
     EmulatedV4l2 emulated(driver);
     EXPECT_THAT(error_of<DeviceError>({}), HasSubstr("cannot be used"));
-    EXPECT_THROW(open_v4l2_camera("v4l2:/dev/video7", {}, {}), DeviceError);
-    EXPECT_THROW(open_v4l2_camera("v4l2:7", {}, {}), DeviceError);
-    EXPECT_THROW(open_v4l2_camera("v4l2:", {}, {}), InputError);
-    EXPECT_THROW(open_v4l2_camera("v4l2:video0", {}, {}), InputError);
+    EXPECT_THROW(static_cast<void>(open_v4l2_camera("v4l2:/dev/video7", {}, {})), DeviceError);
+    EXPECT_THROW(static_cast<void>(open_v4l2_camera("v4l2:7", {}, {})), DeviceError);
+    EXPECT_THROW(static_cast<void>(open_v4l2_camera("v4l2:", {}, {})), InputError);
+    EXPECT_THROW(static_cast<void>(open_v4l2_camera("v4l2:video0", {}, {})), InputError);
 }
 
 TEST(V4l2SettingsTest, RefusesBuffersThatCannotBe) {
