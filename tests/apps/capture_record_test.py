@@ -1,0 +1,161 @@
+"""A camera on the network, found, examined and recorded."""
+
+import json
+import os
+import resource
+import signal
+import struct
+import subprocess
+import threading
+import unittest
+
+import numpy as np
+from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, ProgramTest
+
+CAUSES = ("device", "transport", "host_underrun", "own_drop", "reconnect")
+
+
+def records_of(path):
+    """The records of a recording's frames, read as docs/recording_format.md says."""
+    data, at, records, dtype = path.read_bytes(), 16, [], None
+    while at + 32 <= len(data):
+        kind, _, length, payload = struct.unpack_from("<4xIIIQ", data, at)
+        record, at = data[at + 32:at + 32 + length], at + 32 + length + payload
+        if kind == 1:
+            dtype = np.dtype([tuple(field) for field in json.loads(record)["frame_record"]])
+        elif kind == 2 and at <= len(data):
+            records.append(np.frombuffer(record, dtype, 1)[0])
+    return records
+
+
+class CaptureRecordTest(ProgramTest):
+    count = 0
+
+    def setUp(self):
+        super().setUp()
+        if "built without" in self.run_program("capture", "list").stdout:
+            self.skipTest("built without Aravis")
+        CaptureRecordTest.count += 1
+        number = os.getpid()
+        self.ip = f"127.{200 + self.count}.{number >> 8 & 255}.{number & 255 or 1}"
+        self.address = f"gige:{self.ip}"
+        self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
+
+    def serve(self):
+        """Starts a camera and waits until it is there."""
+        camera = self.start_program("capture", "serve", "light.npy", "--repeat", "--format", "Mono16",
+                                    "--address", self.ip, "--fps", 100, stdout=subprocess.PIPE)
+        watchdog = threading.Timer(60, camera.kill)
+        watchdog.start()
+        self.addCleanup(self.end, camera)
+        self.assertIn("READY", camera.stdout.readline())
+        watchdog.cancel()
+        return camera
+
+    @staticmethod
+    def end(process):
+        process.kill()
+        process.communicate()
+
+    def record(self, *arguments, **options):
+        return self.start_program("capture", "record", self.address, "-o", "clip.strec", *arguments,
+                                  **options)
+
+    def until_frames(self, recorder, frames):
+        """Waits until the hidden file under way holds so many frames."""
+        size = frames * 64 * 48 * 2
+        while recorder.poll() is None:
+            parts = [name for name in os.listdir(self.folder) if name.endswith(".strec")]
+            if any((self.folder / name).stat().st_size > size for name in parts):
+                return
+        self.fail(recorder.communicate()[1])
+
+    def test_every_frame_of_a_recording_is_accounted_for(self):
+        self.serve()
+        figures = self.figures("capture", "record", self.address, "-o", "clip.strec", "--frames", 30)
+        self.assertEqual(figures["frames"], 30)
+        self.assertEqual(tuple(figures["lost"]), CAUSES)
+        records = records_of(self.folder / "clip.strec")
+        self.assertEqual(len(records), 30)
+        for before, record in zip(records, records[1:]):
+            self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
+
+    def test_a_folder_gets_a_recording_named_by_the_time(self):
+        self.serve()
+        (self.folder / "clips").mkdir()
+        self.succeed("capture", "record", self.address, "-o", "clips", "--frames", 2)
+        (clip,) = (self.folder / "clips").iterdir()
+        self.assertRegex(clip.name, r"^\d{8}_\d{6}\.strec$")
+
+    def test_ctrl_c_leaves_a_readable_recording(self):
+        self.serve()
+        recorder = self.record()
+        self.until_frames(recorder, 10)
+        recorder.send_signal(signal.SIGINT)
+        recorder.communicate(timeout=60)
+        self.assertEqual(recorder.returncode, STOPPED)
+        self.assertGreaterEqual(len(records_of(self.folder / "clip.strec")), 10)
+
+    def test_a_full_disk_leaves_a_readable_recording(self):
+        self.serve()
+        limit = 200_000
+        recorder = self.record(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE,
+                                                                     (limit, limit)))
+        errors = recorder.communicate(timeout=60)[1]
+        self.assertEqual(recorder.returncode, DEVICE, errors)
+        self.assertIn("clip.strec", errors)
+        self.assertGreaterEqual(len(records_of(self.folder / "clip.strec")), 20)
+
+    def test_a_camera_that_is_gone_for_good_ends_the_recording_with_what_there_is(self):
+        camera = self.serve()
+        recorder = self.record("--no-reconnect")
+        self.until_frames(recorder, 5)
+        camera.kill()
+        errors = recorder.communicate(timeout=60)[1]
+        self.assertEqual(recorder.returncode, DEVICE, errors)
+        self.assertIn("camera lost", errors)
+        self.assertGreaterEqual(len(records_of(self.folder / "clip.strec")), 5)
+
+    def test_a_camera_that_comes_back_is_recorded_on(self):
+        camera = self.serve()
+        recorder = self.record("--json", "figures.json", "--frames", 60)
+        self.until_frames(recorder, 5)
+        camera.kill()
+        camera.wait()
+        self.serve()
+        errors = recorder.communicate(timeout=100)[1]
+        self.assertEqual(recorder.returncode, OK, errors)
+        figures = json.loads((self.folder / "figures.json").read_text())
+        if figures["outages"] == 0:
+            self.skipTest("all frames had come before the camera was gone")
+        records = records_of(self.folder / "clip.strec")
+        self.assertEqual(len(records), 60)
+        self.assertGreaterEqual(records[-1]["epoch"], 1)
+        for before, record in zip(records, records[1:]):
+            self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
+
+    def test_the_doctor_knows_who_holds_control(self):
+        self.serve()
+        found = self.figures("capture", "doctor", self.address)["findings"]
+        self.assertIn(("control", "free"), [(one["subject"], one["fact"]) for one in found])
+        recorder = self.record()
+        self.until_frames(recorder, 1)
+        found = self.figures("capture", "doctor", self.address)["findings"]
+        (control,) = [one for one in found if one["subject"] == "control"]
+        self.assertEqual(control["level"], "problem")
+        self.assertIn("stop that program", control["fix"])
+        self.end(recorder)
+
+    def test_what_cannot_be_is_refused(self):
+        self.serve()
+        camera = ("capture", "record", self.address, "-o", "clip.strec")
+        self.fails(INPUT, ["Wdith: the camera has no such feature"], *camera, "--set", "Wdith=64")
+        self.fails(INPUT, ["is no address of a camera"], "capture", "record", "lan:1", "-o", "x")
+        self.fails(DEVICE, ["no camera answers"], "capture", "record", "gige:127.254.254.253", "-o",
+                   "x")
+        (self.folder / "camera.toml").write_text("Width = [1, 2]\n")
+        self.fails(INPUT, ["camera.toml:1", "is a list"], *camera, "--config", "camera.toml")
+
+
+if __name__ == "__main__":
+    unittest.main()
