@@ -54,7 +54,7 @@ void add_capture_live(CLI::App& capture, Action& action) {
     command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
         ->check(CLI::NonNegativeNumber)
         ->type_name("DN");
-    command->add_option("--queue", options->queue_frames, "frames that may wait (16)")
+    command->add_option("--queue", options->queue_frames, "frames that may wait (64)")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
     command

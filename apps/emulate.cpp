@@ -62,8 +62,9 @@ void add_emulate(CLI::App& app, Action& action) {
     auto* command = app.add_subcommand("emulate", "Footage through the sensor to a sample stream");
     const auto options = std::make_shared<EmulateOptions>();
     command
-        ->add_option("FOOTAGE", options->footage,
-                     "folder or printf pattern of PNG, TIFF or EXR, video file, or .npy")
+        ->add_option(
+            "FOOTAGE", options->footage,
+            "folder or printf pattern of PNG, TIFF or EXR, video file, .npy, or a recording")
         ->required();
     command->add_option("-o,--output", options->output, "sample stream")
         ->type_name("FILE")

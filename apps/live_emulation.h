@@ -23,7 +23,7 @@ struct LiveArguments {
     double black_level_dn = 0;
     std::uint64_t frames = 0;  ///< 0: until stopped
     double seconds = 0;        ///< 0: until stopped
-    std::size_t queue_frames = 16;
+    std::size_t queue_frames = 64;
     double late_after_slots = 2;
 };
 

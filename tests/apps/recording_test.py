@@ -1,14 +1,16 @@
 """Recordings of cameras: what docs/recording_format.md says of them, and what is made of them."""
 
 import re
+import signal
 import struct
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
 import numpy as np
-from program import DEVICE, INPUT, ProgramTest
+from program import DEVICE, INPUT, PROGRAM, STOPPED, ProgramTest
 
 DOCUMENT = Path(__file__).parents[2] / "docs/recording_format.md"
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
@@ -81,6 +83,19 @@ class RecordingTest(ProgramTest):
         self.assertEqual((self.folder / "a.stipple").read_bytes(),
                          (self.folder / "b.stipple").read_bytes())
 
+    def test_ctrl_c_leaves_a_whole_stream(self):
+        self.record()
+        live = self.start_program("capture", "live", "replay:clip.strec", "-o", "a.stipple",
+                                  "--set", "Loop=1", "--set", "AcquisitionFrameRate=100")
+        for _ in range(6000):  # until some slots are in the file that is not yet in place
+            if any(path.stat().st_size > 4000 for path in self.folder.glob(".*stipple*")):
+                break
+            time.sleep(0.01)
+        live.send_signal(signal.SIGINT)
+        _, message = live.communicate(timeout=60)
+        self.assertEqual(live.returncode, STOPPED, message)
+        self.assertGreater(self.figures("info", "a.stipple")["slots"], 0)
+
     def test_a_recording_that_was_cut_off_is_readable(self):
         self.record()
         content = (self.folder / "clip.strec").read_bytes()
@@ -91,7 +106,6 @@ class RecordingTest(ProgramTest):
 
     def test_a_full_disk_keeps_what_was_recorded(self):
         shell = 'ulimit -f 3 && exec "$0" "$@"'  # 3 blocks of 1024 bytes: two frames or so
-        from program import PROGRAM
         done = subprocess.run(["bash", "-c", shell, PROGRAM, "capture", "record",
                                "replay:light.npy", "-o", "clip.strec", *FAST], cwd=self.folder,
                               capture_output=True, text=True)
