@@ -127,6 +127,7 @@ TEST_P(V4l2CameraOfEachApi, RefusesToTrustMoreBytesThanABufferHas) {
     camera->start();
     const CapturedFrame got = frame_from(*camera);
     EXPECT_EQ(got.record.status, FrameStatus::kSizeMismatch);
+    EXPECT_EQ(got.record.bytes_received, 128);
     EXPECT_EQ(got.payload.size(), 128);
 }
 
@@ -231,6 +232,15 @@ TEST(V4l2CameraTest, OffersABufferAgainThatTheDriverRefusedOnce) {
     emulated.fail(VIDIOC_QBUF, {EINVAL});
     for (int i = 0; i < 8; ++i) EXPECT_EQ(frame_from(*camera).record.wire_id, i);
     EXPECT_EQ(emulated.queued(), 4);
+}
+
+TEST(V4l2CameraTest, GoesOnWhereTheDriverRefusedAllBuffersOnce) {
+    EmulatedV4l2 emulated;
+    for (int i = 0; i < 6; ++i) emulated.push(ramp_frame(128, i));
+    const auto camera = open_emulated({}, 2);
+    camera->start();
+    emulated.fail(VIDIOC_QBUF, {EINVAL, EINVAL, EINVAL});  // one of the first frame, both then
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(frame_from(*camera).record.wire_id, i);
 }
 
 TEST(V4l2CameraTest, AFailedFetchIsTheEndOfTheStream) {
