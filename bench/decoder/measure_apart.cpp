@@ -9,6 +9,7 @@
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/footage_reader.h"
+#include "core/npy_writer.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
 
@@ -32,27 +33,37 @@ std::string quoted(const std::string& text) {
     return result;
 }
 
+/// Without the first and last slots, where less is known.
+VideoQuality quality_of(const std::filesystem::path& decoded, const std::filesystem::path& truth) {
+    FootageReader video(decoded);
+    FootageReader reference(truth);
+    std::vector<float> frame(video.shape().sites());
+    std::vector<float> reference_frame(reference.shape().sites());
+    QualityMeter meter(
+        reference.shape(),
+        {.margin = std::min(4, (reference.slots().value() - 1) / 2), .max_value = kBrightest});
+    while (video.read(frame) && reference.read(reference_frame)) meter.add(frame, reference_frame);
+    return meter.quality();
+}
+
 }  // namespace
 
 void decode_and_print(const RecordedClip& clip, const std::string& method,
                       const std::vector<std::string>& settings) {
     StreamReader reader(clip.stream, ReadPolicy::kStrict);
-    FootageReader truth(clip.truth);
-    std::vector<float> reference(truth.shape().sites());
-    const auto slots = static_cast<int>(reader.slots().value());
-    QualityMeter meter(truth.shape(),
-                       {.margin = std::min(4, (slots - 1) / 2), .max_value = kBrightest});
     Config config(settings);
+    const auto output = clip.stream.parent_path() / "decoded.npy";
+    NpyWriter video(output, output.string(), decoded_shape(reader.header()));
     const DecodeReport report =
         decode(reader, read_decode_options(decode_method_from_name(method), config),
                [&](std::int64_t, std::span<const float> frame) {
-                   truth.read(reference);
-                   meter.add(frame, reference);
+                   video.write(frame);
                    return true;
                });
+    video.finish();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const VideoQuality quality = meter.quality();
+    const VideoQuality quality = quality_of(output, clip.truth);
     fmt::print("figures {} {} {} {} {} {}\n", report.seconds,
                static_cast<double>(report.voxels) / report.seconds, quality.psnr_db,
                quality.psnr_gamma_db, quality.pu21_psnr_db, usage.ru_maxrss * 1024);
