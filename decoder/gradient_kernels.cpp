@@ -109,6 +109,19 @@ void static_frame(FrameShape shape, const DualStep& frame_step, const SlotPair& 
     }
 }
 
+void descend_all(Index count, const float* HWY_RESTRICT step, const float* HWY_RESTRICT x,
+                 float* HWY_RESTRICT gradient) {
+    for (Index i = 0; i < count; ++i) gradient[i] = x[i] - step[i] * gradient[i];
+}
+
+void extrapolate_all(Index count, const float* HWY_RESTRICT next, float* HWY_RESTRICT x,
+                     float* HWY_RESTRICT extrapolated) {
+    for (Index i = 0; i < count; ++i) {
+        extrapolated[i] = 2 * next[i] - x[i];
+        x[i] = next[i];
+    }
+}
+
 }  // namespace stipple::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -117,6 +130,8 @@ namespace stipple {
 
 HWY_EXPORT(spatial_frame);
 HWY_EXPORT(static_frame);
+HWY_EXPORT(descend_all);
+HWY_EXPORT(extrapolate_all);
 
 void update_spatial_dual(FrameShape shape, const DualStep& dual_step, const float* x,
                          const GradientDual& dual, float* gradient) noexcept {
@@ -126,6 +141,14 @@ void update_spatial_dual(FrameShape shape, const DualStep& dual_step, const floa
 void update_static_dual(FrameShape shape, const DualStep& dual_step, const SlotPair& x, float* dual,
                         float* gradient) noexcept {
     HWY_DYNAMIC_DISPATCH(static_frame)(shape, dual_step, x, dual, gradient);
+}
+
+void descend(std::size_t count, const float* step, const float* x, float* gradient) noexcept {
+    HWY_DYNAMIC_DISPATCH(descend_all)(count, step, x, gradient);
+}
+
+void extrapolate(std::size_t count, const float* next, float* x, float* extrapolated) noexcept {
+    HWY_DYNAMIC_DISPATCH(extrapolate_all)(count, next, x, extrapolated);
 }
 
 }  // namespace stipple

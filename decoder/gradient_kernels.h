@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "core/geometry.h"
 
 namespace stipple {
@@ -26,7 +28,7 @@ struct SlotPair {
     const float* next = nullptr;
 };
 
-// Kernels on whole frames; every SIMD target gives the same bits.
+// Kernels on whole frames, or on any number of pixels; every SIMD target gives the same bits.
 
 /// dual = project(dual + sigma grad x), then gradient = grad^T dual.
 void update_spatial_dual(FrameShape shape, const DualStep& dual_step, const float* x,
@@ -35,5 +37,11 @@ void update_spatial_dual(FrameShape shape, const DualStep& dual_step, const floa
 /// dual = project(dual + sigma (x.next - x.now)), then gradient -= dual.
 void update_static_dual(FrameShape shape, const DualStep& dual_step, const SlotPair& x, float* dual,
                         float* gradient) noexcept;
+
+/// gradient = x - step gradient
+void descend(std::size_t count, const float* step, const float* x, float* gradient) noexcept;
+
+/// extrapolated = 2 next - x, then x = next
+void extrapolate(std::size_t count, const float* next, float* x, float* extrapolated) noexcept;
 
 }  // namespace stipple

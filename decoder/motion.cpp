@@ -10,6 +10,7 @@
 #include <opencv2/video/tracking.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/light.h"
 #include "core/parallel.h"
@@ -18,9 +19,7 @@ namespace stipple {
 namespace {
 
 constexpr int kPatchPixels = 8;
-constexpr int kPatchStride = 4;
 constexpr int kGradientDescents = 12;
-constexpr int kRefinements = 3;
 constexpr double kBlurPixels = 0.7;
 
 /// What the flow looks at: 255 sqrt(luminance), 8 bits, slightly blurred. The square root, unlike
@@ -42,13 +41,14 @@ cv::Mat flow_image(const FluxVideo& video, int slot) {
     return image;
 }
 
-cv::Mat flow(const cv::Mat& from, const cv::Mat& to, int finest_scale) {
+cv::Mat flow(const cv::Mat& from, const cv::Mat& to, const MotionOptions& options) {
+    // A new one for each pair: results of one that has been used depend on what it has seen.
     const auto method = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM);
-    method->setFinestScale(finest_scale);
+    method->setFinestScale(options.finest_scale);
     method->setPatchSize(kPatchPixels);
-    method->setPatchStride(kPatchStride);
+    method->setPatchStride(options.patch_stride_px);
     method->setGradientDescentIterations(kGradientDescents);
-    method->setVariationalRefinementIterations(kRefinements);
+    method->setVariationalRefinementIterations(options.refinements);
     cv::Mat result;
     method->calc(from, to, result);
     return result;
@@ -95,7 +95,8 @@ void write_slot(const FlowPair& flow, float deviation_px, std::size_t voxel, Mot
     static const ConfidenceTable confidence;
     const float scale = 0.5F / (deviation_px * deviation_px);
     const auto fixed = [](float pixels) {
-        return static_cast<std::int16_t>(std::floor(pixels * MotionField::kShiftsPerPixel + 0.5F));
+        const float shift = pixels * MotionField::kShiftsPerPixel;
+        return static_cast<std::int16_t>(shift + (shift < 0 ? -0.5F : 0.5F));
     };
     for (int row = 0; row < flow.forth.rows; ++row)
         for (int col = 0; col < flow.forth.cols; ++col, ++voxel) {
@@ -128,8 +129,8 @@ std::vector<MotionField> estimate_motion(const FluxVideo& video, const MotionOpt
     parallel_for(0, video.slots() - 1, [&](int slot) {
         const cv::Mat& now = image[count(slot)];
         const cv::Mat& next = image[count(slot + 1)];
-        const cv::Mat forth = flow(now, next, options.finest_scale);
-        const cv::Mat back = flow(next, now, options.finest_scale);
+        const cv::Mat forth = flow(now, next, options);
+        const cv::Mat back = flow(next, now, options);
         write_slot({forth, back}, options.consistency_px, count(slot) * pixels, fields[0]);
         write_slot({back, forth}, options.consistency_px, count(slot + 1) * pixels, fields[1]);
     });

@@ -21,6 +21,8 @@ struct MotionField {
 
 struct MotionOptions {
     int finest_scale = 0;      ///< of the flow: 0 full, 1 half resolution
+    int patch_stride_px = 4;   ///< between the patches of the flow, which have 8 x 8 pixels
+    int refinements = 1;       ///< variational, of the flow at each scale
     float consistency_px = 1;  ///< confidence exp(-(e / it)^2 / 2), e: forth and back again
 };
 

@@ -15,20 +15,43 @@ namespace {
 
 constexpr float kMinStep = 0.1F;  // of the step at `step_flux`
 constexpr float kMaxStep = 4;
-constexpr int kBlurRadius = 3;  // pixels; a box of 7 has a standard deviation of 2
+constexpr int kBlurPixels = 7;  // a box of standard deviation 2
+constexpr int kBlurRadius = kBlurPixels / 2;
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
-/// Mean of 2 kBlurRadius + 1 values around each of `count`, `stride` apart; ends are repeated.
-void box_blur(int count, std::size_t stride, const float* from, float* to) {
-    for (int i = 0; i < count; ++i) {
-        float sum = 0;
-        for (int k = i - kBlurRadius; k <= i + kBlurRadius; ++k)
-            sum += from[index(std::clamp(k, 0, count - 1)) * stride];
-        to[index(i) * stride] = sum / (2 * kBlurRadius + 1);
+/// mean[i] of the kBlurPixels arrays that begin at `from(0)`, `from(1)`, ...
+template <typename From>
+void average(std::size_t count, const From& from, float* mean) {
+    std::fill_n(mean, count, 0.0F);
+    for (int k = 0; k < kBlurPixels; ++k) {
+        const float* array = from(k);
+        for (std::size_t i = 0; i < count; ++i) mean[i] += array[i];
     }
+    for (std::size_t i = 0; i < count; ++i) mean[i] /= kBlurPixels;
+}
+
+/// Each pixel becomes the mean of the box around it; borders are repeated.
+void box_blur(FrameShape shape, std::span<float> frame) {
+    const auto cols = index(shape.cols);
+    std::vector<float> across(frame.size());
+    std::vector<float> row(cols + 2 * kBlurRadius);
+    for (std::size_t first = 0; first < frame.size(); first += cols) {
+        const auto inside = row.begin() + kBlurRadius;
+        std::fill(row.begin(), inside, frame[first]);
+        std::fill(std::copy_n(&frame[first], cols, inside), row.end(), frame[first + cols - 1]);
+        average(
+            cols, [&](int k) { return &row[index(k)]; }, &across[first]);
+    }
+    for (int i = 0; i < shape.rows; ++i)
+        average(
+            cols,
+            [&](int k) {
+                return &across[index(std::clamp(i + k - kBlurRadius, 0, shape.rows - 1)) * cols];
+            },
+            &frame[index(i) * cols]);
 }
 
 /// Light of a frame as one plane.
@@ -49,12 +72,7 @@ std::vector<float> primal_steps(const FluxVideo& x, const MotionTvOptions& optio
         reduce_to_one_plane(x.frame(slot), frame);
         for (float& s : frame)
             s = options.step * std::clamp(s / options.step_flux, kMinStep, kMaxStep);
-        std::vector<float> across(shape.pixels());
-        const auto cols = index(shape.cols);
-        for (std::size_t row = 0; row < index(shape.rows); ++row)
-            box_blur(shape.cols, 1, &frame[row * cols], &across[row * cols]);
-        for (std::size_t col = 0; col < cols; ++col)
-            box_blur(shape.rows, cols, &across[col], &frame[col]);
+        box_blur(shape, frame);
     });
     return step;
 }
@@ -82,6 +100,13 @@ void cut_links_to_larger_steps(MotionField& field, FrameShape shape, std::span<c
                     field.confidence[i] = 0;
             }
     });
+}
+
+/// The first estimate shows no details, and is the least certain; details are worth a close look
+/// in the last round only.
+MotionOptions motion_options(int round, bool last) {
+    if (round == 0) return {.finest_scale = 1, .refinements = 3};
+    return {.patch_stride_px = last ? 4 : 6};
 }
 
 /// Counts iterations for a checkpoint. Finding the motion takes about as long as 8 of them.
@@ -125,24 +150,26 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const MotionTvOptions options = options_for(measurements, all_options);
     WorkCount work(options, checkpoint);
     FluxVideo x = nearest_samples(measurements);
+    TotalVariationSolver solver(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
         tv.reference_step = options.step;
         tv.after_iteration = [&] { return work.add_iteration(); };
-        minimise_total_variation(measurements, motion, step, tv, x);
+        solver.minimise(motion, step, tv, x);
     };
     minimise({}, primal_steps(x, options), options.at_rest);
     const FrameShape shape = x.shape();
     const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
     for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {
         refresh_variances(measurements, noise, x.data());
-        auto motion = estimate_motion(x, {.finest_scale = round == 0 ? 1 : 0});
+        const bool last = round + 1 == options.rounds;
+        auto motion = estimate_motion(x, motion_options(round, last));
         work.add_motion();
         const auto step = primal_steps(x, options);
         for (MotionField& field : motion)
             cut_links_to_larger_steps(field, shape, step, options.max_step_ratio);
         auto along_motion = options.along_motion;
-        if (round + 1 == options.rounds) along_motion.iterations = options.last_iterations;
+        if (last) along_motion.iterations = options.last_iterations;
         minimise(motion, step, along_motion);
     }
     if (work.stopped()) return {};

@@ -24,7 +24,7 @@ struct MotionTvOptions {
     /// The estimate that the first motion is found in: total variation at rest.
     TotalVariationOptions at_rest{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
     /// Along motion, once a round.
-    TotalVariationOptions along_motion{.iterations = 12};
+    TotalVariationOptions along_motion{.iterations = 8};
     int rounds = 3;
     int last_iterations = 30;  ///< of the last round, instead of those of `along_motion`
     MosaicTvOptions mosaic;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <vector>
 
 #include "core/parallel.h"
 #include "decoder/data_prox.h"
@@ -33,41 +34,57 @@ std::vector<PlaneGroup> plane_groups(FrameShape shape, float chroma_weight) {
     return {{0, 1, 1}, {1, 2, chroma_weight}};
 }
 
+}  // namespace
+
 /// The iteration and all that it remembers. Arrays have the order of FluxVideo; where there are
 /// opponents, all but x and the point of the proximal map are of these instead of R, G, B.
-class PrimalDual {
+class TotalVariationSolver::Impl {
   public:
-    PrimalDual(const Measurements& measurements, std::span<const MotionField> motion,
-               std::span<const float> step, const TotalVariationOptions& options, FluxVideo& x)
+    explicit Impl(const Measurements& measurements)
         : measurements_(measurements),
-          motion_(motion),
-          step_(step),
-          options_(options),
-          shape_(x.shape()),
-          groups_(plane_groups(shape_, options.chroma_weight)),
-          x_(x.data()),
-          extrapolated_(x_.begin(), x_.end()),
-          gradient_(x_.size()),
-          dual_col_(x_.size()),
-          dual_row_(x_.size()),
-          dual_link_(std::max<std::size_t>(motion.size(), 1), std::vector<float>(x_.size())) {
-        if (groups_.size() > 1)
-            for (int slot = 0; slot < measurements.slots; ++slot)
-                to_opponents(shape_.pixels(), triple(extrapolated_, slot, 0));
+          shape_(measurements.shape),
+          runs_(site_runs({.rows = shape_.rows, .cols = shape_.cols, .planes = 1})),
+          extrapolated_(new_array()),
+          gradient_(new_array()),
+          dual_col_(new_array()),
+          dual_row_(new_array()) {}
+
+    /// What `minimise` of the solver does, up to the first iteration.
+    void begin(std::span<const MotionField> motion, std::span<const float> step,
+               const TotalVariationOptions& options, FluxVideo& x) {
+        motion_ = motion;
+        step_ = step;
+        options_ = &options;
+        groups_ = plane_groups(shape_, options.chroma_weight);
+        x_ = x.data();
+        links_ = std::max<std::size_t>(motion.size(), 1);
+        while (dual_link_.size() < links_) dual_link_.push_back(new_array());
+        parallel_for(0, measurements_.slots, [&](int slot) {
+            const std::size_t first = frame(slot);
+            std::copy_n(&x_[first], shape_.sites(), &extrapolated_[first]);
+            if (groups_.size() > 1) to_opponents(shape_.pixels(), triple(extrapolated_, slot, 0));
+            std::fill_n(&dual_col_[first], shape_.sites(), 0.0F);
+            std::fill_n(&dual_row_[first], shape_.sites(), 0.0F);
+            for (std::size_t i = 0; i < links_; ++i)
+                std::fill_n(&dual_link_[i][first], shape_.sites(), 0.0F);
+        });
     }
 
     void iterate() {
         parallel_for(0, measurements_.slots, [&](int slot) { update_duals(slot); });
         parallel_for(0, measurements_.slots, [&](int slot) { add_partner_gradients(slot); });
-        const int runs = static_cast<int>((shape_.pixels() + kMaxRunSites - 1) / kMaxRunSites);
-        parallel_for(0, runs, [&](int i) {
-            const std::size_t begin = index(i) * kMaxRunSites;
-            update_primal({begin, std::min(begin + kMaxRunSites, shape_.pixels())});
-        });
+        parallel_for(0, static_cast<int>(runs_.size()),
+                     [&](int i) { update_primal(runs_[index(i)]); });
     }
 
   private:
-    [[nodiscard]] PlaneTriple triple(std::vector<float>& x, int slot, std::size_t pixel) const {
+    /// Left as it comes: setting it to 0 here would keep the other threads waiting.
+    using Array = std::unique_ptr<float[]>;
+
+    [[nodiscard]] Array new_array() const {
+        return std::make_unique_for_overwrite<float[]>(measurements_.voxels());
+    }
+    [[nodiscard]] PlaneTriple triple(const Array& x, int slot, std::size_t pixel) const {
         float* first = &x[frame(slot) + pixel];
         return {first, first + shape_.pixels(), first + 2 * shape_.pixels()};
     }
@@ -75,11 +92,11 @@ class PrimalDual {
     [[nodiscard]] std::size_t frame(int slot) const { return index(slot) * shape_.sites(); }
 
     [[nodiscard]] DualStep dual_step(int slot, float weight) const {
-        const auto links = static_cast<float>(dual_link_.size());
+        const auto links = static_cast<float>(links_);
         return {.step = &step_[index(slot) * shape_.pixels()],
                 .coupling = kSpatialCoupling + kTemporalCoupling * links,
                 .weight = weight,
-                .reference_step = options_.reference_step};
+                .reference_step = options_->reference_step};
     }
 
     [[nodiscard]] MotionLink link(std::size_t i, int slot) {
@@ -103,10 +120,10 @@ class PrimalDual {
         const std::size_t first = frame(slot) + skipped;
         float* gradient = &gradient_[first];
         const float* now = &extrapolated_[first];
-        update_spatial_dual(shape, dual_step(slot, group.weight * options_.spatial_weight), now,
+        update_spatial_dual(shape, dual_step(slot, group.weight * options_->spatial_weight), now,
                             {&dual_col_[first], &dual_row_[first]}, gradient);
-        const auto temporal = dual_step(
-            slot, group.weight * options_.temporal_weight / static_cast<float>(dual_link_.size()));
+        const auto temporal =
+            dual_step(slot, group.weight * options_->temporal_weight / static_cast<float>(links_));
         if (motion_.empty() && has(slot + 1))
             update_static_dual(shape, temporal, {now, now + shape_.sites()}, &dual_link_[0][first],
                                gradient);
@@ -146,7 +163,8 @@ class PrimalDual {
             }
         }
         for (std::size_t plane = 0; plane < shape_.sites(); plane += shape_.pixels())
-            data_prox(measurements_, {plane + pixels.begin, plane + pixels.end}, step_, gradient_);
+            data_prox(measurements_, {plane + pixels.begin, plane + pixels.end}, step_,
+                      {gradient_.get(), measurements_.voxels()});
         for (int slot = 0; slot < measurements_.slots; ++slot) {
             for (int plane = 0; plane < shape_.planes; ++plane) {
                 const std::size_t i = frame(slot) + index(plane) * shape_.pixels() + pixels.begin;
@@ -156,40 +174,33 @@ class PrimalDual {
         }
     }
 
-    /// gradient = x - step gradient
-    static void descend(std::size_t count, const float* step, const float* x, float* gradient) {
-        for (std::size_t i = 0; i < count; ++i) gradient[i] = x[i] - step[i] * gradient[i];
-    }
-    static void extrapolate(std::size_t count, const float* next, float* x, float* extrapolated) {
-        for (std::size_t i = 0; i < count; ++i) {
-            extrapolated[i] = 2 * next[i] - x[i];
-            x[i] = next[i];
-        }
-    }
-
     const Measurements& measurements_;
+    FrameShape shape_;
+    std::vector<SiteRun> runs_;  ///< of the pixels of a plane
     std::span<const MotionField> motion_;
     std::span<const float> step_;
-    TotalVariationOptions options_;
-    FrameShape shape_;
+    const TotalVariationOptions* options_ = nullptr;
     std::vector<PlaneGroup> groups_;
     std::span<float> x_;
-    std::vector<float> extrapolated_;
-    std::vector<float> gradient_;  ///< then the point that the proximal map takes
-    std::vector<float> dual_col_;
-    std::vector<float> dual_row_;
-    std::vector<std::vector<float>> dual_link_;
+    std::size_t links_ = 0;  ///< from a voxel
+    Array extrapolated_;
+    Array gradient_;  ///< then the point that the proximal map takes
+    Array dual_col_;
+    Array dual_row_;
+    std::vector<Array> dual_link_;
 };
 
-}  // namespace
+TotalVariationSolver::TotalVariationSolver(const Measurements& measurements)
+    : impl_(std::make_unique<Impl>(measurements)) {}
 
-void minimise_total_variation(const Measurements& measurements, std::span<const MotionField> motion,
-                              std::span<const float> step, const TotalVariationOptions& options,
-                              FluxVideo& x) {
-    assert(measurements.voxels() == x.voxels() && x.slots() == measurements.slots);
-    PrimalDual solver(measurements, motion, step, options, x);
+TotalVariationSolver::~TotalVariationSolver() = default;
+
+void TotalVariationSolver::minimise(std::span<const MotionField> motion,
+                                    std::span<const float> step,
+                                    const TotalVariationOptions& options, FluxVideo& x) {
+    impl_->begin(motion, step, options, x);
     for (int i = 0; i < options.iterations; ++i) {
-        solver.iterate();
+        impl_->iterate();
         if (!options.after_iteration()) return;
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,26 @@ struct TotalVariationOptions {
 /// where grad x is the forward difference to the right and below, D x = x(partner) - x(voxel)
 /// between slots, c the link's confidence; |.| is the Euclidean norm over directions and planes,
 /// so edges of all planes fall together (or over the planes of luma and of the opponents, each on
-/// their own). Partners are found along `motion` by bilinear
-/// interpolation; without motion, at the same pixel one slot later. `step` is the primal step of
-/// each pixel (order (slot, row, col), flux^2): the larger, the further the pixel moves in an
-/// iteration (Pock and Chambolle, ICCV 2011), and the cheaper its differences are. The same bits
-/// for any thread count and SIMD target.
-void minimise_total_variation(const Measurements& measurements, std::span<const MotionField> motion,
-                              std::span<const float> step, const TotalVariationOptions& options,
-                              FluxVideo& x);
+/// their own). Partners are found along motion by bilinear interpolation; without motion, at the
+/// same pixel one slot later.
+class TotalVariationSolver {
+  public:
+    /// `measurements` must outlive the solver; its variances may change between calls.
+    explicit TotalVariationSolver(const Measurements& measurements);
+    ~TotalVariationSolver();
+    TotalVariationSolver(const TotalVariationSolver&) = delete;
+    TotalVariationSolver& operator=(const TotalVariationSolver&) = delete;
+
+    /// `step` is the primal step of each pixel (order (slot, row, col), flux^2): the larger, the
+    /// further the pixel moves in an iteration (Pock and Chambolle, ICCV 2011), and the cheaper its
+    /// differences are. The same bits for any thread count and SIMD target. Works in memory that is
+    /// kept from call to call, 20 bytes a voxel and 4 more with motion.
+    void minimise(std::span<const MotionField> motion, std::span<const float> step,
+                  const TotalVariationOptions& options, FluxVideo& x);
+
+  private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace stipple

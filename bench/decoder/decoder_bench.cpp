@@ -77,8 +77,8 @@ void iteration(benchmark::State& state) {
     FluxVideo x = nearest_samples(measurements(1));
     const auto fields = estimate_motion(x, {});
     const std::vector<float> step(x.voxels(), 0.005F);
-    for (auto run : state)
-        minimise_total_variation(measurements(1), fields, step, {.iterations = 10}, x);
+    TotalVariationSolver solver(measurements(1));
+    for (auto run : state) solver.minimise(fields, step, {.iterations = 10}, x);
     state.SetItemsProcessed(10 * state.iterations() * static_cast<std::int64_t>(x.voxels()));
 }
 

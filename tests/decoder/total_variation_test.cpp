@@ -27,7 +27,7 @@ FluxVideo solve(const Measurements& m, TotalVariationOptions options,
     FluxVideo x(m.slots, m.shape);
     const std::vector<float> step(static_cast<std::size_t>(m.slots) * m.shape.pixels(), 0.05F);
     options.reference_step = 0.05F;
-    minimise_total_variation(m, motion, step, options, x);
+    TotalVariationSolver(m).minimise(motion, step, options, x);
     return x;
 }
 
@@ -54,9 +54,10 @@ TEST(TotalVariationTest, MovesTwoNeighboursByWeightTimesVariance) {
 /// A quarter of the step doubles the weight.
 TEST(TotalVariationTest, WeighsDifferencesOfSmallStepsMore) {
     FluxVideo x(1, {1, 2, 1});
-    minimise_total_variation(direct_samples(1, x.shape(), {0.2F, 0.6F}, 0.01F), {},
-                             std::vector<float>(2, 0.05F),
-                             {.iterations = 3000, .spatial_weight = 5, .reference_step = 0.2F}, x);
+    const Measurements m = direct_samples(1, x.shape(), {0.2F, 0.6F}, 0.01F);
+    TotalVariationSolver(m).minimise(
+        {}, std::vector<float>(2, 0.05F),
+        {.iterations = 3000, .spatial_weight = 5, .reference_step = 0.2F}, x);
     EXPECT_NEAR(x.data()[0], 0.2 + 2 * 5 * 0.01, 1e-4);
 }
 
