@@ -31,4 +31,15 @@ CameraSettings camera_settings(const CameraArguments& arguments) {
     return config.entries();
 }
 
+bool is_replay(const CameraArguments& arguments) {
+    return arguments.address.rfind("replay:", 0) == 0;
+}
+
+SessionOptions session_options(const CameraArguments& arguments, SessionOptions options) {
+    if (!is_replay(arguments)) return options;
+    options.reconnect = false;
+    options.stall = std::chrono::milliseconds(0);
+    return options;
+}
+
 }  // namespace stipple

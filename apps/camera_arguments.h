@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "capture/capture_session.h"
 
 namespace CLI {
 class App;
@@ -24,5 +25,13 @@ void add_camera_arguments(CLI::App& command, CameraArguments& arguments);
 
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
+
+/// Whether the address is that of a recording or footage.
+[[nodiscard]] bool is_replay(const CameraArguments& arguments);
+
+/// What a session may take for a fault: a replay has an end, and pauses where the recording has
+/// them.
+[[nodiscard]] SessionOptions session_options(const CameraArguments& arguments,
+                                             SessionOptions options);
 
 }  // namespace stipple

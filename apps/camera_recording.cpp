@@ -36,7 +36,7 @@ std::int64_t realtime_ns() {
 
 /// `output`, or a file in it that is named by the time.
 std::filesystem::path file_for(const std::string& output) {
-    const std::filesystem::path path(output);
+    std::filesystem::path path(output);
     if (!std::filesystem::is_directory(path)) return path;
     return path / fmt::format("{:%Y%m%d_%H%M%S}.strec", fmt::gmtime(std::time(nullptr)));
 }
@@ -58,7 +58,7 @@ class CameraRecording {
         : arguments_(arguments),
           output_(file_for(arguments.output), run.force),
           settings_(camera_settings(arguments.camera)),
-          session_([this] { return open(); }, arguments.session),
+          session_([this] { return open(); }, session_options(arguments.camera, arguments.session)),
           writer_(output_.partial(), session_record(session_.description(), settings_),
                   output_.final_path().string()),
           queue_(writer_, kQueueBytes) {
@@ -152,7 +152,8 @@ void CameraRecording::finish() {
     else
         throw_if_stopped();
     if (failure_) throw DeviceError(*failure_);
-    if (!end_reason_.empty()) throw DeviceError(arguments_.camera.address, end_reason_);
+    if (!end_reason_.empty() && !is_replay(arguments_.camera))
+        throw DeviceError(arguments_.camera.address, end_reason_);
 }
 
 nlohmann::ordered_json CameraRecording::json() const {

@@ -23,10 +23,12 @@ void add_capture_record(CLI::App& capture, Action& action) {
     command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
         ->check(CLI::PositiveNumber)
         ->type_name("S");
-    command->add_flag("--coded", *coded,
-                      "the samples of a camera of `capture serve --mode coded`, as `emulate` "
-                      "writes them");
     add_session_arguments(*command, options->session);
+    auto* coded_flag = command->add_flag(
+        "--coded", *coded,
+        "the samples of a camera of `capture serve --mode coded`, as `emulate` writes them");
+    for (const char* option : {"--incomplete", "--stall", "--no-reconnect"})
+        coded_flag->excludes(command->get_option(option));
     command->footer(
         "Examples:\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"

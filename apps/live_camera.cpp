@@ -12,23 +12,16 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience{50};
 
-SessionOptions options_for(bool replay, SessionOptions options) {
-    if (!replay) return options;
-    options.reconnect = false;  // a replay has an end, and pauses where the recording has them
-    options.stall = std::chrono::milliseconds(0);
-    return options;
-}
-
 }  // namespace
 
 LiveCamera::LiveCamera(const CameraArguments& camera, const SessionOptions& session,
                        std::size_t waiting_frames)
-    : replay_(camera.address.rfind("replay:", 0) == 0),
+    : replay_(is_replay(camera)),
       session_(
           [camera, settings = camera_settings(camera)] {
               return open_camera(camera.address, settings, camera.buffers);
           },
-          options_for(replay_, session)),
+          session_options(camera, session)),
       layout_(session_.layout()),
       description_(session_.description()),
       most_(waiting_frames),

@@ -17,16 +17,11 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPatience{50};
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
-constexpr std::string_view kReplay = "replay:";
-
-bool is_replay(const std::string& address) {
-    return address.rfind(kReplay, 0) == 0;
-}
-
 /// What the stream says of where its light came from: no address, no time.
-std::string source_name(const std::string& address, const CameraDescription& camera) {
-    if (!is_replay(address)) return camera.model;
-    return std::filesystem::path(address.substr(kReplay.size())).filename().string();
+std::string source_name(const CameraArguments& arguments, const CameraDescription& camera) {
+    if (!is_replay(arguments)) return camera.model;
+    const auto file = arguments.address.substr(arguments.address.find(':') + 1);
+    return std::filesystem::path(file).filename().string();
 }
 
 std::int64_t monotonic_ns() {
@@ -41,7 +36,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
       to_light_(camera_.layout(), arguments.black_level_dn),
       setup_(set_up_sensor(arguments.sensor, to_light_.shape())),
       recording_(arguments.output, run.force, setup_,
-                 source_name(arguments.camera.address, camera_.description())),
+                 source_name(arguments.camera, camera_.description())),
       light_(to_light_.shape().sites()) {
     for (const std::string& warning : camera_.description().warnings)
         fmt::print(stderr, "stipple: {}\n", warning);
@@ -99,7 +94,7 @@ void LiveEmulation::finish() {
     }
     recording_.finish();
     std::sort(latencies_us_.begin(), latencies_us_.end());
-    if (!end_reason_.empty() && !is_replay(arguments_.camera.address))
+    if (!end_reason_.empty() && !is_replay(arguments_.camera))
         throw DeviceError(arguments_.camera.address, end_reason_);
 }
 

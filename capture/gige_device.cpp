@@ -125,7 +125,7 @@ GigeDevice::Reply GigeDevice::on(const GvcpWriteRegisters& command, UdpEndpoint 
         if (reply.status != GvcpStatus::kSuccess) break;
         ++done;
     }
-    append_be(reply.content, done);
+    append_be(reply.content, static_cast<std::uint16_t>(done));
     return reply;
 }
 
@@ -141,13 +141,13 @@ GigeDevice::Reply GigeDevice::on(const GvcpReadMemory& command, UdpEndpoint peer
 
 GigeDevice::Reply GigeDevice::on(const GvcpWriteMemory& command, UdpEndpoint peer, Time now) {
     Reply reply{GvcpStatus::kSuccess, {0, 0}};
-    std::uint16_t done = 0;
-    for (; done < command.data.size(); done = static_cast<std::uint16_t>(done + 4)) {
+    std::size_t done = 0;
+    for (; done < command.data.size(); done += 4) {
         const auto value = load_be<std::uint32_t>(&command.data[done]);
-        reply.status = write(command.address + done, value, peer, now);
+        reply.status = write(command.address + static_cast<std::uint32_t>(done), value, peer, now);
         if (reply.status != GvcpStatus::kSuccess) break;
     }
-    append_be(reply.content, done);
+    append_be(reply.content, static_cast<std::uint16_t>(done));
     return reply;
 }
 

@@ -10,7 +10,7 @@ import threading
 import unittest
 
 import numpy as np
-from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, USAGE, ProgramTest
 
 CAUSES = ("device", "transport", "host_underrun", "own_drop", "reconnect")
 
@@ -134,6 +134,15 @@ class CaptureRecordTest(ProgramTest):
         for before, record in zip(records, records[1:]):
             self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
 
+    def test_a_replay_ends_where_its_recording_does(self):
+        self.serve()
+        self.figures("capture", "record", self.address, "-o", "clip.strec", "--frames", 5)
+        figures = self.figures("capture", "record", "replay:clip.strec", "-o", "copy.strec")
+        self.assertEqual(figures["frames"], 5)
+        hashes = [[record["payload_hash"] for record in records_of(self.folder / name)]
+                  for name in ("clip.strec", "copy.strec")]
+        self.assertEqual(hashes[0], hashes[1])
+
     def test_the_doctor_knows_who_holds_control(self):
         self.serve()
         found = self.figures("capture", "doctor", self.address)["findings"]
@@ -153,6 +162,7 @@ class CaptureRecordTest(ProgramTest):
         self.fails(INPUT, ["is no address of a camera"], "capture", "record", "lan:1", "-o", "x")
         self.fails(DEVICE, ["no camera answers"], "capture", "record", "gige:127.254.254.253", "-o",
                    "x")
+        self.fails(USAGE, ["--stall excludes --coded"], *camera, "--coded", "--stall", 0)
         (self.folder / "camera.toml").write_text("Width = [1, 2]\n")
         self.fails(INPUT, ["camera.toml:1", "is a list"], *camera, "--config", "camera.toml")
 
