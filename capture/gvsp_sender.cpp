@@ -19,7 +19,7 @@ DatagramParts parts_of(const GvspPacket& packet) {
 
 }  // namespace
 
-void GvspSender::send(std::shared_ptr<const NumberedBlock> block, UdpEndpoint to,
+void GvspSender::send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
                       std::chrono::nanoseconds delay) {
     keep(block);
     const auto order = packets_to_send(faults_, block->number, block->block.packets());

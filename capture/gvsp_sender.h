@@ -31,7 +31,7 @@ class GvspSender {
         : socket_(socket), faults_(faults) {}
 
     /// `delay` passes between two packets.
-    void send(std::shared_ptr<const NumberedBlock> block, UdpEndpoint to,
+    void send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
               std::chrono::nanoseconds delay);
     void resend(const GvcpPacketResend& wanted, UdpEndpoint to);
     void forget();

@@ -98,7 +98,8 @@ void unpack_row(const PixelFormat& format, Bytes row, Samples samples) noexcept 
 
 void unpack_frame(const FrameLayout& layout, Bytes payload, std::vector<std::uint16_t>& samples) {
     const PixelFormat& format = *layout.format;
-    const auto row_samples = static_cast<std::size_t>(layout.width * format.planes);
+    const auto row_samples =
+        static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(format.planes);
     const auto rows = static_cast<std::size_t>(layout.height);
     const std::size_t row_bytes = format.row_bytes(layout.width);
     samples.resize(row_samples * rows);

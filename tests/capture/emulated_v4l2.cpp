@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <umockdev.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <linux/videodev2.h>
-#include <umockdev.h>
 
 #include <cstdint>
 #include <deque>
@@ -11,6 +10,10 @@
 #include <span>
 #include <string>
 #include <vector>
+
+struct _UMockdevTestbed;  // umockdev.h: its types stay in the .cpp file
+struct _UMockdevIoctlBase;
+struct _UMockdevIoctlClient;
 
 namespace stipple {
 
@@ -69,7 +72,8 @@ class EmulatedV4l2 {
     [[nodiscard]] std::size_t queued() const;
     [[nodiscard]] std::int64_t control(std::uint32_t id) const;
 
-    static gboolean on_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client, gpointer self);
+    /// The signal handler of umockdev: gboolean (base, client, user data).
+    static int on_ioctl(_UMockdevIoctlBase* base, _UMockdevIoctlClient* client, void* self);
 
   private:
     int answer(unsigned long request, void* argument);
@@ -106,8 +110,8 @@ class EmulatedV4l2 {
     std::deque<EmulatedFrame> frames_;
     std::map<unsigned long, std::deque<int>> failures_;
     std::map<unsigned long, int> calls_;
-    UMockdevTestbed* testbed_ = nullptr;
-    UMockdevIoctlBase* handler_ = nullptr;
+    _UMockdevTestbed* testbed_ = nullptr;
+    _UMockdevIoctlBase* handler_ = nullptr;
     std::span<std::uint8_t> file_;  ///< what clients map
 };
 
