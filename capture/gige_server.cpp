@@ -39,8 +39,8 @@ std::uint32_t address_of(const GigeServerOptions& options) {
     throw InputError("--address " + options.address, "is no IPv4 address such as 127.0.0.1");
 }
 
-NetworkInterface interface_at(std::uint32_t address) {
-    if (const auto interface = interface_of(address)) return *interface;
+LocalNetwork interface_at(std::uint32_t address) {
+    if (const auto interface = local_network_of(address)) return *interface;
     throw DeviceError(ipv4_text(address),
                       "no network interface of this machine has such an address; `ip address` "
                       "lists those it has");
@@ -85,7 +85,7 @@ struct GigeServer::Impl {
     FrameSource& source;
     GigeServerOptions options;
     std::uint32_t address;
-    NetworkInterface interface;
+    LocalNetwork interface;
     UdpSocket control;
     std::vector<UdpSocket> broadcasts;
     UdpSocket data;

@@ -77,13 +77,13 @@ std::string ipv4_text(std::uint32_t address) {
     return text.data();
 }
 
-std::optional<NetworkInterface> interface_of(std::uint32_t address) {
+std::optional<LocalNetwork> local_network_of(std::uint32_t address) {
     const InterfaceList list = interfaces();
     for (const ifaddrs* at = list.get(); at != nullptr; at = at->ifa_next) {
         const std::uint32_t own = address_of(at->ifa_addr);
         const std::uint32_t mask = address_of(at->ifa_netmask);
         if (own == 0 || (own & mask) != (address & mask)) continue;
-        return NetworkInterface{at->ifa_name, static_cast<int>(if_nametoindex(at->ifa_name)), mask};
+        return LocalNetwork{at->ifa_name, static_cast<int>(if_nametoindex(at->ifa_name)), mask};
     }
     return {};
 }

@@ -20,15 +20,15 @@ struct UdpEndpoint {
 [[nodiscard]] std::optional<std::uint32_t> parse_ipv4(const std::string& text);
 [[nodiscard]] std::string ipv4_text(std::uint32_t address);
 
-/// The network interface that an address of this machine belongs to.
-struct NetworkInterface {
+/// A network that this machine has an interface in.
+struct LocalNetwork {
     std::string name;
     int index = 0;
     std::uint32_t netmask = 0xFFFFFF00;
 };
 
-/// The interface whose network `address` lies in; nothing if there is none.
-[[nodiscard]] std::optional<NetworkInterface> interface_of(std::uint32_t address);
+/// The network that `address` lies in; nothing if it is none of ours.
+[[nodiscard]] std::optional<LocalNetwork> local_network_of(std::uint32_t address);
 
 struct Datagram {
     std::vector<std::uint8_t> bytes;
