@@ -74,6 +74,12 @@ class ChecksTest(unittest.TestCase):
     def test_a_header_has_pragma_once(self):
         self.assertEqual(self.places(headers.check, {"core/a.h": "int f();\n"}), ["core/a.h:1"])
 
+    def test_a_type_has_one_definition(self):
+        files = {"core/a.h": "#pragma once\nclass Twice;\nstruct Once {\n};\n",
+                 "core/b.h": "#pragma once\nstruct Once;\nclass Twice : Once {\n};\n",
+                 "core/c.h": "#pragma once\nenum class Twice : char { kA };\n"}
+        self.assertEqual(self.places(headers.check, files), ["core/c.h:2"])
+
     def test_a_source_that_is_not_built_is_found(self):
         files = {"core/CMakeLists.txt": "stipple_module(core SOURCES new_plane.cpp HEADERS a.h)\n",
                  "core/plane.cpp": "", "core/new_plane.cpp": "", "core/a.h": "",
