@@ -141,6 +141,7 @@ void AravisStream::Impl::set_packet_size(std::optional<int> wanted) {
     if (!interface) return;
     facts["interface"] = interface->name;
     link_faults_before = link_faults(interface->name);
+    if (interface->mtu == 0) return;
     facts["mtu"] = fmt::format("{}", interface->mtu);
     if (static_cast<int>(size) > interface->mtu)
         warnings.push_back(

@@ -56,7 +56,8 @@ std::vector<DoctorFinding> examine_network() {
             finding.fix = fmt::format("ip link set {} up", interface.name);
         }
         findings.push_back(finding);
-        if (!interface.is_loopback) findings.push_back(judge_mtu(interface.name, interface.mtu));
+        if (!interface.is_loopback && interface.mtu > 0)
+            findings.push_back(judge_mtu(interface.name, interface.mtu));
     }
     if (findings.empty())
         findings.push_back({Level::kWarning, "interfaces", "none has an IPv4 address",

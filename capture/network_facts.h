@@ -12,7 +12,7 @@ struct NetworkInterface {
     std::string name;
     std::string address;
     std::string netmask;
-    int mtu = 0;
+    int mtu = 0;  ///< bytes; 0 where the system does not say (no /sys)
     bool is_up = false;
     bool is_loopback = false;
 };
