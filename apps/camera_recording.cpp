@@ -12,8 +12,8 @@
 #include "apps/json_file.h"
 #include "apps/progress.h"
 #include "capture/open_camera.h"
-#include "capture/recording_queue.h"
-#include "capture/recording_writer.h"
+#include "capture/recording/recording_queue.h"
+#include "capture/recording/recording_writer.h"
 #include "core/error.h"
 #include "core/pending_output.h"
 

@@ -7,9 +7,9 @@
 
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
-#include "capture/network_doctor.h"
-#include "capture/usb_findings.h"
-#include "capture/v4l2_listing.h"
+#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/usb_findings.h"
+#include "capture/v4l2/v4l2_listing.h"
 
 namespace stipple {
 namespace {

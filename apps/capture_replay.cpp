@@ -7,7 +7,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
-#include "capture/recording_footage.h"
+#include "capture/recording/recording_footage.h"
 #include "core/frame_writer.h"
 
 namespace stipple {

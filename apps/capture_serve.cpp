@@ -12,7 +12,7 @@
 #include "apps/json_file.h"
 #include "apps/served_source.h"
 #include "apps/timing_arguments.h"
-#include "capture/gige_server.h"
+#include "capture/serve/gige_server.h"
 
 namespace stipple {
 namespace {

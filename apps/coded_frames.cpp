@@ -1,6 +1,6 @@
 #include "apps/coded_frames.h"
 
-#include "capture/coded_payload.h"
+#include "capture/serve/coded_payload.h"
 #include "core/error.h"
 
 namespace stipple {

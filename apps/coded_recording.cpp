@@ -10,8 +10,8 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
-#include "capture/coded_payload.h"
 #include "capture/open_camera.h"
+#include "capture/serve/coded_payload.h"
 #include "core/error.h"
 #include "core/pending_output.h"
 #include "stream/packet_order.h"

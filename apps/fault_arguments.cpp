@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "capture/gige_server.h"
+#include "capture/serve/gige_server.h"
 
 namespace stipple {
 

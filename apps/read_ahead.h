@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "capture/recording_footage.h"
+#include "capture/recording/recording_footage.h"
 #include "core/footage_reader.h"
 
 namespace stipple {

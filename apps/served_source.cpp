@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/coded_frames.h"
-#include "capture/footage_frames.h"
-#include "capture/recording_frames.h"
+#include "capture/serve/footage_frames.h"
+#include "capture/serve/recording_frames.h"
 #include "core/error.h"
 
 namespace stipple {

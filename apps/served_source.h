@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/sensor_setup.h"
-#include "capture/frame_source.h"
+#include "capture/serve/frame_source.h"
 #include "core/footage_reader.h"
 
 namespace stipple {

@@ -1,7 +1,7 @@
 #include "capture/camera_listing.h"
 
-#include "capture/aravis_camera.h"
-#include "capture/v4l2_listing.h"
+#include "capture/aravis/aravis_camera.h"
+#include "capture/v4l2/v4l2_listing.h"
 #include "core/error.h"
 
 namespace stipple {

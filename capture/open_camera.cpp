@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "capture/aravis_camera.h"
-#include "capture/replay_camera.h"
-#include "capture/v4l2_camera.h"
+#include "capture/aravis/aravis_camera.h"
+#include "capture/recording/replay_camera.h"
+#include "capture/v4l2/v4l2_camera.h"
 #include "core/error.h"
 
 namespace stipple {

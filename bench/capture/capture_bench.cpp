@@ -8,8 +8,8 @@
 
 #include "capture/frame_light.h"
 #include "capture/pixel_unpack.h"
-#include "capture/recording_reader.h"
-#include "capture/recording_writer.h"
+#include "capture/recording/recording_reader.h"
+#include "capture/recording/recording_writer.h"
 
 namespace stipple {
 namespace {

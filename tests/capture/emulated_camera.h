@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "capture/v4l2_camera.h"
-#include "tests/capture/emulated_v4l2.h"
+#include "capture/v4l2/v4l2_camera.h"
+#include "tests/capture/v4l2/emulated_v4l2.h"
 
 namespace stipple {
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "capture/gige_device.h"
-#include "capture/gvcp_codec.h"
+#include "capture/serve/gige_device.h"
+#include "capture/serve/gvcp_codec.h"
 
 namespace stipple {
 namespace {

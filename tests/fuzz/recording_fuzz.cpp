@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "capture/pixel_unpack.h"
-#include "capture/recording_reader.h"
+#include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <variant>
 
-#include "capture/v4l2_camera.h"
-#include "capture/v4l2_controls.h"
-#include "capture/v4l2_device.h"
+#include "capture/v4l2/v4l2_camera.h"
+#include "capture/v4l2/v4l2_controls.h"
+#include "capture/v4l2/v4l2_device.h"
 
 namespace stipple {
 

@@ -1,0 +1,22 @@
+#include "capture/aravis/aravis_camera.h"
+#include "capture/doctor/network_doctor.h"
+#include "core/error.h"
+
+namespace stipple {
+
+std::unique_ptr<Camera> open_aravis_camera(const std::string& address, const CameraSettings&,
+                                           const CameraBuffers&) {
+    throw DeviceError(address, "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
+}
+
+std::vector<CameraListing> list_aravis_cameras() {
+    throw DeviceError("GenICam cameras",
+                      "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
+}
+
+std::vector<DoctorFinding> examine_genicam_camera(const std::string&) {
+    return {{DoctorFinding::Level::kProblem, "camera", "built without Aravis",
+             "configure with -DSTIPPLE_ARAVIS=ON"}};
+}
+
+}  // namespace stipple

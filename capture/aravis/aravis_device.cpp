@@ -1,0 +1,294 @@
+#include "capture/aravis/aravis_device.h"
+
+#include <arpa/inet.h>
+#include <arv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+/// Takes what a GLib function has to complain of.
+class Complaint {
+  public:
+    ~Complaint() { g_clear_error(&error_); }
+    Complaint() = default;
+    Complaint(const Complaint&) = delete;
+    Complaint& operator=(const Complaint&) = delete;
+    GError** slot() { return &error_; }
+    [[nodiscard]] bool any() const { return error_ != nullptr; }
+    [[nodiscard]] std::string text() const {
+        return error_ == nullptr ? std::string("no reason given") : std::string(error_->message);
+    }
+
+  private:
+    GError* error_ = nullptr;
+};
+
+ArvDevice* open_gige(const std::string& address, const std::string& ip) {
+    in_addr parsed{};
+    if (inet_pton(AF_INET, ip.c_str(), &parsed) != 1)
+        throw InputError(address,
+                         "is no IPv4 address: write gige:192.168.0.5 (`stipple capture "
+                         "list` shows the cameras that answer)");
+    Complaint complaint;
+    ArvDevice* device =
+        arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), complaint.slot());
+    if (device == nullptr)
+        throw DeviceError(address,
+                          fmt::format("no camera answers ({}): check power, cable and that the "
+                                      "address is in the subnet of an interface of this machine "
+                                      "(`stipple capture doctor`)",
+                                      complaint.text()));
+    return device;
+}
+
+ArvDevice* open_usb(const std::string& address, const std::string& serial) {
+    ArvInterface* usb = arv_uv_interface_get_instance();
+    arv_interface_update_device_list(usb);
+    Complaint complaint;
+    for (unsigned i = 0; i < arv_interface_get_n_devices(usb); ++i) {
+        const char* found = arv_interface_get_device_serial_nbr(usb, i);
+        if (found == nullptr || serial != found) continue;
+        ArvDevice* device =
+            arv_interface_open_device(usb, arv_interface_get_device_id(usb, i), complaint.slot());
+        if (device != nullptr) return device;
+        throw DeviceError(address,
+                          fmt::format("cannot be opened ({}): another program may have it, "
+                                      "or this user may not (`stipple capture doctor`)",
+                                      complaint.text()));
+    }
+    throw DeviceError(address,
+                      "no USB3 Vision camera has this serial number: check the cable, and "
+                      "that this user may read and write its /dev/bus/usb node");
+}
+
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+std::string choices_of(ArvDevice* device, const char* feature) {
+    guint count = 0;
+    const char** names = arv_device_dup_available_enumeration_feature_values_as_strings(
+        device, feature, &count, nullptr);
+    std::string text;
+    for (guint i = 0; i < count; ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", names[i]);
+    g_free(names);
+    return text;
+}
+
+/// For the features that Aravis sets by the names that cameras of all ages have for them.
+using SetNumber = void (*)(ArvCamera*, double, GError**);
+constexpr std::array<std::pair<const char*, SetNumber>, 4> kNumbers{{
+    {"AcquisitionFrameRate", arv_camera_set_frame_rate},
+    {"ExposureTime", arv_camera_set_exposure_time},
+    {"Gain", arv_camera_set_gain},
+    {"BlackLevel", arv_camera_set_black_level},
+}};
+
+constexpr std::uint64_t kPrimaryApplicationPort = 0x0A10;  // GigE Vision 2.0, 27.38
+constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
+
+}  // namespace
+
+struct AravisDevice::Impl {
+    ArvCamera* camera = nullptr;
+    ArvDevice* device = nullptr;
+
+    ~Impl() { g_clear_object(&camera); }
+    void set_number(const std::string& place, SetNumber set, const std::string& value) const;
+    void set_choice(const std::string& place, const char* feature, const std::string& value) const;
+    void set_integer(const std::string& place, const char* feature, const std::string& value) const;
+    void set_other(const std::string& place, const char* feature, const std::string& value) const;
+};
+
+AravisDevice::AravisDevice(std::string address)
+    : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
+    const auto colon = address_.find(':');
+    const std::string rest = address_.substr(colon + 1);
+    ArvDevice* device =
+        address_.starts_with("gige:") ? open_gige(address_, rest) : open_usb(address_, rest);
+    Complaint complaint;
+    impl_->camera = arv_camera_new_with_device(device, complaint.slot());
+    g_object_unref(device);
+    if (impl_->camera == nullptr)
+        throw DeviceError(address_, fmt::format("is no usable camera: {}", complaint.text()));
+    impl_->device = arv_camera_get_device(impl_->camera);
+    arv_device_set_range_check_policy(impl_->device, ARV_RANGE_CHECK_POLICY_ENABLE);
+}
+
+AravisDevice::~AravisDevice() = default;
+
+void* AravisDevice::native() const {
+    return impl_->camera;
+}
+
+bool AravisDevice::is_gige() const {
+    return arv_camera_is_gv_device(impl_->camera) != FALSE;
+}
+
+bool AravisDevice::is_controller() const {
+    return !is_gige() || arv_gv_device_is_controller(ARV_GV_DEVICE(impl_->device)) != FALSE;
+}
+
+std::string AravisDevice::controller() const {
+    std::uint32_t ip = 0;
+    std::uint32_t port = 0;
+    if (!is_gige() ||
+        arv_device_read_register(impl_->device, kPrimaryApplicationIp, &ip, nullptr) == FALSE ||
+        ip == 0)
+        return {};
+    arv_device_read_register(impl_->device, kPrimaryApplicationPort, &port, nullptr);
+    return fmt::format("{}.{}.{}.{}:{}", ip >> 24U, ip >> 16U & 255U, ip >> 8U & 255U, ip & 255U,
+                       port & 0xFFFFU);
+}
+
+bool AravisDevice::has(const std::string& feature) const {
+    ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
+    return node != nullptr && ARV_IS_GC_FEATURE_NODE(node) != FALSE &&
+           arv_gc_feature_node_is_available(ARV_GC_FEATURE_NODE(node), nullptr) != FALSE;
+}
+
+std::optional<std::string> AravisDevice::read(const std::string& feature) const {
+    if (!has(feature)) return std::nullopt;
+    ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
+    if (ARV_IS_GC_CATEGORY(node) || ARV_IS_GC_COMMAND(node)) return std::nullopt;
+    auto* named = ARV_GC_FEATURE_NODE(node);
+    if (arv_gc_feature_node_get_actual_access_mode(named) == ARV_GC_ACCESS_MODE_WO)
+        return std::nullopt;
+    Complaint complaint;
+    const char* value = arv_gc_feature_node_get_value_as_string(named, complaint.slot());
+    if (complaint.any() || value == nullptr) return std::nullopt;
+    return std::string(value);
+}
+
+std::optional<double> AravisDevice::read_number(const std::string& feature) const {
+    const auto text = read(feature);
+    return text ? parsed<double>(*text) : std::nullopt;
+}
+
+void AravisDevice::Impl::set_number(const std::string& place, SetNumber set,
+                                    const std::string& value) const {
+    const auto number = parsed<double>(value);
+    if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+    Complaint complaint;
+    set(camera, *number, complaint.slot());
+    if (complaint.any()) throw InputError(place, complaint.text());
+}
+
+void AravisDevice::Impl::set_choice(const std::string& place, const char* feature,
+                                    const std::string& value) const {
+    Complaint complaint;
+    arv_device_set_string_feature_value(device, feature, value.c_str(), complaint.slot());
+    if (complaint.any())
+        throw InputError(place, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
+                                            complaint.text(), choices_of(device, feature)));
+    const char* back = arv_device_get_string_feature_value(device, feature, nullptr);
+    if (back == nullptr || value != back)
+        throw DeviceError(place, fmt::format("asked for {}, the camera stays at {}", value,
+                                             back == nullptr ? "?" : back));
+}
+
+void AravisDevice::Impl::set_integer(const std::string& place, const char* feature,
+                                     const std::string& value) const {
+    const auto number = parsed<gint64>(value);
+    if (!number) throw InputError(place, fmt::format("needs an integer, but is \"{}\"", value));
+    Complaint complaint;
+    arv_device_set_integer_feature_value(device, feature, *number, complaint.slot());
+    if (complaint.any()) throw InputError(place, complaint.text());
+    const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
+    if (back != *number)
+        throw DeviceError(place, fmt::format("asked for {}, the camera made it {}; ask for that if "
+                                             "it will do",
+                                             *number, back));
+}
+
+void AravisDevice::Impl::set_other(const std::string& place, const char* feature,
+                                   const std::string& value) const {
+    Complaint complaint;
+    ArvGcNode* node = arv_device_get_feature(device, feature);
+    if (ARV_IS_GC_BOOLEAN(node)) {
+        const bool on = value == "true" || value == "1";
+        if (!on && value != "false" && value != "0")
+            throw InputError(place, fmt::format("needs true or false, but is \"{}\"", value));
+        arv_device_set_boolean_feature_value(device, feature, on ? TRUE : FALSE, complaint.slot());
+    } else if (ARV_IS_GC_COMMAND(node)) {
+        arv_device_execute_command(device, feature, complaint.slot());
+    } else if (ARV_IS_GC_FLOAT(node)) {
+        const auto number = parsed<double>(value);
+        if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+        arv_device_set_float_feature_value(device, feature, *number, complaint.slot());
+    } else {
+        arv_device_set_string_feature_value(device, feature, value.c_str(), complaint.slot());
+    }
+    if (complaint.any()) throw InputError(place, complaint.text());
+}
+
+void AravisDevice::set(const std::string& feature, const std::string& value) {
+    const std::string place = fmt::format("{}: {}", address_, feature);
+    const auto* const known =
+        std::find_if(kNumbers.begin(), kNumbers.end(),
+                     [&](const auto& entry) { return feature == entry.first; });
+    if (known != kNumbers.end()) return impl_->set_number(place, known->second, value);
+    ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
+    if (node == nullptr || ARV_IS_GC_FEATURE_NODE(node) == FALSE || ARV_IS_GC_CATEGORY(node))
+        throw InputError(place,
+                         "the camera has no such feature (`stipple capture doctor ADDRESS` "
+                         "lists what it has)");
+    if (ARV_IS_GC_ENUMERATION(node)) return impl_->set_choice(place, feature.c_str(), value);
+    if (ARV_IS_GC_INTEGER(node) && !ARV_IS_GC_BOOLEAN(node))
+        return impl_->set_integer(place, feature.c_str(), value);
+    impl_->set_other(place, feature.c_str(), value);
+}
+
+std::map<std::string, std::string> AravisDevice::features() const {
+    std::map<std::string, std::string> found;
+    std::vector<std::string> categories{"Root"};
+    while (!categories.empty()) {
+        ArvGcNode* category = arv_device_get_feature(impl_->device, categories.back().c_str());
+        categories.pop_back();
+        if (category == nullptr || !ARV_IS_GC_CATEGORY(category)) continue;
+        const GSList* names = arv_gc_category_get_features(ARV_GC_CATEGORY(category));
+        for (; names != nullptr; names = names->next) {
+            const std::string name(static_cast<const char*>(names->data));
+            ArvGcNode* node = arv_device_get_feature(impl_->device, name.c_str());
+            if (node != nullptr && ARV_IS_GC_CATEGORY(node)) categories.push_back(name);
+            if (const auto value = read(name)) found.emplace(name, *value);
+        }
+    }
+    return found;
+}
+
+std::string AravisDevice::genicam_xml() const {
+    std::size_t size = 0;
+    const char* xml = arv_device_get_genicam_xml(impl_->device, &size);
+    return xml == nullptr ? std::string() : std::string(xml, size);
+}
+
+void apply_settings(AravisDevice& device, const CameraSettings& settings) {
+    static constexpr std::array<std::string_view, 5> kFirst{"PixelFormat", "Width", "Height",
+                                                            "OffsetX", "OffsetY"};
+    const auto asked = [&](std::string_view name) {
+        return std::find_if(settings.rbegin(), settings.rend(),
+                            [&](const auto& setting) { return setting.first == name; });
+    };
+    if (asked("Width") != settings.rend() || asked("Height") != settings.rend())
+        for (const char* offset : {"OffsetX", "OffsetY"})
+            if (device.read(offset).value_or("0") != "0") device.set(offset, "0");
+    for (const std::string_view name : kFirst)
+        if (const auto found = asked(name); found != settings.rend())
+            device.set(found->first, found->second);
+    for (const auto& [name, value] : settings)
+        if (std::find(kFirst.begin(), kFirst.end(), name) == kFirst.end()) device.set(name, value);
+}
+
+}  // namespace stipple

@@ -1,0 +1,357 @@
+#include "capture/aravis/aravis_stream.h"
+
+#include <arv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <ctime>
+
+#include "capture/doctor/network_facts.h"
+#include "capture/frame_holes.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
+constexpr int kLoopbackPacketBytes = 9000;
+
+std::int64_t clock_ns(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// Memory of a buffer.
+struct Slot {
+    explicit Slot(std::size_t bytes) : memory(bytes) {}
+    std::vector<std::uint8_t> memory;
+};
+
+Slot& slot_of(ArvBuffer* buffer) {
+    return *static_cast<Slot*>(const_cast<void*>(arv_buffer_get_user_data(buffer)));
+}
+
+/// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
+/// the frame arrived before now.
+void stamp_arrival(ArvBuffer* buffer, FrameRecord& record) {
+    const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
+    const auto first_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
+    record.host_realtime_ns = first_ns != 0 ? first_ns : now_ns;
+    record.host_monotonic_ns = clock_ns(CLOCK_MONOTONIC) - (now_ns - record.host_realtime_ns);
+}
+
+/// A frame whose leader was lost keeps what its buffer said before: this.
+constexpr std::uint64_t kNoId = ~std::uint64_t{0};
+
+FrameStatus status_of(ArvBufferStatus status) {
+    switch (status) {
+        case ARV_BUFFER_STATUS_SUCCESS:
+            return FrameStatus::kComplete;
+        case ARV_BUFFER_STATUS_TIMEOUT:
+        case ARV_BUFFER_STATUS_MISSING_PACKETS:
+        case ARV_BUFFER_STATUS_WRONG_PACKET_ID:
+            return FrameStatus::kMissingPackets;
+        case ARV_BUFFER_STATUS_SIZE_MISMATCH:
+            return FrameStatus::kSizeMismatch;
+        default:
+            return FrameStatus::kDeviceError;
+    }
+}
+
+}  // namespace
+
+struct AravisStream::Impl {
+    AravisDevice& device;
+    FrameLayout layout;
+    CameraBuffers buffers;
+    ArvCamera* camera;
+    ArvStream* stream = nullptr;
+    ArvChunkParser* chunks = nullptr;
+    std::size_t buffer_bytes = 0;
+    std::uint64_t mismatches_seen = 0;
+    std::uint64_t link_faults_before = 0;
+    std::uint64_t last_wire_id = 0;
+    bool running = false;
+    std::atomic<bool> lost = false;
+    gulong lost_handler = 0;
+    std::map<std::string, std::string> facts;
+    std::vector<std::string> warnings;
+
+    Impl(AravisDevice& opened, FrameLayout first_layout, CameraBuffers wanted)
+        : device(opened),
+          layout(first_layout),
+          buffers(wanted),
+          camera(static_cast<ArvCamera*>(opened.native())) {}
+    ~Impl();
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    void create(std::optional<int> packet_bytes);
+    void set_packet_size(std::optional<int> wanted);
+    void set_socket_buffer();
+    void push_buffers();
+    void reuse(ArvBuffer* buffer) const;
+    void rebuild();
+    [[nodiscard]] std::uint64_t info(const char* name) const;
+    [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer);
+    [[nodiscard]] FrameLayout layout_of(ArvBuffer* buffer) const;
+    void read_chunks(ArvBuffer* buffer, FrameRecord& record) const;
+};
+
+AravisStream::Impl::~Impl() {
+    if (lost_handler != 0) g_signal_handler_disconnect(arv_camera_get_device(camera), lost_handler);
+    g_clear_object(&stream);
+    g_clear_object(&chunks);
+}
+
+void AravisStream::Impl::create(std::optional<int> packet_bytes) {
+    if (device.is_gige()) set_packet_size(packet_bytes);
+    GError* error = nullptr;
+    stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
+    if (stream == nullptr) {
+        const std::string why = error == nullptr ? "no reason given" : error->message;
+        g_clear_error(&error);
+        throw DeviceError(device.address(), fmt::format("gives no stream: {}", why));
+    }
+    if (device.is_gige()) set_socket_buffer();
+    chunks = arv_camera_create_chunk_parser(camera);
+    const auto on_lost = +[](ArvDevice*, std::atomic<bool>* flag) { *flag = true; };
+    lost_handler = g_signal_connect(arv_camera_get_device(camera), "control-lost",
+                                    reinterpret_cast<GCallback>(on_lost), &lost);
+    push_buffers();
+}
+
+void AravisStream::Impl::set_packet_size(std::optional<int> wanted) {
+    const auto interface = interface_towards(device.address().substr(5));
+    const auto before = arv_camera_gv_get_packet_size(camera, nullptr);
+    // A camera that answers no test packets keeps its size; on loopback no switch is in between.
+    if (!wanted && arv_camera_gv_auto_packet_size(camera, nullptr) <= before && interface &&
+        interface->is_loopback)
+        wanted = kLoopbackPacketBytes;
+    if (wanted) {
+        arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
+        arv_camera_gv_set_packet_size(camera, *wanted, nullptr);
+    }
+    const auto size = arv_camera_gv_get_packet_size(camera, nullptr);
+    facts["packet_bytes"] = fmt::format("{}", size);
+    if (!interface) return;
+    facts["interface"] = interface->name;
+    link_faults_before = link_faults(interface->name);
+    if (interface->mtu == 0) return;
+    facts["mtu"] = fmt::format("{}", interface->mtu);
+    if (static_cast<int>(size) > interface->mtu)
+        warnings.push_back(
+            fmt::format("packets of {} bytes exceed the MTU {} of {}: set "
+                        "GevSCPSPacketSize to at most that, or raise the MTU",
+                        size, interface->mtu, interface->name));
+}
+
+void AravisStream::Impl::set_socket_buffer() {
+    const std::int64_t wanted =
+        static_cast<std::int64_t>(layout.payload_bytes()) * buffers.socket_frames;
+    const std::int64_t most = rmem_max_bytes();
+    const bool packet_socket = can_open_packet_socket();
+    const std::int64_t given =
+        std::clamp<std::int64_t>(most > 0 ? std::min(wanted, most) : wanted, 65536, 1 << 30);
+    g_object_set(stream, "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS, "socket-buffer",
+                 ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", static_cast<gint>(given),
+                 nullptr);
+    facts["packet_resend"] = "always";
+    facts["socket"] = packet_socket ? "packet" : "udp";
+    facts["socket_buffer_wanted_bytes"] = fmt::format("{}", wanted);
+    facts["socket_buffer_bytes"] = fmt::format("{}", given);
+    facts["rmem_max_bytes"] = fmt::format("{}", most);
+    if (!packet_socket && wanted > most)
+        warnings.push_back(fmt::format(
+            "the receive buffer holds {:.1f} frames of {} wanted, packets may be lost: `sysctl -w "
+            "net.core.rmem_max={}` (now {}) or give CAP_NET_RAW",
+            static_cast<double>(given) / static_cast<double>(layout.payload_bytes()),
+            buffers.socket_frames, wanted, most));
+}
+
+void AravisStream::Impl::push_buffers() {
+    const guint payload = arv_camera_get_payload(camera, nullptr);
+    buffer_bytes = std::clamp(std::max<std::size_t>(payload, layout.payload_bytes()),
+                              std::size_t{1}, kMostPayloadBytes);
+    for (int i = 0; i < buffers.frames; ++i) {
+        auto* slot = new Slot(buffer_bytes);
+        reuse(arv_buffer_new_full(buffer_bytes, slot->memory.data(), slot,
+                                  [](void* old) { delete static_cast<Slot*>(old); }));
+    }
+}
+
+void AravisStream::Impl::reuse(ArvBuffer* buffer) const {
+    mark_unwritten(slot_of(buffer).memory);
+    arv_buffer_set_timestamp(buffer, 0);
+    arv_buffer_set_system_timestamp(buffer, 0);
+    arv_buffer_set_frame_id(buffer, kNoId);
+    arv_stream_push_buffer(stream, buffer);
+}
+
+std::uint64_t AravisStream::Impl::info(const char* name) const {
+    return stream == nullptr ? 0 : arv_stream_get_info_uint64_by_name(stream, name);
+}
+
+/// Makes buffers of the size that the camera sends now.
+void AravisStream::Impl::rebuild() {
+    if (running) arv_camera_stop_acquisition(camera, nullptr);
+    arv_stream_stop_thread(stream, TRUE);
+    push_buffers();
+    arv_stream_start_thread(stream);
+    if (running) arv_camera_start_acquisition(camera, nullptr);
+}
+
+FrameLayout AravisStream::Impl::layout_of(ArvBuffer* buffer) const {
+    const auto* format = pixel_format_of_pfnc(arv_buffer_get_image_pixel_format(buffer));
+    FrameLayout found;
+    found.format = format;
+    arv_buffer_get_image_region(buffer, &found.offset_x, &found.offset_y, &found.width,
+                                &found.height);
+    int padding = 0;
+    int rows_padding = 0;
+    arv_buffer_get_image_padding(buffer, &padding, &rows_padding);
+    if (format != nullptr && found.width > 0)
+        found.stride_bytes =
+            format->row_bytes(found.width) + static_cast<std::size_t>(std::max(padding, 0));
+    return found;
+}
+
+void AravisStream::Impl::read_chunks(ArvBuffer* buffer, FrameRecord& record) const {
+    const auto number = [&](const char* name) -> std::optional<double> {
+        if (arv_device_get_feature(arv_camera_get_device(camera), name) == nullptr)
+            return std::nullopt;
+        GError* error = nullptr;
+        const double value = arv_chunk_parser_get_float_value(chunks, buffer, name, &error);
+        const bool failed = error != nullptr;
+        g_clear_error(&error);
+        return failed ? std::nullopt : std::optional(value);
+    };
+    record.exposure_us = number("ChunkExposureTime");
+    record.gain = number("ChunkGain");
+    record.black_level_dn = number("ChunkBlackLevel");
+}
+
+CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
+    CapturedFrame frame;
+    FrameRecord& record = frame.record;
+    const ArvBufferStatus status = arv_buffer_get_status(buffer);
+    const Slot& slot = slot_of(buffer);
+    const bool has_leader = arv_buffer_get_frame_id(buffer) != kNoId;
+    // Frames come in order, so the least that it can be is the next one.
+    record.wire_id = has_leader ? arv_buffer_get_frame_id(buffer) : last_wire_id % 65535 + 1;
+    last_wire_id = record.wire_id;
+    record.status = status_of(status);
+    record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+    record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
+    stamp_arrival(buffer, record);
+    if (status == ARV_BUFFER_STATUS_SUCCESS) {
+        const FrameLayout now = layout_of(buffer);
+        const bool usable = now.format != nullptr && now.payload_bytes() <= kMostPayloadBytes;
+        if (usable) layout = now;
+        if (!usable) record.status = FrameStatus::kDeviceError;
+        if (arv_buffer_has_chunks(buffer) != FALSE) read_chunks(buffer, record);
+    }
+    record.layout = layout;
+    const std::size_t wanted = layout.payload_bytes();
+    const std::size_t kept = std::min(wanted, slot.memory.size());
+    frame.payload.assign(slot.memory.begin(),
+                         slot.memory.begin() + static_cast<std::ptrdiff_t>(kept));
+    record.bytes_received = kept;
+    if (status == ARV_BUFFER_STATUS_SUCCESS) {
+        std::size_t size = 0;
+        arv_buffer_get_data(buffer, &size);
+        if (size < wanted && record.status == FrameStatus::kComplete)
+            record.status = FrameStatus::kSizeMismatch;
+    }
+    if (record.status != FrameStatus::kComplete) {
+        frame.holes = clear_holes(frame.payload);
+        for (const auto& [begin, end] : frame.holes) record.bytes_received -= end - begin;
+        // Only the trailer was lost: every byte of the image is there.
+        if (has_leader && record.status == FrameStatus::kMissingPackets &&
+            record.bytes_received == wanted)
+            record.status = FrameStatus::kComplete;
+    }
+    if (kept < wanted) {
+        frame.payload.resize(wanted);
+        frame.holes.emplace_back(kept, wanted);
+    }
+    return frame;
+}
+
+AravisStream::AravisStream(AravisDevice& device, const FrameLayout& layout,
+                           const CameraBuffers& buffers, std::optional<int> packet_bytes)
+    : impl_(std::make_unique<Impl>(device, layout, buffers)) {
+    impl_->create(packet_bytes);
+}
+
+AravisStream::~AravisStream() {
+    stop();
+}
+
+const FrameLayout& AravisStream::layout() const {
+    return impl_->layout;
+}
+
+std::map<std::string, std::string> AravisStream::facts() const {
+    return impl_->facts;
+}
+
+std::vector<std::string> AravisStream::warnings() const {
+    return impl_->warnings;
+}
+
+TransportCounts AravisStream::counts() const {
+    TransportCounts counts;
+    counts.underruns = impl_->info("n_underruns");
+    counts.packets_resent = impl_->info("n_resent_packets");
+    counts.packets_missing = impl_->info("n_missing_packets");
+    counts.size_mismatches = impl_->info("n_size_mismatch_errors");
+    if (impl_->device.is_gige() && impl_->facts.at("socket") == "udp")
+        counts.socket_drops = udp_drops(arv_gv_stream_get_port(ARV_GV_STREAM(impl_->stream)));
+    if (const auto interface = impl_->facts.find("interface"); interface != impl_->facts.end())
+        counts.link_faults = link_faults(interface->second) - impl_->link_faults_before;
+    return counts;
+}
+
+void AravisStream::start() {
+    GError* error = nullptr;
+    arv_camera_set_acquisition_mode(impl_->camera, ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
+    arv_camera_start_acquisition(impl_->camera, &error);
+    if (error != nullptr) {
+        const std::string why = error->message;
+        g_clear_error(&error);
+        throw DeviceError(impl_->device.address(), fmt::format("does not start: {}", why));
+    }
+    impl_->running = true;
+}
+
+Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
+    const auto us = static_cast<guint64>(std::max<std::int64_t>(timeout.count(), 0)) * 1000;
+    ArvBuffer* buffer = arv_stream_timeout_pop_buffer(impl_->stream, us);
+    if (buffer == nullptr) {
+        if (impl_->lost) return DeviceLost{"the camera no longer answers"};
+        return NoFrame{};
+    }
+    CapturedFrame frame = impl_->frame_from(buffer);
+    impl_->reuse(buffer);
+    const std::uint64_t mismatches = impl_->info("n_size_mismatch_errors");
+    if (mismatches != impl_->mismatches_seen) {
+        impl_->mismatches_seen = mismatches;
+        const guint payload = arv_camera_get_payload(impl_->camera, nullptr);
+        if (std::max<std::size_t>(payload, impl_->layout.payload_bytes()) > impl_->buffer_bytes)
+            impl_->rebuild();
+    }
+    return frame;
+}
+
+void AravisStream::stop() noexcept {
+    // A camera that is gone would be waited for.
+    if (impl_->running && !impl_->lost) arv_camera_stop_acquisition(impl_->camera, nullptr);
+    impl_->running = false;
+}
+
+}  // namespace stipple

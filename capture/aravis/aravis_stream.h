@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "capture/aravis/aravis_device.h"
+#include "capture/camera.h"
+
+namespace stipple {
+
+/// The stream of a GenICam camera: its buffers, what arrives in them, what it costs.
+class AravisStream {
+  public:
+    /// Makes stream and buffers; `device` must outlive it and be opened by this program as its
+    /// controller. GigE packets, headers included, have `packet_bytes`, or as many as the path
+    /// carries. \throws DeviceError.
+    AravisStream(AravisDevice& device, const FrameLayout& layout, const CameraBuffers& buffers,
+                 std::optional<int> packet_bytes);
+    ~AravisStream();
+    AravisStream(const AravisStream&) = delete;
+    AravisStream& operator=(const AravisStream&) = delete;
+
+    [[nodiscard]] const FrameLayout& layout() const;
+    [[nodiscard]] TransportCounts counts() const;
+    /// Sizes of packets and buffers, for CameraDescription.
+    [[nodiscard]] std::map<std::string, std::string> facts() const;
+    [[nodiscard]] std::vector<std::string> warnings() const;
+
+    void start();  ///< \throws DeviceError
+    [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout);
+    void stop() noexcept;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

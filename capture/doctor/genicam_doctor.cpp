@@ -1,0 +1,85 @@
+#include <arv.h>
+#include <fmt/format.h>
+
+#include "capture/aravis/aravis_device.h"
+#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/network_facts.h"
+#include "capture/pixel_format.h"
+#include "core/error.h"
+
+namespace stipple {
+namespace {
+
+using Level = DoctorFinding::Level;
+
+void examine_path(const std::string& ip, std::vector<DoctorFinding>& findings) {
+    const auto interface = interface_towards(ip);
+    if (!interface) {
+        findings.push_back({Level::kProblem, "path", fmt::format("no interface leads to {}", ip),
+                            "give an interface an address of the camera's subnet"});
+        return;
+    }
+    findings.push_back({Level::kGood, "path",
+                        fmt::format("by {} from {}", interface->name, interface->address), ""});
+    if (!interface->is_loopback) findings.push_back(judge_mtu(interface->name, interface->mtu));
+}
+
+void examine_control(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
+    if (device.is_controller()) {
+        findings.push_back({Level::kGood, "control", "free", ""});
+        return;
+    }
+    const std::string who = device.controller();
+    findings.push_back({Level::kProblem, "control",
+                        fmt::format("held by {}", who.empty() ? "another program" : who),
+                        "stop that program, or wait some seconds if it has crashed"});
+}
+
+void examine_packets(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
+    auto* camera = static_cast<ArvCamera*>(device.native());
+    const auto before = arv_camera_gv_get_packet_size(camera, nullptr);
+    const auto size = arv_camera_gv_auto_packet_size(camera, nullptr);
+    findings.push_back({Level::kGood, "packet size",
+                        size == before
+                            ? fmt::format("{} bytes; the probe found no better one", size)
+                            : fmt::format("{} bytes by probing, {} before", size, before),
+                        ""});
+}
+
+void examine_format(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
+    auto* camera = static_cast<ArvCamera*>(device.native());
+    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, nullptr));
+    const PixelFormat* format = pixel_format_of_pfnc(code);
+    if (format != nullptr) {
+        findings.push_back({Level::kGood, "pixel format", std::string(format->name), ""});
+        return;
+    }
+    findings.push_back({Level::kWarning, "pixel format", fmt::format("0x{:08x} is not read", code),
+                        "--set PixelFormat=... when recording"});
+}
+
+}  // namespace
+
+std::vector<DoctorFinding> examine_genicam_camera(const std::string& address) {
+    std::vector<DoctorFinding> findings;
+    try {
+        if (address.starts_with("gige:")) examine_path(address.substr(5), findings);
+        const AravisDevice device(address);
+        findings.push_back({Level::kGood, "camera",
+                            fmt::format("{} {}", device.read("DeviceVendorName").value_or("?"),
+                                        device.read("DeviceModelName").value_or("?")),
+                            ""});
+        examine_control(device, findings);
+        if (device.is_gige() && device.is_controller()) examine_packets(device, findings);
+        examine_format(device, findings);
+        for (const auto& [name, value] : device.features())
+            findings.push_back({Level::kGood, name, value, ""});
+    } catch (const InputError& e) {
+        findings.push_back({Level::kProblem, "camera", e.what(), "stipple capture list"});
+    } catch (const DeviceError& e) {
+        findings.push_back({Level::kProblem, "camera", e.what(), "power, cable, subnet"});
+    }
+    return findings;
+}
+
+}  // namespace stipple

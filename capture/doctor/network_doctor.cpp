@@ -1,0 +1,77 @@
+#include "capture/doctor/network_doctor.h"
+
+#include <fmt/format.h>
+
+#include "capture/doctor/network_facts.h"
+
+namespace stipple {
+namespace {
+
+using Level = DoctorFinding::Level;
+
+/// Four frames of 2 Mpixel of 16 bits.
+constexpr std::int64_t kComfortableBufferBytes = std::int64_t{16} << 20U;
+constexpr int kEthernetMtu = 1500;
+constexpr int kJumboMtu = 9000;
+
+}  // namespace
+
+DoctorFinding judge_receive_buffer(std::int64_t most_bytes, bool packet_sockets) {
+    const double mib = static_cast<double>(most_bytes) / (1 << 20U);
+    DoctorFinding finding{Level::kGood, "receive buffer",
+                          fmt::format("net.core.rmem_max is {:.1f} MiB", mib), ""};
+    if (most_bytes == 0) finding.fact = "net.core.rmem_max cannot be read";
+    if (packet_sockets) {
+        finding.fact += "; not needed, packet sockets are used";
+        return finding;
+    }
+    if (most_bytes >= kComfortableBufferBytes) return finding;
+    finding.level = Level::kWarning;
+    finding.fix = fmt::format("sysctl -w net.core.rmem_max={} (to stay: a file in sysctl.d)",
+                              kComfortableBufferBytes);
+    return finding;
+}
+
+DoctorFinding judge_mtu(const std::string& interface, int mtu) {
+    DoctorFinding finding{Level::kGood, fmt::format("MTU of {}", interface),
+                          fmt::format("{} bytes", mtu), ""};
+    if (mtu >= kJumboMtu) return finding;
+    finding.level = mtu < kEthernetMtu ? Level::kProblem : Level::kWarning;
+    finding.fact += mtu < kEthernetMtu ? ", less than Ethernet's" : ", no jumbo frames";
+    finding.fix = fmt::format("ip link set {} mtu {} (the switch and the camera must take it too)",
+                              interface, mtu < kEthernetMtu ? kEthernetMtu : kJumboMtu);
+    return finding;
+}
+
+std::vector<DoctorFinding> examine_network() {
+    std::vector<DoctorFinding> findings;
+    const bool packet_sockets = can_open_packet_socket();
+    for (const NetworkInterface& interface : network_interfaces()) {
+        DoctorFinding finding{Level::kGood, fmt::format("interface {}", interface.name),
+                              fmt::format("{} / {}, {}", interface.address, interface.netmask,
+                                          interface.is_up ? "up" : "down"),
+                              ""};
+        if (!interface.is_up) {
+            finding.level = Level::kWarning;
+            finding.fix = fmt::format("ip link set {} up", interface.name);
+        }
+        findings.push_back(finding);
+        if (!interface.is_loopback && interface.mtu > 0)
+            findings.push_back(judge_mtu(interface.name, interface.mtu));
+    }
+    if (findings.empty())
+        findings.push_back({Level::kWarning, "interfaces", "none has an IPv4 address",
+                            "ip addr add 192.168.0.1/24 dev IF for a camera that is plugged in "
+                            "directly"});
+    findings.push_back({Level::kGood, "CAP_NET_RAW",
+                        packet_sockets ? "held: packet sockets" : "not held: UDP sockets", ""});
+    if (!packet_sockets) {
+        findings.back().level = Level::kWarning;
+        findings.back().fix =
+            "setcap cap_net_raw+ep on the program, or a receive buffer that is large enough";
+    }
+    findings.push_back(judge_receive_buffer(rmem_max_bytes(), packet_sockets));
+    return findings;
+}
+
+}  // namespace stipple

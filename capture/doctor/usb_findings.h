@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "capture/doctor/doctor_finding.h"
+
+namespace stipple {
+
+/// What USB3 Vision cameras need of this machine: memory for transfers in flight (usbfs_memory_mb),
+/// and leave to open the device. `root` is where the file system begins.
+[[nodiscard]] std::vector<DoctorFinding> usb_findings(const std::filesystem::path& root = "/");
+
+}  // namespace stipple

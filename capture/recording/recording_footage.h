@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "capture/frame_light.h"
+#include "capture/recording/recording_reader.h"
+
+namespace stipple {
+
+struct RecordingFootageOptions {
+    /// Where frames are missing the frame before stands in, so that each slot keeps its time; else
+    /// they are left out.
+    bool hold_missing = true;
+    /// Incomplete frames count as missing; else they are used, with black holes.
+    bool drop_incomplete = true;
+    double black_level_dn = 0;
+};
+
+/// A recording as footage, one frame a time slot, read as FootageReader reads: linear light, 1.0 at
+/// full scale.
+class RecordingFootage {
+  public:
+    /// \throws InputError as RecordingReader, if there is no frame, or for a black level that its
+    /// format does not have.
+    explicit RecordingFootage(const std::filesystem::path& file,
+                              RecordingFootageOptions options = {});
+
+    [[nodiscard]] FrameShape shape() const { return light_.shape(); }
+    /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
+    /// Returns false at the end. \throws InputError for a frame of another layout, and for more
+    /// than 2^20 missing frames at once.
+    bool read(std::span<float> frame);
+
+    /// Slots that repeat the frame before.
+    [[nodiscard]] std::uint64_t held_slots() const { return held_; }
+    /// Frames that are missing or incomplete, so far.
+    [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
+    [[nodiscard]] const RecordingReader& recording() const { return reader_; }
+
+  private:
+    /// False at the end; else `coming_` is the next frame that is used and `to_hold_` is set.
+    bool advance();
+
+    std::filesystem::path file_;
+    RecordingReader reader_;
+    RecordingFootageOptions options_;
+    CapturedFrame coming_;
+    bool has_coming_;
+    FrameLight light_;
+    std::vector<float> last_;    ///< light of the frame before; empty before the first
+    std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing
+    std::uint64_t held_ = 0;
+    std::uint64_t missing_ = 0;
+};
+
+}  // namespace stipple

@@ -1,0 +1,76 @@
+#include "capture/recording/recording_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "stream/crc32c.h"
+
+namespace stipple {
+namespace {
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& file, const SessionRecord& session,
+                                 std::string place)
+    : file_(file, place.empty() ? file.string() : std::move(place)) {
+    file_.append(kRecordingMagic);
+    append_block(BlockKind::kSession, bytes_of(encode_session(session)), {});
+}
+
+void RecordingWriter::append_block(BlockKind kind, std::span<const std::uint8_t> record,
+                                   std::span<const std::uint8_t> payload) {
+    const std::uint64_t start = file_.bytes();
+    const auto header = encode_block_header(
+        {kind, blocks_, static_cast<std::uint32_t>(record.size()), payload.size(), crc32c(record)});
+    try {
+        file_.append(header);
+        file_.append(record);
+        file_.append(payload);
+    } catch (const DeviceError&) {
+        file_.cut(start);
+        throw;
+    }
+    ++blocks_;
+}
+
+void RecordingWriter::write(const CapturedFrame& frame) {
+    auto record = encode_frame_record(frame);
+    store_payload_hash(record, payload_hash(frame.payload));
+    append_block(BlockKind::kFrame, record, frame.payload);
+    count(frame.record, frame.payload.size());
+}
+
+void RecordingWriter::count(const FrameRecord& record, std::size_t payload_bytes) {
+    ++totals_.frames;
+    totals_.payload_bytes += payload_bytes;
+    if (record.status != FrameStatus::kComplete) ++totals_.incomplete;
+    totals_.lost[static_cast<std::size_t>(record.cause)] += record.lost_before;
+    if (record.stamp_source != StampSource::kDeviceClock) return;
+    if (clocks_.empty() || clocks_.back().epoch() != record.epoch)
+        clocks_.emplace_back(record.epoch);
+    clocks_.back().add(record.device_ns, record.host_monotonic_ns);
+}
+
+RecordingEnd RecordingWriter::totals() const {
+    RecordingEnd result = totals_;
+    for (const ClockFitter& clock : clocks_)
+        if (const auto fit = clock.fit()) result.clocks.push_back(*fit);
+    return result;
+}
+
+void RecordingWriter::finish(RecordingEnd end) {
+    const RecordingEnd counted = totals();
+    end.frames = counted.frames;
+    end.incomplete = counted.incomplete;
+    end.payload_bytes = counted.payload_bytes;
+    end.clocks = counted.clocks;
+    append_block(BlockKind::kEnd, bytes_of(encode_end(end)), {});
+    file_.close();
+}
+
+}  // namespace stipple

@@ -1,0 +1,88 @@
+#include "capture/recording/replay_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "stream/little_endian.h"
+
+namespace stipple {
+namespace {
+
+FrameLayout footage_layout(FrameShape shape, const std::string& name) {
+    const std::string_view of_shape = shape.planes == 3 ? "RGB8" : "Mono16";
+    const std::string_view wanted = name.empty() ? of_shape : std::string_view(name);
+    const PixelFormat* format = pixel_format_named(wanted);
+    const bool plain = wanted == "Mono8" || wanted == "Mono16" || wanted == "RGB8";
+    if (!plain || format->planes != shape.planes)
+        throw InputError(
+            "PixelFormat",
+            fmt::format("footage of {} planes does not come in \"{}\"; write {}", shape.planes,
+                        wanted, shape.planes == 3 ? "RGB8" : "Mono8 or Mono16"));
+    return {.format = format,
+            .width = shape.cols,
+            .height = shape.rows,
+            .stride_bytes = format->row_bytes(shape.cols)};
+}
+
+}  // namespace
+
+ReplaySource::ReplaySource(const std::filesystem::path& path, const std::string& format)
+    : path_(path) {
+    if (!stipple::is_recording(path)) {
+        footage_.emplace(path);
+        layout_ = footage_layout(footage_->shape(), format);
+        light_.resize(footage_->shape().sites());
+        return;
+    }
+    recording_.emplace(path);
+    CapturedFrame first;
+    if (!recording_->next(first)) throw InputError(path.string(), "holds no frame");
+    layout_ = first.record.layout;
+    if (!format.empty() && format != layout_.format->name)
+        throw InputError("PixelFormat", fmt::format("the recording is in {}; it is played as it is",
+                                                    layout_.format->name));
+    recording_->rewind();
+}
+
+const SessionRecord* ReplaySource::session() const {
+    return recording_ ? &recording_->session() : nullptr;
+}
+
+bool ReplaySource::next(CapturedFrame& frame) {
+    if (recording_) return recording_->next(frame);
+    if (!footage_->read(light_)) return false;
+    frame = {};
+    frame.record.id = next_id_++;
+    frame.record.layout = layout_;
+    quantise(frame.payload);
+    frame.record.bytes_received = frame.payload.size();
+    return true;
+}
+
+void ReplaySource::quantise(std::vector<std::uint8_t>& payload) const {
+    const auto planes = static_cast<std::size_t>(layout_.format->planes);
+    const std::size_t pixels = light_.size() / planes;
+    const bool words = layout_.format->significant_bits == 16;
+    const float full_scale = words ? 65535.0F : 255.0F;
+    payload.resize(layout_.payload_bytes());
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+        for (std::size_t plane = 0; plane < planes; ++plane) {
+            const float light = std::min(light_[plane * pixels + pixel], 1.0F);
+            const auto dn = static_cast<std::uint16_t>(light * full_scale + 0.5F);
+            const std::size_t sample = pixel * planes + plane;
+            if (words)
+                store(&payload[2 * sample], dn);
+            else
+                payload[sample] = static_cast<std::uint8_t>(dn);
+        }
+}
+
+void ReplaySource::rewind() {
+    next_id_ = 0;
+    if (recording_) return recording_->rewind();
+    footage_.emplace(path_);
+}
+
+}  // namespace stipple

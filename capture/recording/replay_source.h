@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "capture/camera.h"
+#include "capture/recording/recording_reader.h"
+#include "core/footage_reader.h"
+
+namespace stipple {
+
+/// Frames to play back, one after the other: of a recording as they are, or of footage as the
+/// numbers round(min(light, 1) x full scale) of a pixel format.
+class ReplaySource {
+  public:
+    /// Opens a recording, or else footage that shall come in `format` ("Mono8", "Mono16", "RGB8";
+    /// empty: Mono16, or RGB8 if it has colour). \throws InputError if it is neither, holds no
+    /// frame, or for a format that it cannot come in.
+    ReplaySource(const std::filesystem::path& path, const std::string& format);
+
+    [[nodiscard]] bool is_recording() const { return recording_.has_value(); }
+    [[nodiscard]] const SessionRecord* session() const;
+    /// The layout of the first frame.
+    [[nodiscard]] const FrameLayout& layout() const { return layout_; }
+
+    /// The next frame; of footage, id counts from 0. False at the end. \throws InputError.
+    bool next(CapturedFrame& frame);
+    void rewind();
+
+  private:
+    void quantise(std::vector<std::uint8_t>& payload) const;
+
+    std::filesystem::path path_;
+    std::optional<RecordingReader> recording_;
+    std::optional<FootageReader> footage_;
+    FrameLayout layout_;
+    std::vector<float> light_;
+    std::uint64_t next_id_ = 0;
+};
+
+}  // namespace stipple

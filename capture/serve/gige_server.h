@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "capture/serve/frame_source.h"
+#include "capture/serve/gvsp_faults.h"
+
+namespace stipple {
+
+struct GigeServerOptions {
+    std::string address = "127.0.0.1";  ///< IPv4, of this machine
+    std::string model = "Recording";
+    std::string version;
+    std::string serial = "1";
+    bool repeat = false;  ///< begin again at the end of the source
+    bool can_resend = true;
+    GvspFaults faults = {};
+};
+
+struct GigeServerCounts {
+    std::uint64_t frames = 0;
+    std::uint64_t late_frames = 0;  ///< sent more than a frame period after their time
+    std::uint64_t packets = 0;
+    std::uint64_t packets_resent = 0;
+    std::uint64_t starts = 0;
+};
+
+/// A source of frames as a GigE Vision camera on an address of this machine: discovery, registers
+/// and GenICam XML, control privilege and heartbeat, streaming with packet resend and chunk data.
+///
+/// Not implemented: events, triggers, PTP, multicast, more than one stream channel, block ids of 64
+/// bits, FORCEIP.
+class GigeServer {
+  public:
+    /// Binds the address; clients can find the camera from then on, and are answered while `run`
+    /// runs. `source` must outlive the server.
+    /// \throws InputError if the address is none, DeviceError if it cannot be had.
+    GigeServer(FrameSource& source, const GigeServerOptions& options);
+    ~GigeServer();
+    GigeServer(const GigeServer&) = delete;
+    GigeServer& operator=(const GigeServer&) = delete;
+
+    /// Serves until `stop` returns true, which is asked at least every 100 ms.
+    /// \throws InputError if the source has a frame that cannot be read.
+    void run(const std::function<bool()>& stop);
+
+    [[nodiscard]] GigeServerCounts counts() const;
+    [[nodiscard]] const std::string& xml() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

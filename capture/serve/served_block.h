@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+
+#include "capture/serve/frame_source.h"
+#include "capture/serve/gige_device.h"
+#include "capture/serve/gvsp_codec.h"
+
+namespace stipple {
+
+/// A frame as it goes out: its region, with the chunks that are asked for behind it. The id is left
+/// to the caller. Precondition: frame.payload is a whole image in settings.format.
+[[nodiscard]] GvspBlock served_block(ServedFrame frame, const ServedImage& image,
+                                     const GigeStreamSettings& settings,
+                                     std::uint64_t timestamp_ns);
+
+}  // namespace stipple

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "capture/capture_session.h"
+#include "capture/open_camera.h"
+#include "tests/capture/serve/gige_serving.h"
+#include "tests/support/private_network.h"
+
+namespace stipple {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLong = 60s;  // a bound that only a broken capture reaches
+constexpr std::uint64_t kFrames = 100'000;
+
+/// Against our own server, which can do what Aravis' fake camera cannot: resend, reorder, chunks.
+class AravisResendTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (const std::string why = enter_private_network(); !why.empty()) GTEST_SKIP() << why;
+    }
+
+    /// Frames of a camera with these faults, in order of arrival, and what they cost.
+    struct Outcome {
+        std::vector<CapturedFrame> frames;
+        SessionTotals totals;
+        TransportCounts transport;
+    };
+    static Outcome capture(NoiseFrames& source, const GvspFaults& faults, int frames,
+                           IncompletePolicy policy = IncompletePolicy::kMask) {
+        GigeServerOptions options;
+        options.faults = faults;
+        const GigeServing server(source, options);
+        EXPECT_EQ(server.failure(), "");
+        Outcome outcome;
+        CaptureSession session(
+            [&] {
+                return open_camera("gige:" + ipv4_text(server.address()),
+                                   {{"GevSCPSPacketSize", "1500"}}, {});
+            },
+            {.incomplete = policy, .stall = 0ms});
+        const auto end = std::chrono::steady_clock::now() + kLong;
+        while (static_cast<int>(outcome.frames.size()) < frames &&
+               std::chrono::steady_clock::now() < end) {
+            auto event = session.next(100ms);
+            if (auto* frame = std::get_if<CapturedFrame>(&event))
+                outcome.frames.push_back(std::move(*frame));
+        }
+        EXPECT_EQ(static_cast<int>(outcome.frames.size()), frames);
+        outcome.totals = session.totals();
+        outcome.transport = session.transport();
+        return outcome;
+    }
+
+    /// The frame as it was sent: its wire id says which.
+    static std::vector<std::uint8_t> sent(const NoiseFrames& source, const FrameRecord& record) {
+        return source.bytes(record.wire_id - 1, *record.layout.format);
+    }
+};
+
+TEST_F(AravisResendTest, PacketsThatWereDroppedOnceAreAskedForAgainAndEveryFrameIsWhole) {
+    NoiseFrames source(320, 240, {"Mono16"}, kFrames);
+    const Outcome outcome = capture(source, {.drop = 0.01}, 60);
+    EXPECT_GT(outcome.transport.packets_resent, 0U);
+    int whole = 0;
+    for (const CapturedFrame& frame : outcome.frames) {
+        if (frame.record.status != FrameStatus::kComplete) continue;
+        ++whole;
+        ASSERT_EQ(frame.payload, sent(source, frame.record));
+    }
+    // A busy machine may answer a request too late.
+    EXPECT_GE(whole, 40);
+}
+
+TEST_F(AravisResendTest, PacketsThatAreNeverSentLeaveZerosAndTheirPlaces) {
+    NoiseFrames source(320, 240, {"Mono8"}, kFrames);
+    const Outcome outcome = capture(source, {.lose = 0.01}, 40);
+    int incomplete = 0;
+    for (const CapturedFrame& frame : outcome.frames) {
+        if (frame.record.stamp_source == StampSource::kNone) continue;  // without leader: id unsure
+        auto expected = sent(source, frame.record);
+        for (const auto& [begin, end] : frame.holes)
+            std::fill(expected.begin() + static_cast<std::ptrdiff_t>(begin),
+                      expected.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{0});
+        ASSERT_EQ(frame.payload, expected);
+        ASSERT_EQ(frame.holes.empty(), frame.record.status == FrameStatus::kComplete);
+        if (!frame.holes.empty()) ++incomplete;
+    }
+    EXPECT_GT(incomplete, 0);
+    EXPECT_GE(outcome.totals.incomplete, static_cast<std::uint64_t>(incomplete));
+}
+
+TEST_F(AravisResendTest, PacketsOutOfOrderAndTwiceMakeTheSameFrames) {
+    NoiseFrames source(320, 240, {"Mono8"}, kFrames);
+    const Outcome outcome = capture(source, {.duplicate = 0.05, .reorder = true}, 40);
+    for (const CapturedFrame& frame : outcome.frames)
+        if (frame.record.status == FrameStatus::kComplete) {
+            ASSERT_EQ(frame.payload, sent(source, frame.record));
+        }
+}
+
+TEST_F(AravisResendTest, EveryIdIsAccountedForWhateverIsLost) {
+    NoiseFrames source(320, 240, {"Mono8"}, kFrames);
+    const GvspFaults faults{.lose = 0.02, .gap_at = 20, .gap_frames = 5};
+    const Outcome outcome = capture(source, faults, 40, IncompletePolicy::kDrop);
+    std::uint64_t missing = 0;
+    for (std::size_t i = 1; i < outcome.frames.size(); ++i) {
+        const FrameRecord& before = outcome.frames[i - 1].record;
+        const FrameRecord& record = outcome.frames[i].record;
+        ASSERT_EQ(record.id, before.id + 1 + record.lost_before);
+        ASSERT_EQ(record.id - before.id, record.wire_id - before.wire_id);
+        missing += record.lost_before;
+    }
+    missing += outcome.frames.front().record.lost_before;
+    const auto& lost = outcome.totals.lost;
+    const std::uint64_t counted = std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
+    EXPECT_EQ(missing, counted);
+    EXPECT_GE(missing, 5U);
+}
+
+}  // namespace
+}  // namespace stipple

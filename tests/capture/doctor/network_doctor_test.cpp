@@ -1,0 +1,61 @@
+#include "capture/doctor/network_doctor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "capture/doctor/network_facts.h"
+
+namespace stipple {
+namespace {
+
+using Level = DoctorFinding::Level;
+
+TEST(NetworkDoctorTest, AReceiveBufferIsJudgedOnlyWhereItIsUsed) {
+    const std::int64_t small = 212992;  // the kernel's default
+    const DoctorFinding finding = judge_receive_buffer(small, false);
+    EXPECT_EQ(finding.level, Level::kWarning);
+    EXPECT_NE(finding.fix.find("sysctl -w net.core.rmem_max=16777216"), std::string::npos);
+    EXPECT_EQ(judge_receive_buffer(small, true).level, Level::kGood);
+    EXPECT_EQ(judge_receive_buffer(16777216, false).level, Level::kGood);
+    EXPECT_EQ(judge_receive_buffer(0, false).level, Level::kWarning);
+}
+
+TEST(NetworkDoctorTest, AnMtuWithoutJumboFramesIsWarnedOfWithTheCommandThatRaisesIt) {
+    EXPECT_EQ(judge_mtu("eth0", 9000).level, Level::kGood);
+    const DoctorFinding finding = judge_mtu("eth0", 1500);
+    EXPECT_EQ(finding.level, Level::kWarning);
+    EXPECT_NE(finding.fix.find("ip link set eth0 mtu 9000"), std::string::npos);
+    EXPECT_EQ(judge_mtu("eth0", 576).level, Level::kProblem);
+}
+
+TEST(NetworkDoctorTest, EveryFindingThatIsNotGoodHasAFix) {
+    for (const DoctorFinding& finding : examine_network()) {
+        EXPECT_FALSE(finding.subject.empty());
+        EXPECT_FALSE(finding.fact.empty());
+        EXPECT_EQ(finding.fix.empty(), finding.level == Level::kGood) << finding.subject;
+    }
+}
+
+TEST(NetworkFactsTest, LoopbackAddressesAreReachedByTheLoopbackInterface) {
+    const auto all = network_interfaces();
+    const auto is_up = [](const NetworkInterface& one) { return one.is_loopback && one.is_up; };
+    if (std::none_of(all.begin(), all.end(), is_up)) GTEST_SKIP() << "no loopback interface is up";
+    const auto found = interface_towards("127.0.0.77");
+    ASSERT_TRUE(found.has_value());
+    EXPECT_TRUE(found->is_loopback);
+    EXPECT_GT(found->mtu, 0);
+}
+
+TEST(NetworkFactsTest, ATextThatIsNoAddressLeadsNowhere) {
+    EXPECT_FALSE(interface_towards("camera").has_value());
+    EXPECT_FALSE(interface_towards("").has_value());
+}
+
+TEST(NetworkFactsTest, APortThatNobodyUsesHasNoDrops) {
+    EXPECT_EQ(udp_drops(0), 0U);
+    EXPECT_EQ(link_faults("no such interface"), 0U);
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,106 @@
+#include "capture/serve/coded_payload.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/stream/stream_files.h"
+
+namespace stipple {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+std::vector<SamplePacket> slot_of(const StreamHeader& header, std::int64_t slot) {
+    return {random_packet(header, slot, 0, header.shape.rows)};
+}
+
+TEST(CodedPayloadTest, EverySlotFitsAndComesBack) {
+    const StreamHeader header = varied_header({40, 80, 1});
+    const ServedImage image = coded_image(header);
+    EXPECT_EQ(image.width, kCodedImageWidth);
+    EXPECT_FALSE(image.croppable);
+    for (std::int64_t slot = 0; slot < 15; ++slot) {
+        const auto packets = slot_of(header, slot);
+        const Bytes payload = coded_payload(packets, header, image);
+        EXPECT_EQ(payload.size(),
+                  static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+        const CodedSlot decoded = decode_coded_payload(header, payload, {slot, 0});
+        EXPECT_EQ(decoded.fault, "");
+        EXPECT_EQ(decoded.packets, packets);
+    }
+}
+
+// The packets of a file of three slots, one after the other.
+TEST(CodedPayloadTest, TheBytesAreThoseOfTheFile) {
+    const TemporaryFolder folder;
+    const StreamHeader header = varied_header();
+    const ServedImage image = coded_image(header);
+    const auto file = folder.path() / "clip.stipple";
+    StreamWriter writer(file, header);
+    Bytes expected;
+    for (std::int64_t slot = 0; slot < 3; ++slot) {
+        const auto begin = writer.bytes_written();
+        writer.write(slot_of(header, slot)[0]);
+        std::ifstream stream(file, std::ios::binary);
+        const Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
+        Bytes packet(bytes.begin() + static_cast<std::ptrdiff_t>(begin), bytes.end());
+        Bytes payload = coded_payload(slot_of(header, slot), header, image);
+        EXPECT_EQ(
+            Bytes(payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(packet.size())),
+            packet);
+        for (std::size_t i = packet.size(); i < payload.size(); ++i) ASSERT_EQ(payload[i], 0);
+    }
+}
+
+TEST(CodedPayloadTest, ADroppedBandComesBack) {
+    const StreamHeader header = varied_header();
+    const ServedImage image = coded_image(header);
+    const std::vector<SamplePacket> packets{random_packet(header, 7, 0, 3),
+                                            {7, 3, 1, SamplePacket::kDropped, {}}};
+    const CodedSlot decoded =
+        decode_coded_payload(header, coded_payload(packets, header, image), {5, 0});
+    EXPECT_EQ(decoded.fault, "");
+    EXPECT_EQ(decoded.packets, packets);
+}
+
+TEST(CodedPayloadTest, DamageIsFoundWhereverItIs) {
+    const StreamHeader header = varied_header();
+    const ServedImage image = coded_image(header);
+    const auto packets = slot_of(header, 6);
+    const Bytes good = coded_payload(packets, header, image);
+    const std::size_t used = 36 + (packets[0].dn.size() * 10 + 7) / 8;
+    for (std::size_t at = 0; at < used; ++at) {
+        Bytes bad = good;
+        bad[at] ^= 0x10U;
+        const CodedSlot decoded = decode_coded_payload(header, bad, {6, 0});
+        EXPECT_NE(decoded.fault, "") << at;
+        EXPECT_TRUE(decoded.packets.empty()) << at;
+    }
+    EXPECT_NE(decode_coded_payload(header, Bytes(1024), {6, 0}).fault, "");
+    EXPECT_NE(decode_coded_payload(header, {}, {6, 0}).fault, "");
+    EXPECT_NE(decode_coded_payload(header, std::span(good).first(used - 1), {6, 0}).fault, "");
+}
+
+TEST(CodedPayloadTest, ASlotThatComesTwiceIsRefused) {
+    const StreamHeader header = varied_header();
+    const Bytes payload = coded_payload(slot_of(header, 6), header, coded_image(header));
+    EXPECT_NE(decode_coded_payload(header, payload, {7, 0}).fault, "");
+}
+
+TEST(CodedPayloadTest, TheHeaderComesBackFromItsDigits) {
+    const StreamHeader header = varied_header();
+    const std::string digits = coded_image(header).coded_header;
+    EXPECT_EQ(decode_coded_header(digits, "here"), header);
+    for (const std::string& wrong :
+         {std::string(), std::string("89"), digits.substr(2), digits.substr(0, digits.size() - 2),
+          "zz" + digits.substr(2), digits + "00"})
+        EXPECT_THROW(static_cast<void>(decode_coded_header(wrong, "here")), InputError)
+            << wrong.size();
+}
+
+}  // namespace
+}  // namespace stipple
