@@ -11,6 +11,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
+#include "capture/host_clock.h"
 #include "capture/open_camera.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
@@ -27,12 +28,6 @@ constexpr std::size_t kQueueBytes = std::size_t{1} << 28U;
 
 /// How often a signal is looked for.
 constexpr milliseconds kPatience{100};
-
-std::int64_t realtime_ns() {
-    timespec now{};
-    clock_gettime(CLOCK_REALTIME, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 /// `output`, or a file in it that is named by the time.
 std::filesystem::path file_for(const std::string& output) {

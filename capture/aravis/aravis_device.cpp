@@ -1,6 +1,5 @@
 #include "capture/aravis/aravis_device.h"
 
-#include <arpa/inet.h>
 #include <arv.h>
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include <array>
 #include <charconv>
 
+#include "capture/network.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -31,8 +31,7 @@ class Complaint {
 };
 
 ArvDevice* open_gige(const std::string& address, const std::string& ip) {
-    in_addr parsed{};
-    if (inet_pton(AF_INET, ip.c_str(), &parsed) != 1)
+    if (!parse_ipv4(ip))
         throw InputError(address,
                          "is no IPv4 address: write gige:192.168.0.5 (`stipple capture "
                          "list` shows the cameras that answer)");
@@ -148,8 +147,7 @@ std::string AravisDevice::controller() const {
         ip == 0)
         return {};
     arv_device_read_register(impl_->device, kPrimaryApplicationPort, &port, nullptr);
-    return fmt::format("{}.{}.{}.{}:{}", ip >> 24U, ip >> 16U & 255U, ip >> 8U & 255U, ip & 255U,
-                       port & 0xFFFFU);
+    return fmt::format("{}:{}", ipv4_text(ip), port & 0xFFFFU);
 }
 
 bool AravisDevice::has(const std::string& feature) const {

@@ -7,10 +7,11 @@
 #include <array>
 #include <atomic>
 #include <cstring>
-#include <ctime>
 
 #include "capture/doctor/network_facts.h"
 #include "capture/frame_holes.h"
+#include "capture/host_clock.h"
+#include "capture/network.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -18,12 +19,6 @@ namespace {
 
 constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
 constexpr int kLoopbackPacketBytes = 9000;
-
-std::int64_t clock_ns(clockid_t clock) {
-    timespec now{};
-    clock_gettime(clock, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 /// Memory of a buffer.
 struct Slot {
@@ -38,10 +33,10 @@ Slot& slot_of(ArvBuffer* buffer) {
 /// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
 /// the frame arrived before now.
 void stamp_arrival(ArvBuffer* buffer, FrameRecord& record) {
-    const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
+    const std::int64_t now_ns = realtime_ns();
     const auto first_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
     record.host_realtime_ns = first_ns != 0 ? first_ns : now_ns;
-    record.host_monotonic_ns = clock_ns(CLOCK_MONOTONIC) - (now_ns - record.host_realtime_ns);
+    record.host_monotonic_ns = monotonic_ns() - (now_ns - record.host_realtime_ns);
 }
 
 /// A frame whose leader was lost keeps what its buffer said before: this.

@@ -3,7 +3,7 @@
 
 #include "capture/aravis/aravis_device.h"
 #include "capture/doctor/network_doctor.h"
-#include "capture/doctor/network_facts.h"
+#include "capture/network.h"
 #include "capture/pixel_format.h"
 #include "core/error.h"
 
@@ -19,8 +19,9 @@ void examine_path(const std::string& ip, std::vector<DoctorFinding>& findings) {
                             "give an interface an address of the camera's subnet"});
         return;
     }
-    findings.push_back({Level::kGood, "path",
-                        fmt::format("by {} from {}", interface->name, interface->address), ""});
+    findings.push_back(
+        {Level::kGood, "path",
+         fmt::format("by {} from {}", interface->name, ipv4_text(interface->address)), ""});
     if (!interface->is_loopback) findings.push_back(judge_mtu(interface->name, interface->mtu));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "capture/doctor/network_facts.h"
+#include "capture/network.h"
 
 namespace stipple {
 namespace {
@@ -47,10 +48,11 @@ std::vector<DoctorFinding> examine_network() {
     std::vector<DoctorFinding> findings;
     const bool packet_sockets = can_open_packet_socket();
     for (const NetworkInterface& interface : network_interfaces()) {
-        DoctorFinding finding{Level::kGood, fmt::format("interface {}", interface.name),
-                              fmt::format("{} / {}, {}", interface.address, interface.netmask,
-                                          interface.is_up ? "up" : "down"),
-                              ""};
+        DoctorFinding finding{
+            Level::kGood, fmt::format("interface {}", interface.name),
+            fmt::format("{} / {}, {}", ipv4_text(interface.address), ipv4_text(interface.netmask),
+                        interface.is_up ? "up" : "down"),
+            ""};
         if (!interface.is_up) {
             finding.level = Level::kWarning;
             finding.fix = fmt::format("ip link set {} up", interface.name);

@@ -1,92 +1,14 @@
 #include "capture/doctor/network_facts.h"
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <linux/if_packet.h>
-#include <net/if.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstring>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 namespace stipple {
-namespace {
-
-/// A socket that closes itself.
-class Socket {
-  public:
-    Socket(int domain, int type) : descriptor_(::socket(domain, type | SOCK_CLOEXEC, 0)) {}
-    ~Socket() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    Socket(const Socket&) = delete;
-    Socket& operator=(const Socket&) = delete;
-    [[nodiscard]] int get() const { return descriptor_; }
-
-  private:
-    int descriptor_;
-};
-
-std::string text_of(const sockaddr* address) {
-    if (address == nullptr || address->sa_family != AF_INET) return {};
-    sockaddr_in ipv4{};
-    std::memcpy(&ipv4, address, sizeof ipv4);
-    std::array<char, INET_ADDRSTRLEN> text{};
-    inet_ntop(AF_INET, &ipv4.sin_addr, text.data(), text.size());
-    return text.data();
-}
-
-int mtu_of(const std::string& name) {
-    std::ifstream file("/sys/class/net/" + name + "/mtu");
-    int mtu = 0;
-    file >> mtu;
-    return mtu;
-}
-
-}  // namespace
-
-std::vector<NetworkInterface> network_interfaces() {
-    std::vector<NetworkInterface> found;
-    ifaddrs* list = nullptr;
-    if (getifaddrs(&list) != 0) return found;
-    for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-        const std::string address = text_of(entry->ifa_addr);
-        if (address.empty()) continue;
-        found.push_back({entry->ifa_name, address, text_of(entry->ifa_netmask),
-                         mtu_of(entry->ifa_name), (entry->ifa_flags & IFF_UP) != 0,
-                         (entry->ifa_flags & IFF_LOOPBACK) != 0});
-    }
-    freeifaddrs(list);
-    return found;
-}
-
-std::optional<NetworkInterface> interface_towards(const std::string& ip) {
-    sockaddr_in target{};
-    target.sin_family = AF_INET;
-    target.sin_port = htons(3956);
-    if (inet_pton(AF_INET, ip.c_str(), &target.sin_addr) != 1) return std::nullopt;
-    // connect() of a UDP socket sends nothing, but picks the address to send from.
-    const Socket socket(AF_INET, SOCK_DGRAM);
-    sockaddr address{};
-    std::memcpy(&address, &target, sizeof target);
-    socklen_t size = sizeof address;
-    if (::connect(socket.get(), &address, size) != 0 ||
-        ::getsockname(socket.get(), &address, &size) != 0)
-        return std::nullopt;
-    const std::string own = text_of(&address);
-    const auto all = network_interfaces();
-    const auto match = std::find_if(all.begin(), all.end(), [&](const NetworkInterface& one) {
-        return one.address == own || (one.is_loopback && own.starts_with("127."));
-    });
-    return match == all.end() ? std::nullopt : std::optional(*match);
-}
-
 std::int64_t rmem_max_bytes() {
     std::ifstream file("/proc/sys/net/core/rmem_max");
     std::int64_t bytes = 0;
@@ -95,7 +17,10 @@ std::int64_t rmem_max_bytes() {
 }
 
 bool can_open_packet_socket() {
-    return Socket(AF_PACKET, SOCK_RAW).get() >= 0;
+    const int descriptor = ::socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, 0);
+    if (descriptor < 0) return false;
+    ::close(descriptor);
+    return true;
 }
 
 std::uint64_t udp_drops(int port) {

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "capture/host_clock.h"
 #include "capture/recording/replay_source.h"
 #include "capture/setting_value.h"
 #include "core/error.h"
@@ -14,7 +15,7 @@
 namespace stipple {
 namespace {
 
-using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC
+using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
 constexpr std::string_view kPrefix = "replay:";
@@ -156,9 +157,8 @@ void ReplayCamera::schedule_frame() {
 
 CapturedFrame ReplayCamera::deliver() {
     has_coming_ = false;
-    coming_.record.host_monotonic_ns = nanoseconds(Clock::now().time_since_epoch()).count();
-    coming_.record.host_realtime_ns =
-        nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    coming_.record.host_monotonic_ns = monotonic_ns();
+    coming_.record.host_realtime_ns = realtime_ns();
     return std::exchange(coming_, {});
 }
 

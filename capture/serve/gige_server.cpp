@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "capture/network.h"
 #include "capture/serve/gige_device.h"
 #include "capture/serve/gvsp_sender.h"
 #include "capture/serve/served_block.h"
@@ -39,8 +40,8 @@ std::uint32_t address_of(const GigeServerOptions& options) {
     throw InputError("--address " + options.address, "is no IPv4 address such as 127.0.0.1");
 }
 
-LocalNetwork interface_at(std::uint32_t address) {
-    if (const auto interface = local_network_of(address)) return *interface;
+NetworkInterface own_interface(std::uint32_t address) {
+    if (const auto interface = interface_at(address)) return *interface;
     throw DeviceError(ipv4_text(address),
                       "no network interface of this machine has such an address; `ip address` "
                       "lists those it has");
@@ -85,7 +86,7 @@ struct GigeServer::Impl {
     FrameSource& source;
     GigeServerOptions options;
     std::uint32_t address;
-    LocalNetwork interface;
+    NetworkInterface interface;
     UdpSocket control;
     std::vector<UdpSocket> broadcasts;
     UdpSocket data;
@@ -109,7 +110,7 @@ GigeServer::Impl::Impl(FrameSource& frames, const GigeServerOptions& settings)
     : source(frames),
       options(settings),
       address(address_of(options)),
-      interface(interface_at(address)),
+      interface(own_interface(address)),
       control(control_socket(address)),
       data({address, 0}),
       sender(data, options.faults),

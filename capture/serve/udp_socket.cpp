@@ -1,8 +1,5 @@
 #include "capture/serve/udp_socket.h"
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -40,19 +36,6 @@ void set_option(int descriptor, int level, int option, int value) {
     static_cast<void>(setsockopt(descriptor, level, option, &value, sizeof value));
 }
 
-std::uint32_t address_of(const sockaddr* address) {
-    if (address == nullptr || address->sa_family != AF_INET) return 0;
-    return from_system(*reinterpret_cast<const sockaddr_in*>(address)).address;
-}
-
-using InterfaceList = std::unique_ptr<ifaddrs, decltype(&freeifaddrs)>;
-
-InterfaceList interfaces() {
-    ifaddrs* list = nullptr;
-    if (getifaddrs(&list) != 0) list = nullptr;
-    return {list, &freeifaddrs};
-}
-
 /// The interface by which a datagram came in.
 int interface_in(msghdr& message) {
     for (cmsghdr* control = CMSG_FIRSTHDR(&message); control != nullptr;
@@ -63,30 +46,6 @@ int interface_in(msghdr& message) {
 }
 
 }  // namespace
-
-std::optional<std::uint32_t> parse_ipv4(const std::string& text) {
-    in_addr address{};
-    if (inet_pton(AF_INET, text.c_str(), &address) != 1) return {};
-    return ntohl(address.s_addr);
-}
-
-std::string ipv4_text(std::uint32_t address) {
-    const in_addr system{htonl(address)};
-    std::array<char, INET_ADDRSTRLEN> text{};
-    static_cast<void>(inet_ntop(AF_INET, &system, text.data(), text.size()));
-    return text.data();
-}
-
-std::optional<LocalNetwork> local_network_of(std::uint32_t address) {
-    const InterfaceList list = interfaces();
-    for (const ifaddrs* at = list.get(); at != nullptr; at = at->ifa_next) {
-        const std::uint32_t own = address_of(at->ifa_addr);
-        const std::uint32_t mask = address_of(at->ifa_netmask);
-        if (own == 0 || (own & mask) != (address & mask)) continue;
-        return LocalNetwork{at->ifa_name, static_cast<int>(if_nametoindex(at->ifa_name)), mask};
-    }
-    return {};
-}
 
 UdpSocket::UdpSocket(UdpEndpoint local, bool shared)
     : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace stipple {
@@ -15,20 +14,6 @@ struct UdpEndpoint {
     std::uint16_t port = 0;
     bool operator==(const UdpEndpoint&) const = default;
 };
-
-/// "127.0.0.1" as a number; nothing if it is no IPv4 address.
-[[nodiscard]] std::optional<std::uint32_t> parse_ipv4(const std::string& text);
-[[nodiscard]] std::string ipv4_text(std::uint32_t address);
-
-/// A network that this machine has an interface in.
-struct LocalNetwork {
-    std::string name;
-    int index = 0;
-    std::uint32_t netmask = 0xFFFFFF00;
-};
-
-/// The network that `address` lies in; nothing if it is none of ours.
-[[nodiscard]] std::optional<LocalNetwork> local_network_of(std::uint32_t address);
 
 struct Datagram {
     std::vector<std::uint8_t> bytes;

@@ -7,10 +7,10 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <optional>
 #include <utility>
 
+#include "capture/host_clock.h"
 #include "capture/v4l2/v4l2_buffers.h"
 #include "capture/v4l2/v4l2_controls.h"
 #include "capture/v4l2/v4l2_device.h"
@@ -23,12 +23,6 @@ namespace {
 constexpr std::string_view kMemorySetting = "BufferMemory";
 
 using Clock = std::chrono::steady_clock;
-
-std::int64_t now_ns(clockid_t clock) {
-    timespec now{};
-    ::clock_gettime(clock, &now);
-    return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
-}
 
 /// What the flags of a buffer say of its stamp.
 StampSource stamp_source(std::uint32_t flags) {
@@ -178,8 +172,8 @@ void V4l2Camera::count(const V4l2Buffers::Filled& filled, bool waited) {
 CapturedFrame V4l2Camera::frame_of(const V4l2Buffers::Filled& filled) const {
     CapturedFrame frame;
     FrameRecord& record = frame.record;
-    record.host_monotonic_ns = now_ns(CLOCK_MONOTONIC);
-    record.host_realtime_ns = now_ns(CLOCK_REALTIME);
+    record.host_monotonic_ns = monotonic_ns();
+    record.host_realtime_ns = realtime_ns();
     record.wire_id = filled.sequence;
     record.stamp_source = stamp_source(filled.flags);
     record.device_ns = filled.stamp_ns;

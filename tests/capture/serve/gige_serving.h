@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "capture/network.h"
 #include "capture/serve/gige_server.h"
 #include "capture/serve/udp_socket.h"
 #include "core/error.h"
