@@ -11,6 +11,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
+#include "apps/session_report.h"
 #include "capture/host_clock.h"
 #include "capture/open_camera.h"
 #include "capture/recording/recording_queue.h"
@@ -57,8 +58,7 @@ class CameraRecording {
           writer_(output_.partial(), session_record(session_.description(), settings_),
                   output_.final_path().string()),
           queue_(writer_, kQueueBytes) {
-        for (const std::string& warning : session_.description().warnings)
-            fmt::print(stderr, "stipple: {}\n", warning);
+        say_warnings(session_.description());
     }
 
     void run(const RunOptions& run);
@@ -73,13 +73,12 @@ class CameraRecording {
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(CapturedFrame frame);
     void take(const NoFrame&) {}
-    void take(const Outage& outage) {
-        fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n", outage.reason);
+    void take(const Outage& outage) { say(outage); }
+    void take(const Recovery& recovery) { say(recovery); }
+    void take(const DeviceLost& lost) {
+        at_end_ = lost.at_end;
+        end_reason_ = at_end_ ? lost.reason : fmt::format("camera lost: {}", lost.reason);
     }
-    void take(const Recovery& recovery) {
-        fmt::print(stderr, "stipple: the camera is back after {:.1f} s\n", recovery.gone_s);
-    }
-    void take(const DeviceLost& lost) { end_reason_ = fmt::format("camera lost: {}", lost.reason); }
 
     const CameraRecordingArguments& arguments_;
     PendingOutput output_;
@@ -90,14 +89,13 @@ class CameraRecording {
     std::uint64_t taken_ = 0;    ///< frames that the queue took
     std::uint64_t refused_ = 0;  ///< frames that it had no room for
     std::string end_reason_;
+    bool at_end_ = false;  ///< of a replay
     std::optional<DeviceError> failure_;
     double seconds_ = 0;
 };
 
 bool CameraRecording::wants_more(double seconds) const {
-    return end_reason_.empty() && stop_signal() == 0 &&
-           (arguments_.frames == 0 || taken_ < arguments_.frames) &&
-           (arguments_.seconds == 0 || seconds < arguments_.seconds);
+    return end_reason_.empty() && stop_signal() == 0 && !arguments_.limits.reached(taken_, seconds);
 }
 
 void CameraRecording::take(CapturedFrame frame) {
@@ -112,10 +110,7 @@ void CameraRecording::take(CapturedFrame frame) {
 }
 
 void CameraRecording::run(const RunOptions& run) {
-    const auto total = arguments_.frames == 0
-                           ? std::nullopt
-                           : std::optional(static_cast<std::int64_t>(arguments_.frames));
-    Progress progress(run, "recording", total);
+    Progress progress(run, "recording", arguments_.limits.total());
     while (wants_more(progress.seconds())) {
         std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
                    session_.next(kPatience));
@@ -147,20 +142,16 @@ void CameraRecording::finish() {
     else
         throw_if_stopped();
     if (failure_) throw DeviceError(*failure_);
-    if (!end_reason_.empty() && !is_replay(arguments_.camera))
-        throw DeviceError(arguments_.camera.address, end_reason_);
+    if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);
 }
 
 nlohmann::ordered_json CameraRecording::json() const {
     const RecordingEnd totals = writer_.totals();
     const TransportCounts transport = session_.transport();
-    nlohmann::ordered_json lost;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        lost[std::string(kGapCauseNames[i])] = session_.totals().lost[i];
     return {{"file", output_.final_path().string()},
             {"frames", totals.frames},
             {"incomplete", totals.incomplete},
-            {"lost", lost},
+            {"lost", lost_json(session_.totals())},
             {"outages", session_.totals().outages},
             {"transport",
              {{"underruns", transport.underruns},
@@ -181,11 +172,7 @@ std::string CameraRecording::text() const {
                     totals.frames, static_cast<double>(totals.frames) / seconds_,
                     static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
-    std::string lost;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        if (const auto frames = session_.totals().lost[i]; frames > 0)
-            lost += fmt::format("{}{} {}", lost.empty() ? "" : ", ", frames, kGapCauseNames[i]);
-    return fmt::format("{}\nlost: {}", text, lost.empty() ? "none" : lost);
+    return fmt::format("{}\nlost: {}", text, lost_text(session_.totals()));
 }
 
 }  // namespace

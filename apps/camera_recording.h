@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/camera_arguments.h"
+#include "apps/capture_limits.h"
 #include "apps/run_options.h"
 #include "capture/capture_session.h"
 
@@ -13,9 +14,8 @@ namespace stipple {
 struct CameraRecordingArguments {
     CameraArguments camera;
     SessionOptions session;
-    std::string output;        ///< file, or a folder in which a file named by the time is made
-    std::uint64_t frames = 0;  ///< 0: until stopped
-    double seconds = 0;        ///< 0: until stopped
+    std::string output;  ///< file, or a folder in which a file named by the time is made
+    CaptureLimits limits;
 };
 
 /// Records a camera until the frames or seconds are reached, a signal asks to stop, or the camera

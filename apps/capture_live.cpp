@@ -4,8 +4,8 @@
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
 #include "apps/live_emulation.h"
+#include "apps/sensor_arguments.h"
 #include "apps/session_arguments.h"
-#include "apps/timing_arguments.h"
 
 namespace stipple {
 namespace {
@@ -19,21 +19,6 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     run.say(emulation.text());
 }
 
-void add_sensor_arguments(CLI::App& command, SensorChoice& sensor) {
-    command.add_option("--sensor", sensor.sensor, "sensor (paper)")->type_name("NAME|FILE");
-    command.add_option("--schedule", sensor.schedule, "who exposes when (random)")
-        ->type_name("NAME|FILE");
-    command
-        .add_option("--sensor-set", sensor.settings,
-                    "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-    command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("S");
-    add_overrun(command, sensor.overrun);
-}
-
 }  // namespace
 
 void add_capture_live(CLI::App& capture, Action& action) {
@@ -43,13 +28,8 @@ void add_capture_live(CLI::App& capture, Action& action) {
     command->add_option("-o,--output", options->output, "sample stream")
         ->type_name("FILE")
         ->required();
-    command->add_option("--frames", options->frames, "stop after so many (until Ctrl-C)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("N");
-    command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("S");
-    add_sensor_arguments(*command, options->sensor);
+    add_capture_limits(*command, options->limits);
+    add_sensor_arguments(*command, options->sensor, "--sensor-set");
     add_session_arguments(*command, options->session);
     command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
         ->check(CLI::NonNegativeNumber)

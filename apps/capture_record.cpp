@@ -17,12 +17,7 @@ void add_capture_record(CLI::App& capture, Action& action) {
                      "recording, or a folder for one that is named by the time")
         ->type_name("FILE|DIR")
         ->required();
-    command->add_option("--frames", options->frames, "stop after so many (until Ctrl-C)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("N");
-    command->add_option("--seconds", options->seconds, "stop after so long (until Ctrl-C)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("S");
+    add_capture_limits(*command, options->limits);
     add_session_arguments(*command, options->session);
     auto* coded_flag = command->add_flag(
         "--coded", *coded,

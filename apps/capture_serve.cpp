@@ -10,8 +10,8 @@
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/sensor_arguments.h"
 #include "apps/served_source.h"
-#include "apps/timing_arguments.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -47,6 +47,7 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     std::fflush(stdout);
     server.run([] { return stop_signal() != 0; });
     json.write(counts_json(server.counts()));
+    throw_if_stopped();  // there is no output that could be shorter
 }
 
 void add_source_arguments(CLI::App& command, ServedSourceChoice& source) {
@@ -64,21 +65,9 @@ void add_source_arguments(CLI::App& command, ServedSourceChoice& source) {
         ->type_name("N");
     command.add_option("--format", source.format, "pixel format of footage (Mono8)")
         ->type_name("NAME");
-    command.add_option("--sensor", source.sensor.sensor, "sensor of mode coded (paper)")
-        ->type_name("NAME|FILE");
-    command.add_option("--schedule", source.sensor.schedule, "schedule of mode coded (random)")
-        ->type_name("NAME|FILE");
-    command
-        .add_option("--set", source.sensor.settings,
-                    "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-    command.add_option("--seed", source.sensor.seed, "of noise and schedule (1)")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("S");
+    add_sensor_arguments(command, source.sensor);
     add_footage_arguments(command, source.reading);
     add_max_value(command, source.reading.max_value);
-    add_overrun(command, source.sensor.overrun);
 }
 
 }  // namespace

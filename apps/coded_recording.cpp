@@ -96,9 +96,9 @@ std::int64_t slots_to_come(const CameraDescription& camera,
                            const CameraRecordingArguments& arguments) {
     const auto told = camera.features.find("SourceFrameCount");
     const std::int64_t of_source = told == camera.features.end() ? 0 : std::stoll(told->second);
-    if (arguments.frames == 0) return of_source;
-    const auto wanted = static_cast<std::int64_t>(arguments.frames);
-    return of_source == 0 ? wanted : std::min(wanted, of_source);
+    const auto limit = arguments.limits.total();
+    if (!limit) return of_source;
+    return of_source == 0 ? *limit : std::min(*limit, of_source);
 }
 
 /// Until all slots are there, the camera falls silent or goes, or somebody stops it. True if it
@@ -134,7 +134,7 @@ void record_coded_stream(const CameraRecordingArguments& arguments, const RunOpt
     JsonFile json(run);
     SlotRecorder recorder(arguments.output, run.force, header);
     camera->start();
-    const bool to_the_end = record_slots(*camera, recorder, slots, arguments.seconds);
+    const bool to_the_end = record_slots(*camera, recorder, slots, arguments.limits.seconds);
     camera->stop();
     if (recorder.slots() == 0) {
         throw_if_stopped();

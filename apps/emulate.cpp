@@ -12,6 +12,7 @@
 #include "apps/progress.h"
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
+#include "apps/sensor_arguments.h"
 #include "apps/slot_emulator.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
@@ -69,25 +70,11 @@ void add_emulate(CLI::App& app, Action& action) {
     command->add_option("-o,--output", options->output, "sample stream")
         ->type_name("FILE")
         ->required();
-    command->add_option("--sensor", options->sensor.sensor, "sensor (paper)")
-        ->type_name("NAME|FILE");
-    command
-        ->add_option("--schedule", options->sensor.schedule,
-                     "who exposes when: docs/schedules.md lists the names (random)")
-        ->type_name("NAME|FILE");
-    command
-        ->add_option("--set", options->sensor.settings,
-                     "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-    command->add_option("--seed", options->sensor.seed, "of noise and schedule (1)")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("S");
+    add_sensor_arguments(*command, options->sensor);
     add_footage_arguments(*command, options->reading);
     add_max_value(*command, options->reading.max_value);
     command->add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
         ->type_name("OUT");
-    add_overrun(*command, options->sensor.overrun);
     add_waveform_arguments(*command, options->waveform);
     command->footer(
         "Examples:\n"

@@ -1,10 +1,9 @@
 #include "apps/live_camera.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "apps/session_report.h"
 #include "capture/open_camera.h"
 
 namespace stipple {
@@ -60,12 +59,11 @@ void LiveCamera::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         SessionEvent event = session_.next(kPatience);
         if (auto* const frame = std::get_if<CapturedFrame>(&event)) take(std::move(*frame));
-        if (const auto* const outage = std::get_if<Outage>(&event))
-            fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n",
-                       outage->reason);
+        if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
+        if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
         if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
             const std::lock_guard lock(mutex_);
-            end_reason_ = lost->reason;
+            end_ = *lost;
             changed_.notify_all();
             return;
         }
@@ -74,16 +72,16 @@ void LiveCamera::run(const std::stop_token& stop) {
 
 std::optional<CapturedFrame> LiveCamera::next(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [&] { return !frames_.empty() || !end_reason_.empty(); });
+    changed_.wait_for(lock, timeout, [&] { return !frames_.empty() || end_; });
     if (frames_.empty()) return std::nullopt;
     CapturedFrame frame = std::move(frames_.front());
     frames_.pop_front();
     return frame;
 }
 
-std::string LiveCamera::end_reason() const {
+std::optional<DeviceLost> LiveCamera::end() const {
     const std::lock_guard lock(mutex_);
-    return frames_.empty() ? end_reason_ : std::string();
+    return frames_.empty() ? end_ : std::nullopt;
 }
 
 std::size_t LiveCamera::peak() const {

@@ -33,8 +33,8 @@ class LiveCamera {
     void begin();
     /// The next frame; nothing if none comes in time or the camera is lost for good.
     [[nodiscard]] std::optional<CapturedFrame> next(std::chrono::milliseconds timeout);
-    /// Why no frame will come any more; empty while one may.
-    [[nodiscard]] std::string end_reason() const;
+    /// Why no frame will come any more; nothing while one may.
+    [[nodiscard]] std::optional<DeviceLost> end() const;
     /// Frames that waited at most.
     [[nodiscard]] std::size_t peak() const;
     /// Stops the camera. What became of its frames.
@@ -54,7 +54,7 @@ class LiveCamera {
     std::deque<CapturedFrame> frames_;
     std::size_t peak_ = 0;
     bool begun_ = false;
-    std::string end_reason_;
+    std::optional<DeviceLost> end_;
     std::jthread thread_;  ///< last: starts when all else is there
 };
 

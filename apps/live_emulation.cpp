@@ -7,6 +7,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "apps/session_report.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -38,27 +39,21 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
       recording_(arguments.output, run.force, setup_,
                  source_name(arguments.camera, camera_.description())),
       light_(to_light_.shape().sites()) {
-    for (const std::string& warning : camera_.description().warnings)
-        fmt::print(stderr, "stipple: {}\n", warning);
+    say_warnings(camera_.description());
 }
 
 bool LiveEmulation::wants_more(double seconds) const {
-    return end_reason_.empty() && stop_signal() == 0 &&
-           (arguments_.frames == 0 || latencies_us_.size() < arguments_.frames) &&
-           (arguments_.seconds == 0 || seconds < arguments_.seconds);
+    return !end_ && stop_signal() == 0 && !arguments_.limits.reached(latencies_us_.size(), seconds);
 }
 
 void LiveEmulation::run(const RunOptions& run) {
-    const auto total = arguments_.frames == 0
-                           ? std::nullopt
-                           : std::optional(static_cast<std::int64_t>(arguments_.frames));
-    Progress progress(run, "emulating live", total);
+    Progress progress(run, "emulating live", arguments_.limits.total());
     camera_.begin();
     while (wants_more(progress.seconds())) {
         if (const auto frame = camera_.next(kPatience))
             take(*frame);
         else
-            end_reason_ = camera_.end_reason();
+            end_ = camera_.end();
         progress.reach(static_cast<double>(latencies_us_.size()));
     }
     seconds_ = progress.seconds();
@@ -73,7 +68,7 @@ void LiveEmulation::hold(std::uint64_t slots) {
 
 void LiveEmulation::take(const CapturedFrame& frame) {
     if (frame.record.layout != camera_.layout()) {
-        end_reason_ = "the camera sends another region or pixel format";
+        end_ = DeviceLost{"the camera sends another region or pixel format"};
         return;
     }
     hold(frame.record.lost_before);
@@ -89,13 +84,11 @@ void LiveEmulation::finish() {
     totals_ = camera_.stop();
     if (latencies_us_.empty()) {
         throw_if_stopped();
-        throw DeviceError(arguments_.camera.address,
-                          end_reason_.empty() ? "no frame came" : end_reason_);
+        throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
     }
     recording_.finish();
     std::sort(latencies_us_.begin(), latencies_us_.end());
-    if (!end_reason_.empty() && !is_replay(arguments_.camera))
-        throw DeviceError(arguments_.camera.address, end_reason_);
+    if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
 
 double LiveEmulation::latency_us(double share) const {
@@ -104,12 +97,9 @@ double LiveEmulation::latency_us(double share) const {
 }
 
 nlohmann::ordered_json LiveEmulation::json() const {
-    nlohmann::ordered_json lost;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        lost[std::string(kGapCauseNames[i])] = totals_.lost[i];
     nlohmann::ordered_json json = recording_json(recording_, seconds_);
     json["frames"] = latencies_us_.size();
-    json["lost"] = lost;
+    json["lost"] = lost_json(totals_);
     json["held_slots"] = held_slots_;
     json["late_slots"] = late_slots_;
     json["queue_peak_frames"] = camera_.peak();

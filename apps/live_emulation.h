@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/camera_arguments.h"
+#include "apps/capture_limits.h"
 #include "apps/live_camera.h"
 #include "apps/recording.h"
 #include "apps/run_options.h"
@@ -21,8 +22,7 @@ struct LiveArguments {
     SensorChoice sensor;
     std::string output;
     double black_level_dn = 0;
-    std::uint64_t frames = 0;  ///< 0: until stopped
-    double seconds = 0;        ///< 0: until stopped
+    CaptureLimits limits;
     std::size_t queue_frames = 64;
     double late_after_slots = 2;
 };
@@ -60,7 +60,7 @@ class LiveEmulation {
     std::uint64_t held_slots_ = 0;
     std::uint64_t late_slots_ = 0;
     double seconds_ = 0;
-    std::string end_reason_;
+    std::optional<DeviceLost> end_;  ///< of the frames
 };
 
 }  // namespace stipple

@@ -28,9 +28,11 @@ struct CameraDescription {
 /// Nothing arrived within the timeout.
 struct NoFrame {};
 
-/// The device is gone, or its stream has failed for good; open it again.
+/// The device is gone, or its stream has failed for good; open it again. Or all frames of a replay
+/// have come.
 struct DeviceLost {
     std::string reason;
+    bool at_end = false;  ///< the latter: no fault
 };
 
 /// What `Camera::wait` comes back with. Of the frame's record the camera fills what it knows:

@@ -154,14 +154,14 @@ std::optional<nanoseconds> CaptureSession::Impl::patience() const {
 }
 
 SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
-    period_before = period();
-    count_transport(true);
-    earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
     ++totals.outages;
     if (!options.reconnect) {
         camera->stop();
         return DeviceLost{std::move(reason)};
     }
+    period_before = period();
+    count_transport(true);
+    earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
     std::erase_if(reopeners, [](const auto& old) { return old->is_done(); });
     reopeners.push_back(std::make_unique<CameraReopener>(std::move(camera), open));
     return Outage{std::move(reason)};
@@ -259,7 +259,8 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     Arrival arrival = camera->wait(timeout);
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return deliver(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival))
-        return begin_outage(std::move(lost->reason));
+        return lost->at_end ? SessionEvent(std::move(*lost))
+                            : begin_outage(std::move(lost->reason));
     const auto now_silent = std::chrono::ceil<milliseconds>(Clock::now() - last_sign);
     if (limit && now_silent >= *limit)
         return begin_outage(fmt::format("nothing came for {} ms", now_silent.count()));

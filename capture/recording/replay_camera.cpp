@@ -166,7 +166,7 @@ Arrival ReplayCamera::wait(std::chrono::milliseconds timeout) {
     const auto give_up = Clock::now() + timeout;
     try {
         for (;;) {
-            if (!has_coming_ && !load()) return DeviceLost{path_ + " is at its end"};
+            if (!has_coming_ && !load()) return DeviceLost{path_ + " is at its end", true};
             if (!paced()) return deliver();
             if (due_ > give_up) {
                 std::this_thread::sleep_until(give_up);

@@ -10,7 +10,7 @@ import threading
 import unittest
 
 import numpy as np
-from program import DEVICE, INPUT, PROGRAM, USAGE, ProgramTest
+from program import DEVICE, INPUT, PROGRAM, STOPPED, USAGE, ProgramTest
 
 BUILT_WITHOUT = "built without Aravis"
 
@@ -58,6 +58,17 @@ class ServeTest(ProgramTest):
         except subprocess.TimeoutExpired:
             server.kill()
             server.communicate()
+
+    def test_ctrl_c_is_no_loss(self):
+        server = self.start_program("capture", "serve", self.scene(), "--address", own_address(0),
+                                    "--json", "counts.json", stdout=subprocess.PIPE)
+        self.addCleanup(self.stop, server)
+        self.assertIn("READY", server.stdout.readline())
+        server.send_signal(signal.SIGINT)
+        errors = server.communicate(timeout=60)[1]
+        self.assertEqual(server.returncode, STOPPED, errors)
+        self.assertNotIn("shorter", errors)
+        self.assertEqual(json.loads((self.folder / "counts.json").read_text())["frames"], 0)
 
     def record(self, address, output, *arguments):
         done = self.run_program("capture", "record", "gige:" + address, "-o", output, *arguments)

@@ -230,6 +230,14 @@ TEST(CaptureSessionTest, ACameraThatWaitsForTriggersMayBeSilent) {
 TEST(CaptureSessionTest, WithoutReconnectionALostCameraEndsTheSession) {
     CaptureSession session(plays({{is_lost("unplugged")}}), {.reconnect = false});
     EXPECT_EQ(wait_for<DeviceLost>(session).reason, "unplugged");
+    EXPECT_EQ(session.totals().outages, 1U);
+}
+
+TEST(CaptureSessionTest, TheEndOfAReplayIsNoOutageAndOpensNothingAnew) {
+    const ScriptedStep end{[] { return Arrival(DeviceLost{"at its end", true}); }, {}};
+    CaptureSession session(plays({{end}}), {});
+    EXPECT_TRUE(wait_for<DeviceLost>(session).at_end);
+    EXPECT_EQ(session.totals().outages, 0U);
 }
 
 TEST(CaptureSessionTest, ACameraThatCannotBeOpenedYetIsTriedAgain) {

@@ -1,0 +1,37 @@
+#include "apps/session_report.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace stipple {
+
+nlohmann::ordered_json lost_json(const SessionTotals& totals) {
+    nlohmann::ordered_json json;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        json[std::string(kGapCauseNames[i])] = totals.lost[i];
+    return json;
+}
+
+std::string lost_text(const SessionTotals& totals) {
+    std::string text;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        if (const auto frames = totals.lost[i]; frames > 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", frames, kGapCauseNames[i]);
+    return text.empty() ? "none" : text;
+}
+
+void say(const Outage& outage) {
+    fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n", outage.reason);
+}
+
+void say(const Recovery& recovery) {
+    fmt::print(stderr, "stipple: the camera is back after {:.1f} s\n", recovery.gone_s);
+}
+
+void say_warnings(const CameraDescription& camera) {
+    for (const std::string& warning : camera.warnings) fmt::print(stderr, "stipple: {}\n", warning);
+}
+
+}  // namespace stipple

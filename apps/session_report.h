@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "capture/capture_session.h"
+
+namespace stipple {
+
+/// Frames that are missing, by cause: the key `lost` of docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json lost_json(const SessionTotals& totals);
+
+/// The same for people: the causes there are, or "none".
+[[nodiscard]] std::string lost_text(const SessionTotals& totals);
+
+/// Tells on standard error that the camera is gone, or back.
+void say(const Outage& outage);
+void say(const Recovery& recovery);
+
+/// Prints what may cost frames on standard error.
+void say_warnings(const CameraDescription& camera);
+
+}  // namespace stipple
