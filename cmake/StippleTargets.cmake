@@ -69,13 +69,15 @@ function(stipple_fuzz name source)
     endif()
 endfunction()
 
-# stipple_bench(NAME file.cpp LIBS lib ...): a Google Benchmark program, run once by the tests.
+# stipple_bench(NAME file.cpp LIBS lib ... [TESTED regex]): a Google Benchmark program, run once by the
+# tests, or of it what `regex` names.
 function(stipple_bench name source)
-    cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+    cmake_parse_arguments(arg "" "TESTED" "LIBS" ${ARGN})
     add_executable(bench_${name} ${source})
     target_link_libraries(bench_${name} PRIVATE ${arg_LIBS} benchmark::benchmark_main)
     if(STIPPLE_TESTS)
-        add_test(NAME bench_${name}_runs COMMAND bench_${name} --benchmark_min_time=0.001)
+        add_test(NAME bench_${name}_runs COMMAND bench_${name} --benchmark_min_time=0.001
+                 --benchmark_filter=${arg_TESTED})
         set_tests_properties(bench_${name}_runs PROPERTIES LABELS bench TIMEOUT 300)
     endif()
 endfunction()
