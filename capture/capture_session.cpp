@@ -178,7 +178,10 @@ SessionEvent CaptureSession::Impl::wait_for_camera(milliseconds timeout) {
 
 void CaptureSession::Impl::count_transport(bool now) {
     if (!now && Clock::now() - counted_at < kCountEvery) return;
+    const std::uint64_t unexplained = counted.underruns;
     counted = camera->counts();
+    // An underrun always costs a frame: where none is missing yet, frames from before it wait.
+    if (!now && first_frame) counted.underruns = unexplained;
     counted_at = Clock::now();
     incomplete_since = false;
 }

@@ -25,7 +25,11 @@ void mark_unwritten(std::span<std::uint8_t> buffer) noexcept {
     std::size_t at = 0;
     for (; at + kWord <= buffer.size(); at += kWord)
         std::memcpy(&buffer[at], kPattern.data(), kWord);
-    for (; at < buffer.size(); ++at) buffer[at] = kPattern[at % kWord];
+    mark_unwritten(buffer, at, buffer.size());
+}
+
+void mark_unwritten(std::span<std::uint8_t> buffer, std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t at = begin; at < end; ++at) buffer[at] = kPattern[at % kPattern.size()];
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> clear_holes(std::span<std::uint8_t> buffer) {

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstring>
 
+#include "capture/aravis/usb_packets.h"
 #include "capture/doctor/network_facts.h"
 #include "capture/frame_holes.h"
 #include "capture/host_clock.h"
@@ -68,6 +69,8 @@ struct AravisStream::Impl {
     ArvChunkParser* chunks = nullptr;
     std::size_t buffer_bytes = 0;
     std::uint64_t mismatches_seen = 0;
+    std::uint64_t cut_frames = 0;
+    ArvBuffer* held_back = nullptr;  ///< of the last frame, if that was incomplete
     std::uint64_t link_faults_before = 0;
     std::uint64_t last_wire_id = 0;
     bool running = false;
@@ -89,8 +92,11 @@ struct AravisStream::Impl {
     void set_packet_size(std::optional<int> wanted);
     void set_socket_buffer();
     void push_buffers();
+    void hand_back(ArvBuffer* buffer, bool complete);
     void reuse(ArvBuffer* buffer) const;
     void rebuild();
+    [[nodiscard]] std::size_t wanted_bytes() const;
+    [[nodiscard]] std::uint64_t mismatches() const;
     [[nodiscard]] std::uint64_t info(const char* name) const;
     [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer);
     [[nodiscard]] FrameLayout layout_of(ArvBuffer* buffer) const;
@@ -99,6 +105,7 @@ struct AravisStream::Impl {
 
 AravisStream::Impl::~Impl() {
     if (lost_handler != 0) g_signal_handler_disconnect(arv_camera_get_device(camera), lost_handler);
+    g_clear_object(&held_back);
     g_clear_object(&stream);
     g_clear_object(&chunks);
 }
@@ -168,15 +175,33 @@ void AravisStream::Impl::set_socket_buffer() {
             buffers.socket_frames, wanted, most));
 }
 
+/// What a buffer must hold.
+std::size_t AravisStream::Impl::wanted_bytes() const {
+    const std::size_t payload = arv_camera_get_payload(camera, nullptr);
+    // By USB as much is asked for as a buffer holds: no more than the camera sends.
+    const bool exactly = !device.is_gige() && payload > 0;
+    return std::clamp(exactly ? payload : std::max(payload, layout.payload_bytes()), std::size_t{1},
+                      kMostPayloadBytes);
+}
+
 void AravisStream::Impl::push_buffers() {
-    const guint payload = arv_camera_get_payload(camera, nullptr);
-    buffer_bytes = std::clamp(std::max<std::size_t>(payload, layout.payload_bytes()),
-                              std::size_t{1}, kMostPayloadBytes);
+    buffer_bytes = wanted_bytes();
     for (int i = 0; i < buffers.frames; ++i) {
         auto* slot = new Slot(buffer_bytes);
         reuse(arv_buffer_new_full(buffer_bytes, slot->memory.data(), slot,
                                   [](void* old) { delete static_cast<Slot*>(old); }));
     }
+}
+
+/// Where the trailer of a USB3 Vision frame was lost, the leader of the next one may lie in its
+/// buffer, and Aravis (0.8.26) reads that leader after it has handed the buffer out.
+void AravisStream::Impl::hand_back(ArvBuffer* buffer, bool complete) {
+    if (!device.is_gige()) {
+        if (held_back != nullptr) reuse(held_back);
+        held_back = complete ? nullptr : buffer;
+        if (!complete) return;
+    }
+    reuse(buffer);
 }
 
 void AravisStream::Impl::reuse(ArvBuffer* buffer) const {
@@ -188,12 +213,22 @@ void AravisStream::Impl::reuse(ArvBuffer* buffer) const {
 }
 
 std::uint64_t AravisStream::Impl::info(const char* name) const {
-    return stream == nullptr ? 0 : arv_stream_get_info_uint64_by_name(stream, name);
+    if (stream == nullptr) return 0;
+    for (guint i = 0; i < arv_stream_get_n_infos(stream); ++i)
+        if (std::strcmp(arv_stream_get_info_name(stream, i), name) == 0)
+            return arv_stream_get_info_uint64(stream, i);
+    return 0;  // not counted by this transport
+}
+
+/// Frames that did not fit into their buffers, or did not fill them.
+std::uint64_t AravisStream::Impl::mismatches() const {
+    return device.is_gige() ? info("n_size_mismatch_errors") : cut_frames;
 }
 
 /// Makes buffers of the size that the camera sends now.
 void AravisStream::Impl::rebuild() {
     if (running) arv_camera_stop_acquisition(camera, nullptr);
+    g_clear_object(&held_back);
     arv_stream_stop_thread(stream, TRUE);
     push_buffers();
     arv_stream_start_thread(stream);
@@ -237,7 +272,9 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     const Slot& slot = slot_of(buffer);
     const bool has_leader = arv_buffer_get_frame_id(buffer) != kNoId;
     // Frames come in order, so the least that it can be is the next one.
-    record.wire_id = has_leader ? arv_buffer_get_frame_id(buffer) : last_wire_id % 65535 + 1;
+    record.wire_id = has_leader         ? arv_buffer_get_frame_id(buffer)
+                     : device.is_gige() ? last_wire_id % 65535 + 1
+                                        : last_wire_id + 1;
     last_wire_id = record.wire_id;
     record.status = status_of(status);
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
@@ -262,7 +299,9 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
         if (size < wanted && record.status == FrameStatus::kComplete)
             record.status = FrameStatus::kSizeMismatch;
     }
+    if (record.status == FrameStatus::kSizeMismatch) ++cut_frames;
     if (record.status != FrameStatus::kComplete) {
+        if (!device.is_gige()) erase_usb_packets(frame.payload, record.wire_id);
         frame.holes = clear_holes(frame.payload);
         for (const auto& [begin, end] : frame.holes) record.bytes_received -= end - begin;
         // Only the trailer was lost: every byte of the image is there.
@@ -304,7 +343,7 @@ TransportCounts AravisStream::counts() const {
     counts.underruns = impl_->info("n_underruns");
     counts.packets_resent = impl_->info("n_resent_packets");
     counts.packets_missing = impl_->info("n_missing_packets");
-    counts.size_mismatches = impl_->info("n_size_mismatch_errors");
+    counts.size_mismatches = impl_->mismatches();
     if (impl_->device.is_gige() && impl_->facts.at("socket") == "udp")
         counts.socket_drops = udp_drops(arv_gv_stream_get_port(ARV_GV_STREAM(impl_->stream)));
     if (const auto interface = impl_->facts.find("interface"); interface != impl_->facts.end())
@@ -332,12 +371,12 @@ Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
         return NoFrame{};
     }
     CapturedFrame frame = impl_->frame_from(buffer);
-    impl_->reuse(buffer);
-    const std::uint64_t mismatches = impl_->info("n_size_mismatch_errors");
-    if (mismatches != impl_->mismatches_seen) {
+    impl_->hand_back(buffer, frame.record.status == FrameStatus::kComplete);
+    if (const std::uint64_t mismatches = impl_->mismatches();
+        mismatches != impl_->mismatches_seen) {
         impl_->mismatches_seen = mismatches;
-        const guint payload = arv_camera_get_payload(impl_->camera, nullptr);
-        if (std::max<std::size_t>(payload, impl_->layout.payload_bytes()) > impl_->buffer_bytes)
+        const std::size_t wanted = impl_->wanted_bytes();
+        if (impl_->device.is_gige() ? wanted > impl_->buffer_bytes : wanted != impl_->buffer_bytes)
             impl_->rebuild();
     }
     return frame;

@@ -105,6 +105,23 @@ TEST(CaptureSessionTest, TheCauseOfAGapIsWhatTheTransportCountedMeanwhile) {
     }
 }
 
+TEST(CaptureSessionTest, AnUnderrunExplainsTheGapBehindTheFramesThatWaited) {
+    const TransportCounts starved{.underruns = 1};
+    // Long enough for the transport's counters to be read before the gap.
+    const auto slow = [] {
+        std::this_thread::sleep_for(250ms);
+        return Arrival(scripted_frame(2));
+    };
+    std::deque<ScriptedStep> script{arrives(scripted_frame(1)), {slow, starved}};
+    for (const std::uint64_t id : {3U, 5U, 6U, 8U})
+        script.push_back(arrives(scripted_frame(id), starved));
+    CaptureSession session(plays({script}), {.stall = 0ms});
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(next_record(session).cause, GapCause::kNone);
+    EXPECT_EQ(next_record(session).cause, GapCause::kHostUnderrun);
+    EXPECT_EQ(next_record(session).cause, GapCause::kNone);
+    EXPECT_EQ(next_record(session).cause, GapCause::kDevice);  // explained by nothing new
+}
+
 TEST(CaptureSessionTest, PacketsOfAFrameThatArrivedIncompleteExplainNoOtherFrame) {
     const TransportCounts missing{.packets_missing = 2};
     CaptureSession session(plays({{arrives(scripted_frame(1)), arrives(incomplete(2), missing),

@@ -10,7 +10,7 @@ from kernel import Unavailable, modules_with_dependencies
 
 BUSYBOX = Path("/bin/busybox")
 AT_BOOT = ("virtio_pci", "9pnet_virtio", "9p")
-LATE = ("vivid",)  # loaded by the payload, which gives options
+LATE = ("vivid", "dummy_hcd", "usb_f_fs")  # loaded by the payload, which gives options
 
 
 def initramfs(kernel):

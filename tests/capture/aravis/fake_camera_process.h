@@ -16,12 +16,15 @@ extern char** environ;
 
 namespace stipple {
 
-/// tests/capture/aravis/fake_gige_camera.cpp at work, from READY on.
+/// A fake camera at work, from READY on: tests/capture/aravis/fake_gige_camera.cpp, or another
+/// program that is built here and takes commands as it does.
 class FakeCameraProcess {
   public:
     /// `options` as in the head of fake_gige_camera.cpp.
-    explicit FakeCameraProcess(std::vector<std::string> options = {})
-        : options_(std::move(options)) {
+    explicit FakeCameraProcess(std::vector<std::string> options = {},
+                               std::string program = "fake_gige_camera")
+        : options_(std::move(options)),
+          program_(std::string(STIPPLE_BINARY_DIR) + "/" + std::move(program)) {
         start();
     }
     ~FakeCameraProcess() {
@@ -39,18 +42,17 @@ class FakeCameraProcess {
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, commands[0], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, answers[1], STDOUT_FILENO);
-        std::string program = std::string(STIPPLE_BINARY_DIR) + "/fake_gige_camera";
-        std::vector<char*> arguments{program.data()};
+        std::vector<char*> arguments{program_.data()};
         for (std::string& option : options_) arguments.push_back(option.data());
         arguments.push_back(nullptr);
         const int error =
-            posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
+            posix_spawn(&pid_, program_.c_str(), &actions, nullptr, arguments.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
         ::close(commands[0]);
         ::close(answers[1]);
         commands_ = commands[1];
         answers_ = answers[0];
-        ASSERT_EQ(error, 0) << program;
+        ASSERT_EQ(error, 0) << program_;
         ASSERT_EQ(answer(), "READY");
     }
 
@@ -61,7 +63,11 @@ class FakeCameraProcess {
 
     /// Writes a register behind the client's back.
     void write_register(unsigned address, unsigned value) {
-        const std::string line = std::to_string(address) + " " + std::to_string(value) + "\n";
+        command(std::to_string(address) + " " + std::to_string(value));
+    }
+
+    void command(std::string line) {
+        line += '\n';
         ASSERT_EQ(::write(commands_, line.data(), line.size()), static_cast<ssize_t>(line.size()));
         ASSERT_EQ(answer(), "DONE");
     }
@@ -83,6 +89,7 @@ class FakeCameraProcess {
     }
 
     std::vector<std::string> options_;
+    std::string program_;
     pid_t pid_ = 0;
     int commands_ = -1;
     int answers_ = -1;
