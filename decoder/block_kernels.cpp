@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "decoder/block_kernels.h"
+#include "decoder/colour_axes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
@@ -130,7 +131,7 @@ void synthesise(Group& g) {
     for (int row = 0; row < kSide; ++row) transform_back(g.v[row * kSide], kBlocks);
 }
 
-/// Returns the weight of the group.
+/// Returns the sum of the squared factors.
 float shrink(const Group& pilot, float sigma, Group& g) {
     float squares[kBlocks] = {};
     for (int i = 0; i < kPixels; ++i)
@@ -142,7 +143,11 @@ float shrink(const Group& pilot, float sigma, Group& g) {
         }
     float sum = 0;
     for (const float square : squares) sum += square;
-    return 1 / (sum > 1 ? sum : 1.0F);
+    return sum;
+}
+
+float weight_of(float squares) {
+    return 1 / (squares > 1 ? squares : 1.0F);
 }
 
 /// Along a side of a block.
@@ -163,16 +168,72 @@ void add(const Group& g, float group_weight, const GroupFrames& group) {
     }
 }
 
-void wiener_filter(const GroupFrames& group, float sigma) {
-    Group noisy;
-    Group pilot;
+void load_spectra(const GroupFrames& group, Group& noisy, Group& pilot) {
     load(group, group.noisy, noisy);
     load(group, group.pilot, pilot);
     analyse(noisy);
     analyse(pilot);
-    const float weight = shrink(pilot, sigma, noisy);
+}
+
+void wiener_filter(const GroupFrames& group, float sigma) {
+    Group noisy;
+    Group pilot;
+    load_spectra(group, noisy, pilot);
+    const float weight = weight_of(shrink(pilot, sigma, noisy));
     synthesise(noisy);
     add(noisy, weight, group);
+}
+
+constexpr std::size_t kColours = 3;
+
+/// Inner product of two planes of a group, without its mean.
+float product(const Group& a, const Group& b) {
+    float products[kBlocks] = {};
+    for (int i = 0; i < kPixels; ++i)
+        for (int k = 0; k < kBlocks; ++k)
+            if (i > 0 || k > 0) products[k] += kHaarSquare[k] * a.v[i][k] * b.v[i][k];
+    float sum = 0;
+    for (const float each : products) sum += each;
+    return sum;
+}
+
+ColourMatrix axes_of(const Group (&planes)[kColours]) {
+    ColourMatrix covariance;
+    for (std::size_t i = 0; i < kColours; ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+            covariance[i][j] = covariance[j][i] = product(planes[i], planes[j]);
+    return principal_colour_axes(covariance);
+}
+
+/// Each plane becomes the sum of all, times a column of `mix`.
+void mix_planes(const ColourMatrix& mix, Group (&planes)[kColours]) {
+    for (int i = 0; i < kPixels; ++i)
+        for (int k = 0; k < kBlocks; ++k) {
+            const float x[kColours] = {planes[0].v[i][k], planes[1].v[i][k], planes[2].v[i][k]};
+            for (std::size_t p = 0; p < kColours; ++p)
+                planes[p].v[i][k] = x[0] * mix[0][p] + x[1] * mix[1][p] + x[2] * mix[2][p];
+        }
+}
+
+ColourMatrix transposed(const ColourMatrix& m) {
+    return {
+        {{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
+}
+
+void wiener_filter_colours(const ColourGroupFrames& frames, float sigma) {
+    Group noisy[kColours];
+    Group pilot[kColours];
+    for (std::size_t p = 0; p < kColours; ++p) load_spectra(frames[p], noisy[p], pilot[p]);
+    const ColourMatrix axes = axes_of(pilot);
+    mix_planes(axes, noisy);
+    mix_planes(axes, pilot);
+    float squares = 0;
+    for (std::size_t p = 0; p < kColours; ++p) squares += shrink(pilot[p], sigma, noisy[p]);
+    mix_planes(transposed(axes), noisy);
+    for (std::size_t p = 0; p < kColours; ++p) {
+        synthesise(noisy[p]);
+        add(noisy[p], weight_of(squares), frames[p]);
+    }
 }
 
 }  // namespace stipple::HWY_NAMESPACE
@@ -183,6 +244,7 @@ namespace stipple {
 
 HWY_EXPORT(all_squared_differences);
 HWY_EXPORT(wiener_filter);
+HWY_EXPORT(wiener_filter_colours);
 
 void squared_differences(const float* image, const float* reference,
                          std::span<const std::uint32_t> at, std::ptrdiff_t cols,
@@ -192,6 +254,10 @@ void squared_differences(const float* image, const float* reference,
 
 void filter_group(const GroupFrames& group, float sigma) noexcept {
     HWY_DYNAMIC_DISPATCH(wiener_filter)(group, sigma);
+}
+
+void filter_group(const ColourGroupFrames& planes, float sigma) noexcept {
+    HWY_DYNAMIC_DISPATCH(wiener_filter_colours)(planes, sigma);
 }
 
 }  // namespace stipple

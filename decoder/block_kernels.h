@@ -33,4 +33,12 @@ struct GroupFrames {
 /// falls towards the border of a block. (Dabov et al., IEEE TIP 16(8), 2007.)
 void filter_group(const GroupFrames& group, float sigma) noexcept;
 
+/// The same blocks in three planes.
+using ColourGroupFrames = std::array<GroupFrames, 3>;
+
+/// The same of three planes at once, with the colours of the group turned to the axes along which
+/// those of the pilot vary independently: an edge between two colours is in one of them alone. One
+/// weight for all planes.
+void filter_group(const ColourGroupFrames& planes, float sigma) noexcept;
+
 }  // namespace stipple

@@ -89,7 +89,9 @@ class CollaborativeSolver {
         // The grid moves, so that the seams between blocks do not stay in one place.
         const int step = options_.block_step;
         const int offset = iteration / options_.match_every * (step / 2 + 1) % step;
-        groups_ = match_blocks(pilot_, {shape(), step, offset}, motion_, options_.matching);
+        const bool near = measurements_.mosaic && iteration < options_.mosaic.near_iterations;
+        groups_ = match_blocks(pilot_, {shape(), step, offset}, motion_,
+                               near ? options_.mosaic.near : options_.matching);
     }
 
     /// What the filter has taken from the samples is added to them, as in generalised alternating
@@ -143,11 +145,19 @@ class CollaborativeSolver {
     BlockGroups groups_;
 };
 
+CollaborativeOptions options_for(const Measurements& measurements, CollaborativeOptions options) {
+    if (!measurements.mosaic) return options;
+    options.iterations = options.mosaic.iterations;
+    options.first_sigma = options.mosaic.first_sigma;
+    return options;
+}
+
 }  // namespace
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
-                                              const CollaborativeOptions& options,
+                                              const CollaborativeOptions& all_options,
                                               const Checkpoint& checkpoint) {
+    const CollaborativeOptions options = options_for(measurements, all_options);
     auto x = decode_motion_tv(measurements, noise, options.start,
                               [&](double fraction) { return checkpoint(kStartShare * fraction); });
     if (!x || std::min(x->shape().rows, x->shape().cols) < kBlockSide) return x;

@@ -10,6 +10,17 @@
 
 namespace stipple {
 
+/// What is different where the planes are a mosaic of colours: two of three voxels are filled by
+/// the filter alone, which takes more iterations and stronger ones at first. In those it looks for
+/// similar blocks nearby rather than in other slots, where a thing at rest is under the same
+/// filters of the array.
+struct MosaicFilterOptions {
+    int iterations = 60;
+    float first_sigma = 0.2F;
+    int near_iterations = 18;
+    MatchingOptions near{.slots = 2, .own_radius = 8};
+};
+
 /// The method `best`; the values were found on natural and high-speed footage
 /// (docs/decoder_experiments.md).
 struct CollaborativeOptions {
@@ -31,6 +42,7 @@ struct CollaborativeOptions {
     /// iteration.
     float feedback = 0.25F;
     float feedback_kept = 0.9F;
+    MosaicFilterOptions mosaic = {};
 };
 
 /// Decodes one block: the estimate of `decode_motion_tv`, then iterations of (collaborative filter,

@@ -81,22 +81,33 @@ class Aggregation {
     void filter_row(int slot, int row) {
         const BlockGrid& grid = groups_.grid;
         const FrameShape shape = noisy_.shape();
-        GroupFrames frames{.cols = shape.cols};
         for (int col = 0; col < grid.cols(); ++col) {
-            const BlockGroup& group = groups_.group(slot, row, col);
-            for (std::size_t k = 0; k < group.size(); ++k)
-                frames.block[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
-                                  frames.cols * group[k].rows + group[k].cols;
             std::size_t voxel = index(slot) * shape.sites() +
                                 index(grid.row(row)) * index(shape.cols) + index(grid.col(col));
-            for (int plane = 0; plane < shape.planes; ++plane, voxel += shape.pixels()) {
-                frames.noisy = &noisy_.data()[voxel];
-                frames.pilot = &pilot_.data()[voxel];
-                frames.sum = &sum_.data()[voxel];
-                frames.weight = &weight_.data()[voxel];
-                filter_group(frames, sigma_);
+            const BlockGroup& group = groups_.group(slot, row, col);
+            if (shape.planes == 3) {
+                filter_group({frames_at(voxel, group), frames_at(voxel + shape.pixels(), group),
+                              frames_at(voxel + 2 * shape.pixels(), group)},
+                             sigma_);
+                continue;
             }
+            for (int plane = 0; plane < shape.planes; ++plane, voxel += shape.pixels())
+                filter_group(frames_at(voxel, group), sigma_);
         }
+    }
+
+    /// `voxel` is the first of the reference block in a plane.
+    GroupFrames frames_at(std::size_t voxel, const BlockGroup& group) {
+        const FrameShape shape = noisy_.shape();
+        GroupFrames frames{.noisy = &noisy_.data()[voxel],
+                           .pilot = &pilot_.data()[voxel],
+                           .sum = &sum_.data()[voxel],
+                           .weight = &weight_.data()[voxel],
+                           .cols = shape.cols};
+        for (std::size_t k = 0; k < group.size(); ++k)
+            frames.block[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
+                              frames.cols * group[k].rows + group[k].cols;
+        return frames;
     }
 
     const FluxVideo& noisy_;

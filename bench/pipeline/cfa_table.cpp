@@ -8,10 +8,12 @@
 // - demosaiced: the four pixels of the cells decoded as four mono videos of half the size, put
 //   together to mosaics, then OpenCV's edge-aware demosaicing of 16 bits a pixel: of linear light,
 //   and of its square root.
-// Arguments: [method [clip ...]]. The figures of docs/decoder_experiments.md.
+// Arguments: [method [side [clip ...]]]; of each clip the middle of `side` pixels, 0 for all of it.
+// The figures of docs/decoder_experiments.md.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/core.hpp>
@@ -150,6 +152,23 @@ FluxVideo demosaic(const FluxVideo& mosaic, const Encoding& encoding) {
     return video;
 }
 
+/// The middle of the frames, from even rows and columns. Precondition: an even side.
+FluxVideo middle_of(const FluxVideo& video, int side) {
+    const FrameShape shape = video.shape();
+    if (side == 0 || side >= std::min(shape.rows, shape.cols)) return video;
+    FluxVideo middle(video.slots(), {.rows = side, .cols = side, .planes = shape.planes});
+    const int top = (shape.rows - side) / 4 * 2;
+    const auto left = static_cast<std::size_t>((shape.cols - side) / 4 * 2);
+    for (int slot = 0; slot < video.slots(); ++slot)
+        for (int plane = 0; plane < shape.planes; ++plane)
+            for (int row = 0; row < side; ++row)
+                std::ranges::copy(video.plane(slot, plane)
+                                      .row(top + row)
+                                      .subspan(left, static_cast<std::size_t>(side)),
+                                  middle.plane(slot, plane).row(row).begin());
+    return middle;
+}
+
 void print_row(const std::string& name, const FluxVideo& video, DecodeMethod method) {
     const FluxVideo mosaic = mosaic_of_quarters(video, method);
     fmt::print("| {} | {} | **{}** | {} | {} | {} | {} |\n", name,
@@ -162,7 +181,7 @@ void print_row(const std::string& name, const FluxVideo& video, DecodeMethod met
     std::fflush(stdout);  // rows take minutes
 }
 
-void print_table(const std::string& method, std::vector<std::string> clips) {
+void print_table(DecodeMethod method, int side, std::vector<std::string> clips) {
     if (clips.empty())
         clips = {"nat30_blocks", "nat30_coffee", "hdr_desk", "hdr_desk_fg", "hdr_stilllife"};
     fmt::print(
@@ -171,7 +190,7 @@ void print_table(const std::string& method, std::vector<std::string> clips) {
     for (const std::string& name : clips) {
         const auto video = colour_clip(name);
         if (video)
-            print_row(name, *video, decode_method_from_name(method));
+            print_row(name, middle_of(*video, side), method);
         else
             fmt::print("| {} | no clip in colour in {} |\n", name, footage_folder().string());
     }
@@ -181,11 +200,19 @@ void print_table(const std::string& method, std::vector<std::string> clips) {
 }  // namespace stipple
 
 int main(int argc, char** argv) {
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (arguments.empty()) arguments.emplace_back("fast");
+    if (arguments.size() == 1) arguments.emplace_back("0");
+    int side = 0;
+    const char* end = arguments[1].data() + arguments[1].size();
+    const auto [rest, problem] = std::from_chars(arguments[1].data(), end, side);
+    if (rest != end || problem != std::errc() || side < 0 || side % 2 != 0) {
+        fmt::print(stderr, "side: {} is not an even number of pixels\n", arguments[1]);
+        return 1;
+    }
     try {
-        stipple::print_table(
-            arguments.empty() ? "fast" : arguments[0],
-            {arguments.begin() + std::min<std::ptrdiff_t>(1, argc - 1), arguments.end()});
+        stipple::print_table(stipple::decode_method_from_name(arguments[0]), side,
+                             {arguments.begin() + 2, arguments.end()});
     } catch (const stipple::InputError& error) {
         fmt::print(stderr, "{}\n", error.what());
         return 1;
