@@ -12,6 +12,8 @@ namespace {
 
 void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
+    if (!arguments.preview.file.empty())
+        check_preview_file(arguments.preview, arguments.output, run.force);
     LiveEmulation emulation(arguments, run);
     emulation.run(run);
     emulation.finish();
@@ -30,6 +32,7 @@ void add_capture_live(CLI::App& capture, Action& action) {
         ->required();
     add_capture_limits(*command, options->limits);
     add_sensor_arguments(*command, options->sensor, "--sensor-set");
+    add_preview_arguments(*command, options->preview);
     add_session_arguments(*command, options->session);
     command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
         ->check(CLI::NonNegativeNumber)
@@ -45,6 +48,7 @@ void add_capture_live(CLI::App& capture, Action& action) {
     command->footer(
         "Examples:\n"
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
+        "  stipple capture live v4l2:/dev/video0 -o clip.stipple --preview now.png\n"
         "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
     command->callback(
         [options, &action] { action = [options](const RunOptions& run) { live(*options, run); }; });

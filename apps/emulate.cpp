@@ -13,6 +13,7 @@
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
 #include "apps/sensor_arguments.h"
+#include "apps/session_report.h"
 #include "apps/slot_emulator.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
@@ -33,7 +34,8 @@ struct EmulateOptions {
 
 void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage(options.footage, options.reading);
-    const SensorSetup setup = set_up_sensor(options.sensor, footage.shape());
+    const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
+    say_warning(mosaic_warning(setup, footage.filter()));
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "capture/host_clock.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -16,6 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{50};
+constexpr double kRateAfterS = 1;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// What the stream says of where its light came from: no address, no time.
@@ -25,21 +28,21 @@ std::string source_name(const CameraArguments& arguments, const CameraDescriptio
     return std::filesystem::path(file).filename().string();
 }
 
-std::int64_t monotonic_ns() {
-    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       camera_(arguments.camera, arguments.session, arguments.queue_frames),
       to_light_(camera_.layout(), arguments.black_level_dn),
-      setup_(set_up_sensor(arguments.sensor, to_light_.shape())),
+      setup_(set_up_sensor(arguments.sensor, to_light_.shape(), to_light_.filter())),
       recording_(arguments.output, run.force, setup_,
                  source_name(arguments.camera, camera_.description())),
       light_(to_light_.shape().sites()) {
     say_warnings(camera_.description());
+    say_warning(mosaic_warning(setup_, to_light_.filter()));
+    if (!arguments.preview.file.empty())
+        preview_.emplace(arguments.preview.file,
+                         PreviewDecoder(stream_header_of(setup_, ""), arguments.preview));
 }
 
 bool LiveEmulation::wants_more(double seconds) const {
@@ -62,8 +65,13 @@ void LiveEmulation::run(const RunOptions& run) {
 void LiveEmulation::hold(std::uint64_t slots) {
     if (latencies_us_.empty()) return;  // nothing stands in for what came before the first frame
     slots = std::min(slots, kMaxHeld);
-    for (std::uint64_t slot = 0; slot < slots; ++slot) recording_.expose(light_);
+    for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     held_slots_ += slots;
+}
+
+void LiveEmulation::expose(std::int64_t arrival_ns) {
+    const auto packets = recording_.expose(light_);
+    if (preview_) preview_->add(packets, arrival_ns);
 }
 
 void LiveEmulation::take(const CapturedFrame& frame) {
@@ -72,12 +80,18 @@ void LiveEmulation::take(const CapturedFrame& frame) {
         return;
     }
     hold(frame.record.lost_before);
+    rate_.add(frame.record);
+    if (rate_.seconds() >= kRateAfterS) compare_rates();
     to_light_.convert(frame.payload, light_);
-    recording_.expose(light_);
+    expose(frame.record.host_monotonic_ns);
     const auto latency_us =
         static_cast<double>(monotonic_ns() - frame.record.host_monotonic_ns) * 1e-3;
     latencies_us_.push_back(static_cast<float>(latency_us));
     if (latency_us > arguments_.late_after_slots * setup_.params.slot_us) ++late_slots_;
+}
+
+void LiveEmulation::compare_rates() {
+    if (!std::exchange(rates_compared_, true)) say_warning(rate_warning(rate_.hz(), setup_.params));
 }
 
 void LiveEmulation::finish() {
@@ -86,7 +100,9 @@ void LiveEmulation::finish() {
         throw_if_stopped();
         throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
     }
+    compare_rates();
     recording_.finish();
+    if (preview_) preview_->finish();
     std::sort(latencies_us_.begin(), latencies_us_.end());
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
@@ -99,22 +115,27 @@ double LiveEmulation::latency_us(double share) const {
 nlohmann::ordered_json LiveEmulation::json() const {
     nlohmann::ordered_json json = recording_json(recording_, seconds_);
     json["frames"] = latencies_us_.size();
+    json["frames_hz"] = rate_.hz() > 0 ? nlohmann::ordered_json(rate_.hz()) : nullptr;
+    json["slots_hz"] = 1e6 / setup_.params.slot_us;
     json["lost"] = lost_json(totals_);
     json["held_slots"] = held_slots_;
     json["late_slots"] = late_slots_;
     json["queue_peak_frames"] = camera_.peak();
     json["latency_us"] = {
         {"median", latency_us(0.5)}, {"p99", latency_us(0.99)}, {"max", latency_us(1)}};
+    if (preview_) json["preview"] = preview_->json();
     return json;
 }
 
 std::string LiveEmulation::text() const {
-    return fmt::format(
+    std::string text = fmt::format(
         "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
         arguments_.late_after_slots, held_slots_, latency_us(0.5) * 1e-3, latency_us(0.99) * 1e-3,
         latency_us(1) * 1e-3);
+    if (preview_) text.append(1, '\n').append(preview_->text());
+    return text;
 }
 
 }  // namespace stipple

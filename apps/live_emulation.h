@@ -2,12 +2,16 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/camera_arguments.h"
 #include "apps/capture_limits.h"
+#include "apps/frame_rate.h"
 #include "apps/live_camera.h"
+#include "apps/live_preview.h"
+#include "apps/preview_arguments.h"
 #include "apps/recording.h"
 #include "apps/run_options.h"
 #include "apps/sensor_setup.h"
@@ -23,6 +27,7 @@ struct LiveArguments {
     std::string output;
     double black_level_dn = 0;
     CaptureLimits limits;
+    PreviewArguments preview;
     std::size_t queue_frames = 64;
     double late_after_slots = 2;
 };
@@ -46,6 +51,8 @@ class LiveEmulation {
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(const CapturedFrame& frame);
     void hold(std::uint64_t slots);
+    void expose(std::int64_t arrival_ns);
+    void compare_rates();
     /// Microseconds that a share of the frames took at most, from arrival to packet.
     [[nodiscard]] double latency_us(double share) const;
 
@@ -54,11 +61,14 @@ class LiveEmulation {
     FrameLight to_light_;
     SensorSetup setup_;
     Recording recording_;
+    std::optional<LivePreview> preview_;
     SessionTotals totals_;
     std::vector<float> light_;
     std::vector<float> latencies_us_;  ///< of each frame
     std::uint64_t held_slots_ = 0;
     std::uint64_t late_slots_ = 0;
+    FrameRate rate_;
+    bool rates_compared_ = false;
     double seconds_ = 0;
     std::optional<DeviceLost> end_;  ///< of the frames
 };

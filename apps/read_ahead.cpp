@@ -36,6 +36,11 @@ std::optional<int> ReadAhead::slots() const {
     return footage == nullptr ? std::nullopt : footage->slots();
 }
 
+ColourFilter ReadAhead::filter() const {
+    const auto* const recording = std::get_if<RecordingFootage>(&reader_);
+    return recording == nullptr ? ColourFilter::kNone : recording->filter();
+}
+
 void ReadAhead::start_reading() {
     reading_ = std::async(std::launch::async, [this] {
         return std::visit([this](auto& reader) { return reader.read(coming_); }, reader_);

@@ -24,6 +24,8 @@ class ReadAhead {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::optional<int> slots() const;
+    /// Whose mosaic the frames are; of a recording only.
+    [[nodiscard]] ColourFilter filter() const;
 
     /// The next frame, valid until the next call, or an empty span at the end.
     /// \throws InputError as FootageReader::read and RecordingFootage::read.

@@ -13,8 +13,10 @@ Recording::Recording(const std::filesystem::path& file, bool force, const Sensor
       emulator_(setup),
       writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {}
 
-void Recording::expose(std::span<const float> frame) {
-    for (const SamplePacket& packet : emulator_.expose(frame)) writer_.write(packet);
+std::span<const SamplePacket> Recording::expose(std::span<const float> frame) {
+    const auto packets = emulator_.expose(frame);
+    for (const SamplePacket& packet : packets) writer_.write(packet);
+    return packets;
 }
 
 void Recording::finish() {

@@ -21,8 +21,8 @@ class Recording {
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples: those that the readout has time for, if rows are dropped.
-    /// \throws DeviceError.
-    void expose(std::span<const float> frame);
+    /// Returns what was written, valid until the next call. \throws DeviceError.
+    std::span<const SamplePacket> expose(std::span<const float> frame);
     /// Puts the file in place. \throws DeviceError.
     void finish();
 

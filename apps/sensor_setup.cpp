@@ -83,8 +83,15 @@ toml::table sensor_table(const SensorParams& params) {
 }
 
 /// The array that footage of this shape falls on.
-FrameShape array_of(const SensorParams& params, FrameShape footage) {
-    if (params.physical.cfa == ColourFilter::kNone) return footage;
+FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter mosaic) {
+    const ColourFilter own = params.physical.cfa;
+    if (own == ColourFilter::kNone || own == mosaic) return footage;
+    if (mosaic != ColourFilter::kNone)
+        throw InputError(
+            fmt::format("sensor '{}': cfa", params.name),
+            fmt::format("its colour filter array begins as {}, the frames as {}; set cfa={}, or "
+                        "move the camera's region (OffsetX, OffsetY) by a pixel",
+                        name_of(own), name_of(mosaic), name_of(mosaic)));
     if (footage.planes != 3)
         throw InputError(fmt::format("sensor '{}': cfa", params.name),
                          fmt::format("a colour filter array ({}) needs colour footage, this has {} "
@@ -119,9 +126,9 @@ SensorParams set_up_params(const SensorChoice& choice) {
     return read_sensor_file(choice).params;
 }
 
-SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {
+SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, ColourFilter mosaic) {
     const SensorDescription sensor = read_sensor_file(choice);
-    const FrameShape shape = array_of(sensor.params, footage);
+    const FrameShape shape = array_of(sensor.params, footage, mosaic);
     if (sensor.timing) check_window(*sensor.timing, shape);
     const ColumnAddressing addressing =
         sensor.timing ? sensor.timing->addressing : ColumnAddressing{};
@@ -132,6 +139,17 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage) {
             .seed = choice.seed,
             .timing = sensor.timing,
             .overrun = choice.overrun};
+}
+
+std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
+    if (mosaic == ColourFilter::kNone || setup.params.physical.cfa != ColourFilter::kNone)
+        return {};
+    return fmt::format(
+        "the frames are a mosaic of colours ({}), but sensor '{}' has no colour filter array: they "
+        "are taken for grey, and decoding smooths over their pattern. A sensor of mode "
+        "\"physical\" "
+        "with cfa={}, such as `ideal`, gives colour",
+        name_of(mosaic), setup.params.name, name_of(mosaic));
 }
 
 std::string provenance_of(const SensorSetup& setup, const std::string& footage) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "readout/readout_account.h"
 #include "readout/readout_timing.h"
@@ -51,9 +52,14 @@ struct SensorSetup {
 /// what cannot be used; the schedule's settings cannot.
 [[nodiscard]] SensorParams set_up_params(const SensorChoice& choice);
 
-/// A sensor for this footage. \throws InputError naming file, line and key of what cannot be used,
-/// or if there is a colour filter array but no colour.
-[[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage);
+/// A sensor for this footage, which may be a mosaic of colours already. \throws InputError naming
+/// file, line and key of what cannot be used, or if there is a colour filter array but no colour,
+/// or another mosaic than that of the footage.
+[[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage,
+                                        ColourFilter mosaic = ColourFilter::kNone);
+
+/// Says what such a mosaic becomes if the sensor has no colour filter array; else empty.
+[[nodiscard]] std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic);
 
 /// The text that a stream carries of where it comes from (TOML): emulator, `footage`, all sensor
 /// parameters, schedule, seed. No time and no path, so that the same run gives the same bytes.

@@ -30,8 +30,12 @@ void say(const Recovery& recovery) {
     fmt::print(stderr, "stipple: the camera is back after {:.1f} s\n", recovery.gone_s);
 }
 
+void say_warning(const std::string& warning) {
+    if (!warning.empty()) fmt::print(stderr, "stipple: {}\n", warning);
+}
+
 void say_warnings(const CameraDescription& camera) {
-    for (const std::string& warning : camera.warnings) fmt::print(stderr, "stipple: {}\n", warning);
+    for (const std::string& warning : camera.warnings) say_warning(warning);
 }
 
 }  // namespace stipple

@@ -17,7 +17,10 @@ namespace stipple {
 void say(const Outage& outage);
 void say(const Recovery& recovery);
 
-/// Prints what may cost frames on standard error.
+/// Prints a warning on standard error, unless it is empty.
+void say_warning(const std::string& warning);
+
+/// Warns of what may cost frames.
 void say_warnings(const CameraDescription& camera);
 
 }  // namespace stipple

@@ -31,7 +31,7 @@ SlotEmulator::SlotEmulator(const SensorSetup& setup)
 
 std::span<const SamplePacket> SlotEmulator::expose(std::span<const float> frame) {
     const ColourFilter filter = setup_.params.physical.cfa;
-    if (filter != ColourFilter::kNone) {
+    if (filter != ColourFilter::kNone && setup_.footage.planes == 3) {
         mosaic_.resize(setup_.shape.pixels());
         take_mosaic(filter, setup_.footage, frame, mosaic_);
         frame = mosaic_;

@@ -45,7 +45,7 @@ class SlotEmulator {
     CodedSensor sensor_;
     std::optional<ReadoutAccount> account_;
     std::array<SamplePacket, 2> packets_;
-    std::vector<float> mosaic_;  ///< the light behind the colour filters, if there are any
+    std::vector<float> mosaic_;  ///< of light in colour behind colour filters
 };
 
 }  // namespace stipple

@@ -18,6 +18,8 @@ class FrameLight {
     FrameLight(const FrameLayout& layout, double black_level_dn);
 
     [[nodiscard]] FrameShape shape() const { return shape_; }
+    /// Whose mosaic the frames are.
+    [[nodiscard]] ColourFilter filter() const { return layout_.format->filter; }
     /// Fills `light`, order (plane, row, col). What the payload is too short for is black.
     /// Precondition: light.size() == shape().sites().
     void convert(std::span<const std::uint8_t> payload, std::span<float> light);

@@ -26,6 +26,11 @@ int thread_count() {
     return static_cast<int>(limit);
 }
 
+void run_on_this_thread(const std::function<void()>& body) {
+    tbb::task_arena alone(1);
+    alone.execute(body);
+}
+
 void parallel_for(int begin, int end, const std::function<void(int)>& body) {
     tbb::parallel_for(begin, end, body, tbb::simple_partitioner());
 }

@@ -21,6 +21,10 @@ class ThreadLimit {
 /// Threads that `parallel_for` uses now.
 [[nodiscard]] int thread_count();
 
+/// Calls `body`; `parallel_for` within it uses the calling thread only. For a thread that works
+/// beside others and must not take theirs.
+void run_on_this_thread(const std::function<void()>& body);
+
 /// Calls `body(i)` once for each i in [begin, end), spread over the threads in no fixed order.
 /// Bodies must write to disjoint memory and must not add up across indices, which makes every
 /// result independent of the number of threads. The first exception thrown by a body is rethrown.

@@ -62,26 +62,6 @@ class PacketBuffer {
 
 using Block = std::optional<FluxVideo>;  ///< nothing if stopped
 
-Block decode_block(Measurements measurements, const Calibration& calibration,
-                   const DecodeOptions& options, const StageObserver& observer,
-                   const Checkpoint& checkpoint) {
-    switch (options.method) {
-        case DecodeMethod::kNaive:
-            return nearest_samples(measurements);
-        case DecodeMethod::kFast:
-            unobserve_defects(measurements);
-            return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
-                                    checkpoint);
-        case DecodeMethod::kPortz2013:
-            return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
-        case DecodeMethod::kBest:
-            unobserve_defects(measurements);
-            return decode_collaborative(measurements, SampleNoise(calibration), options.best,
-                                        checkpoint);
-    }
-    return {};
-}
-
 /// Methods that need more memory for a voxel work on smaller tiles.
 std::int64_t max_core_sites(DecodeMethod method) {
     return method == DecodeMethod::kPortz2013 ? kPortz2013CoreSites : kMaxCoreSites;
@@ -180,7 +160,7 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
         const VideoWindow window = window_of(tiles[i], slots, shape.planes);
         const Block block =
             decode_block(collect_measurements(header, packets, window), header.calibration, options,
-                         stages.observer(tiles[i], i), tile_checkpoint);
+                         tile_checkpoint, stages.observer(tiles[i], i));
         if (!block || !tile_checkpoint(1)) return {};
         copy_core(*block, {tiles[i], slots}, video);
     }
@@ -189,6 +169,26 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
 }
 
 }  // namespace
+
+std::optional<FluxVideo> decode_block(Measurements measurements, const Calibration& calibration,
+                                      const DecodeOptions& options, const Checkpoint& checkpoint,
+                                      const StageObserver& observer) {
+    switch (options.method) {
+        case DecodeMethod::kNaive:
+            return nearest_samples(measurements);
+        case DecodeMethod::kFast:
+            unobserve_defects(measurements);
+            return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
+                                    checkpoint);
+        case DecodeMethod::kPortz2013:
+            return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
+        case DecodeMethod::kBest:
+            unobserve_defects(measurements);
+            return decode_collaborative(measurements, SampleNoise(calibration), options.best,
+                                        checkpoint);
+    }
+    return {};
+}
 
 DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
                     const DecodeMonitor& monitor) {

@@ -2,9 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
+#include "core/flux_video.h"
+#include "decoder/checkpoint.h"
 #include "decoder/decode_options.h"
+#include "decoder/measurements.h"
+#include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
@@ -40,5 +45,11 @@ inline DecodeReport decode(
     const DecodeMonitor& monitor = [](double) { return true; }) {
     return decode(reader, DecodeOptions{.method = method}, sink, monitor);
 }
+
+/// Decodes one block as `decode` does; the result may be slightly negative. Nothing if `checkpoint`
+/// has stopped it.
+[[nodiscard]] std::optional<FluxVideo> decode_block(
+    Measurements measurements, const Calibration& calibration, const DecodeOptions& options,
+    const Checkpoint& checkpoint = [](double) { return true; }, const StageObserver& observer = {});
 
 }  // namespace stipple

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A camera of 640x480 Mono16 at 200 frames/s, recorded and emulated live: frames lost, slots late.
+"""A camera of 640x480 Mono16 at 200 frames/s, recorded and emulated live, with and without preview:
+frames lost, slots late.
 
 usage: realtime.py [STIPPLE [SECONDS [FOLDER]]]     build/release/stipple, 10 s, temporary files
 
@@ -47,12 +48,26 @@ def start_camera(stipple, footage):
     return camera
 
 
-def capture(stipple, command, seconds, output):
+def capture(stipple, command, seconds, output, *arguments):
     done = subprocess.run([stipple, "capture", command, f"gige:{ADDRESS}", "-o", output, "--force",
-                           "--seconds", str(seconds), "-q", "--json", "-"], capture_output=True,
-                          text=True)
+                           "--seconds", str(seconds), "-q", "--json", "-", *arguments],
+                          capture_output=True, text=True)
     sys.stderr.write(done.stderr)
     return json.loads(done.stdout)
+
+
+def emulate_live(stipple, seconds, folder, method):
+    preview = () if method is None else ("--preview", os.path.join(folder, "now.png"),
+                                         "--preview-method", method)
+    live = capture(stipple, "live", seconds, os.path.join(folder, "clip.stipple"), *preview)
+    latency = live["latency_us"]
+    print(f"live, preview {method}: {live['frames']} frames, lost {sum(live['lost'].values())},"
+          f" late {live['late_slots']}, held {live['held_slots']}; frame in to packet out:"
+          f" median {latency['median'] / 1e3:.2f} ms, p99 {latency['p99'] / 1e3:.2f} ms,"
+          f" max {latency['max'] / 1e3:.2f} ms; queue up to {live['queue_peak_frames']}")
+    if method is not None:
+        shown = live["preview"]
+        print(f"        {shown['made']} pictures, delay {shown['delay_ms']}")
 
 
 def main():
@@ -67,12 +82,8 @@ def main():
             record = capture(stipple, "record", seconds, os.path.join(folder, "clip.strec"))
             print(f"record: {record['frames']} frames in {record['seconds']:.2f} s,"
                   f" lost {sum(record['lost'].values())} {record['lost']}")
-            live = capture(stipple, "live", seconds, os.path.join(folder, "clip.stipple"))
-            latency = live["latency_us"]
-            print(f"live:   {live['frames']} frames, lost {sum(live['lost'].values())},"
-                  f" late {live['late_slots']}, held {live['held_slots']}; frame in to packet out:"
-                  f" median {latency['median'] / 1e3:.2f} ms, p99 {latency['p99'] / 1e3:.2f} ms,"
-                  f" max {latency['max'] / 1e3:.2f} ms; queue up to {live['queue_peak_frames']}")
+            for method in (None, "naive", "fast"):
+                emulate_live(stipple, seconds, folder, method)
         finally:
             camera.terminate()
             camera.wait()

@@ -30,6 +30,8 @@ class RecordingFootage {
                               RecordingFootageOptions options = {});
 
     [[nodiscard]] FrameShape shape() const { return light_.shape(); }
+    /// Whose mosaic the frames are.
+    [[nodiscard]] ColourFilter filter() const { return light_.filter(); }
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError for a frame of another layout, and for more
     /// than 2^20 missing frames at once.

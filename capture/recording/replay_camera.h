@@ -10,7 +10,8 @@ namespace stipple {
 /// A recording, or footage, that comes as if a camera sent it. `address` is "replay:PATH".
 ///
 /// Settings: `AcquisitionFrameRate` in Hz, 0 for as fast as it is taken (default: a recording by
-/// its stamps, footage at 200 Hz); `Loop` 0 or 1; `PixelFormat` of footage, Mono8, Mono16 or RGB8.
+/// its stamps, footage at 200 Hz); `Loop` 0 or 1; `PixelFormat` of footage, Mono8 or Mono16, of
+/// footage in colour RGB8, or BayerRG8 ... BayerBG16.
 ///
 /// Payloads, device stamps, exposure, gain, black level, layout, status and holes are those of the
 /// recording, and wire ids leave out what it left out; arrival stamps are new. Whoever takes frames

@@ -14,12 +14,15 @@ FrameLayout footage_layout(FrameShape shape, const std::string& name) {
     const std::string_view of_shape = shape.planes == 3 ? "RGB8" : "Mono16";
     const std::string_view wanted = name.empty() ? of_shape : std::string_view(name);
     const PixelFormat* format = pixel_format_named(wanted);
+    const bool mosaic = format != nullptr && format->filter != ColourFilter::kNone &&
+                        format->packing == Packing::kBytes && format->significant_bits % 8 == 0;
     const bool plain = wanted == "Mono8" || wanted == "Mono16" || wanted == "RGB8";
-    if (!plain || format->planes != shape.planes)
+    if (!(plain || mosaic) || (mosaic ? 3 : format->planes) != shape.planes)
         throw InputError(
             "PixelFormat",
             fmt::format("footage of {} planes does not come in \"{}\"; write {}", shape.planes,
-                        wanted, shape.planes == 3 ? "RGB8" : "Mono8 or Mono16"));
+                        wanted,
+                        shape.planes == 3 ? "RGB8, or BayerRG8 ... BayerBG16" : "Mono8 or Mono16"));
     return {.format = format,
             .width = shape.cols,
             .height = shape.rows,
@@ -63,13 +66,20 @@ bool ReplaySource::next(CapturedFrame& frame) {
 
 void ReplaySource::quantise(std::vector<std::uint8_t>& payload) const {
     const auto planes = static_cast<std::size_t>(layout_.format->planes);
-    const std::size_t pixels = light_.size() / planes;
+    const auto cols = static_cast<std::size_t>(layout_.width);
+    const std::size_t pixels = cols * static_cast<std::size_t>(layout_.height);
+    const ColourFilter filter = layout_.format->filter;
     const bool words = layout_.format->significant_bits == 16;
     const float full_scale = words ? 65535.0F : 255.0F;
     payload.resize(layout_.payload_bytes());
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
         for (std::size_t plane = 0; plane < planes; ++plane) {
-            const float light = std::min(light_[plane * pixels + pixel], 1.0F);
+            const int seen = filter == ColourFilter::kNone
+                                 ? static_cast<int>(plane)
+                                 : colour_plane(filter, static_cast<int>(pixel / cols),
+                                                static_cast<int>(pixel % cols));
+            const float light =
+                std::min(light_[static_cast<std::size_t>(seen) * pixels + pixel], 1.0F);
             const auto dn = static_cast<std::uint16_t>(light * full_scale + 0.5F);
             const std::size_t sample = pixel * planes + plane;
             if (words)

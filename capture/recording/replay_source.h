@@ -16,9 +16,9 @@ namespace stipple {
 /// numbers round(min(light, 1) x full scale) of a pixel format.
 class ReplaySource {
   public:
-    /// Opens a recording, or else footage that shall come in `format` ("Mono8", "Mono16", "RGB8";
-    /// empty: Mono16, or RGB8 if it has colour). \throws InputError if it is neither, holds no
-    /// frame, or for a format that it cannot come in.
+    /// Opens a recording, or else footage that shall come in `format` ("Mono8" or "Mono16", of
+    /// colour "RGB8" or "BayerRG8" ... "BayerBG16"; empty: Mono16 or RGB8). \throws InputError if
+    /// it is neither, holds no frame, or for a format that it cannot come in.
     ReplaySource(const std::filesystem::path& path, const std::string& format);
 
     [[nodiscard]] bool is_recording() const { return recording_.has_value(); }

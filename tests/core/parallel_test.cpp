@@ -39,6 +39,23 @@ TEST(ParallelTest, ThreadLimitHoldsWhileItLives) {
     EXPECT_EQ(thread_count(), before);
 }
 
+TEST(ParallelTest, WhatRunsOnThisThreadUsesNoOther) {
+    std::atomic<bool> elsewhere = false;
+    std::vector<int> calls(1000, 0);
+    std::thread worker([&] {
+        const auto here = std::this_thread::get_id();
+        run_on_this_thread([&] {
+            parallel_for(0, 1000, [&](int i) {
+                ++calls[static_cast<std::size_t>(i)];
+                if (std::this_thread::get_id() != here) elsewhere = true;
+            });
+        });
+    });
+    worker.join();
+    EXPECT_EQ(calls, std::vector<int>(1000, 1));
+    EXPECT_FALSE(elsewhere);
+}
+
 TEST(ParallelTest, RethrowsAnExceptionOfTheBody) {
     const auto body = [](int i) {
         if (i == 17) throw std::runtime_error("seventeen");

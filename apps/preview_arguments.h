@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/geometry.h"
+
+namespace CLI {
+class App;
+}
+
+namespace stipple {
+
+/// The preview of `stipple capture live`.
+struct PreviewArguments {
+    std::string file;                ///< .png or .npy; empty: none
+    std::string method = "fast";     ///< or "naive"
+    std::optional<FrameShape> size;  ///< rows and columns of the middle of the frame
+};
+
+/// `--preview`, `--preview-method` and `--preview-size`.
+void add_preview_arguments(CLI::App& command, PreviewArguments& arguments);
+
+/// \throws InputError if `file` cannot become the preview of a recording named `output`: another
+/// file of that name, no folder, or the recording itself.
+void check_preview_file(const PreviewArguments& arguments, const std::string& output, bool force);
+
+}  // namespace stipple

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "apps/preview_arguments.h"
+#include "decoder/checkpoint.h"
+#include "decoder/decode_options.h"
+#include "decoder/measurements.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// One decoded frame of a stream that is under way.
+struct PreviewFrame {
+    std::int64_t slot = 0;
+    FrameShape shape;
+    std::vector<float> light;      ///< order (plane, row, col), units of FluxVideo
+    std::vector<bool> too_bright;  ///< by pixel: all its samples of some colour are saturated
+    [[nodiscard]] double too_bright_fraction() const;
+    [[nodiscard]] double mean_light() const;
+};
+
+/// Decodes single frames out of the midst of a stream, from as few slots as hold the exposures
+/// around them. Not so many voxels are decoded that it takes more than some seconds or some hundred
+/// MB: of a frame that is too large only the middle is.
+class PreviewDecoder {
+  public:
+    PreviewDecoder(StreamHeader header, const PreviewArguments& arguments);
+
+    /// Slots that a frame is made of.
+    [[nodiscard]] int slots() const { return region_.slots; }
+    /// The slot of these that is shown.
+    [[nodiscard]] int shown_slot() const { return region_.slots / 2; }
+    [[nodiscard]] FrameShape shape() const { return region_.shape; }
+
+    /// From the packets of slots() slots, `first_slot` and those after it. Nothing if `checkpoint`
+    /// has stopped it. \throws InputError as collect_measurements.
+    [[nodiscard]] std::optional<PreviewFrame> decode(std::int64_t first_slot,
+                                                     std::span<const SamplePacket> packets,
+                                                     const Checkpoint& checkpoint) const;
+
+  private:
+    StreamHeader header_;
+    DecodeOptions options_;
+    VideoWindow region_;  ///< of the first slots
+};
+
+/// Replaces `file` at once as a whole: a .png with what is too bright in red and a line of text
+/// above, or a .npy of linear light, (1, H, W) or (1, H, W, 3). \throws InputError, DeviceError.
+void write_preview(const std::filesystem::path& file, const PreviewFrame& frame);
+
+}  // namespace stipple

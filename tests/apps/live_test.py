@@ -1,0 +1,196 @@
+"""A camera through the sensor as it runs: what is shown meanwhile, rates, colour filters."""
+
+import json
+import os
+import signal
+import struct
+import time
+import unittest
+
+import numpy as np
+from program import INPUT, STOPPED, USAGE, ProgramTest
+
+FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+WINDOW = 16  # slots of a preview: twice the longest exposure of the schedule `random`
+CAPTION = 20  # rows of text above a .png
+PREVIEW_OF_FAST = ("--method", "fast", "--set", "rounds=1", "--set", "last_iterations=10")
+
+
+def moving_light(slots, rows=24, cols=32):
+    """A smooth picture that moves by a pixel a slot, up to 0.9."""
+    y, x = np.mgrid[:rows, :cols]
+    return np.stack([0.5 + 0.4 * np.sin((x - slot) / 4) * np.cos(y / 5) for slot in range(slots)])
+
+
+def until(condition, process):
+    """Waits for it; the time limit only ends a test that hangs."""
+    deadline = time.monotonic() + 100
+    while not condition() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return condition()
+
+
+class LiveTest(ProgramTest):
+    def live(self, source, *arguments):
+        return self.figures("capture", "live", "replay:" + source, "-o", "clip.stipple", "--force",
+                            *arguments)
+
+    def start_loop(self, *arguments):
+        """A recording that goes on until somebody stops it."""
+        self.write_array("light.npy", moving_light(40))
+        program = self.start_program("capture", "live", "replay:light.npy", "-o", "clip.stipple",
+                                     "-q", "--set", "Loop=1", "--json", "figures.json", *arguments)
+        self.addCleanup(program.communicate)
+        self.addCleanup(program.kill)
+        return program
+
+    def stop(self, program):
+        """Figures of its preview, and what it said on standard error."""
+        program.send_signal(signal.SIGINT)
+        errors = program.communicate(timeout=100)[1]
+        self.assertEqual(program.returncode, STOPPED, errors)
+        figures = json.loads((self.folder / "figures.json").read_text())
+        self.assertEqual(self.figures("info", "clip.stipple")["slots"], figures["slots"])
+        return figures["preview"], errors
+
+
+class PreviewTest(LiveTest):
+    def test_it_is_the_frame_that_decode_makes_of_these_slots(self):
+        self.write_array("light.npy", moving_light(WINDOW))
+        for method, decode in (("fast", PREVIEW_OF_FAST), ("naive", ("--method", "naive"))):
+            preview = self.live("light.npy", *FAST, "--preview", "now.npy", "--preview-method",
+                                method)["preview"]
+            self.assertEqual((preview["made"], preview["slots"], preview["last_slot"]),
+                             (1, WINDOW, WINDOW // 2))
+            self.succeed("decode", "clip.stipple", "-o", "all.npy", "--force", *decode)
+            np.testing.assert_array_equal(self.array("now.npy")[0],
+                                          self.array("all.npy")[WINDOW // 2])
+
+    def test_the_middle_alone_is_the_middle_of_the_whole(self):
+        self.write_array("light.npy", moving_light(WINDOW))
+        preview = self.live("light.npy", *FAST, "--preview", "now.npy", "--preview-method", "naive",
+                            "--preview-size", "12x999")["preview"]
+        self.assertEqual((preview["width"], preview["height"]), (12, 24))
+        self.succeed("decode", "clip.stipple", "-o", "all.npy", "--method", "naive")
+        np.testing.assert_array_equal(self.array("now.npy")[0],
+                                      self.array("all.npy")[WINDOW // 2][:, 10:22])
+
+    def test_it_does_not_change_the_stream(self):
+        self.write_array("light.npy", moving_light(60))
+        self.live("light.npy", *FAST, "--preview", "now.npy", "--preview-method", "naive")
+        clip = self.folder / "clip.stipple"
+        with_preview = clip.read_bytes()
+        self.live("light.npy", *FAST)
+        self.assertEqual(clip.read_bytes(), with_preview)
+
+    def test_the_picture_is_replaced_while_the_recording_goes_on(self):
+        program = self.start_loop("--preview", "now.png", "--preview-method", "naive")
+        picture = self.folder / "now.png"
+        self.assertTrue(until(picture.exists, program), "no picture came")
+        first = picture.read_bytes()
+        self.assertEqual(struct.unpack_from(">II", first, 16), (32, 24 + CAPTION))
+        self.assertTrue(until(lambda: picture.read_bytes() != first, program), "no other came")
+        preview, _ = self.stop(program)
+        self.assertGreaterEqual(preview["made"], 2)
+        self.assertEqual(preview["failed"], 0)
+        self.assertGreaterEqual(preview["delay_ms"]["max"], preview["delay_ms"]["median"])
+        self.assertEqual(self.names(), ["clip.stipple", "figures.json", "light.npy", "now.png"])
+
+    def test_what_is_too_bright_is_red(self):
+        light = np.full((WINDOW, 24, 32), 0.2)
+        light[:, :, :8] = 1
+        self.write_array("light.npy", light)
+        self.live("light.npy", *FAST, "--preview", "now.png", "--sensor-set", "full_scale_e=900")
+        self.succeed("emulate", "now.png", "-o", "x.stipple", "--truth", "now.npy")
+        red, green, _ = np.moveaxis(self.array("now.npy")[0, CAPTION:], -1, 0)
+        np.testing.assert_array_equal(red - green > 0.9, light[0] == 1)
+
+    def test_a_folder_that_goes_is_said_and_ends_nothing(self):
+        folder, away = self.folder / "shown", self.folder / "away"
+        folder.mkdir()
+        program = self.start_loop("--preview", "shown/now.npy", "--preview-method", "naive")
+        self.assertTrue(until((folder / "now.npy").exists, program), "no preview came")
+        os.rename(folder, away)
+        line = program.stderr.readline()
+        while "no preview" not in line and line:
+            line = program.stderr.readline()
+        self.assertIn('no folder "shown"', line)
+        self.assertIn("the recording goes on", line)
+        folder.mkdir()
+        self.assertTrue(until((folder / "now.npy").exists, program), "no preview came again")
+        preview, _ = self.stop(program)
+        self.assertGreaterEqual(preview["failed"], 1)
+
+    def test_what_cannot_be_is_refused(self):
+        self.write_array("light.npy", moving_light(4))
+        live = ("capture", "live", "replay:light.npy", "-o", "clip.npy", "--preview")
+        self.fails(USAGE, ["neither a .png nor a .npy"], *live, "now.jpg")
+        self.fails(USAGE, ["--preview-size"], *live, "now.png", "--preview-size", "big")
+        self.fails(INPUT, ["nowhere"], *live, "nowhere/now.png")
+        self.fails(INPUT, ["clip.npy: is the output"], *live, "./clip.npy")
+        self.fails(INPUT, ["light.npy", "exists already"], *live, "light.npy")
+
+
+class RateTest(LiveTest):
+    def warning(self, *arguments):
+        self.write_array("light.npy", moving_light(20))
+        done = self.run_program("capture", "live", "replay:light.npy", "-o", "clip.stipple", "-q",
+                                "--force", "--json", "figures.json", *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        figures = json.loads((self.folder / "figures.json").read_text())
+        return done.stderr, figures["frames_hz"], figures["slots_hz"]
+
+    def test_frames_that_come_at_another_rate_than_slots_are_said(self):
+        slow = ("--set", "AcquisitionFrameRate=160", "--buffers", "1024")
+        said, frames_hz, slots_hz = self.warning(*slow)
+        for part in ("sends 160 frames/s", "5000 us (200 a second)", "AcquisitionFrameRate=200",
+                     "slot_us=6250"):
+            self.assertIn(part, said)
+        self.assertAlmostEqual(frames_hz, 160, places=3)
+        self.assertEqual(slots_hz, 200)
+        self.assertEqual(self.warning(*slow, "--sensor-set", "slot_us=6250")[0], "")
+
+
+class ColourFilterTest(LiveTest):
+    """Of a camera with a colour filter array, into a sensor with one."""
+
+    def setUp(self):
+        super().setUp()
+        dn = np.random.default_rng(3).integers(0, 65536, (20, 12, 16, 3))
+        self.write_array("light.npy", dn / 65535)
+        self.succeed("capture", "record", "replay:light.npy", "-o", "bayer.strec", "--set",
+                     "PixelFormat=BayerGB16", *FAST)
+
+    def samples(self, name):
+        """The packets of a stream; names of files are in its header."""
+        content = (self.folder / name).read_bytes()
+        return content[struct.unpack_from("<I", content, 12)[0]:content.rindex(b"\xc5SPK")]
+
+    def test_the_sensor_samples_it_as_it_does_colour(self):
+        gbrg = ("--sensor", "ideal", "--set", "cfa=gbrg")
+        self.succeed("emulate", "light.npy", "-o", "colour.stipple", *gbrg)
+        self.succeed("emulate", "bayer.strec", "-o", "bayer.stipple", *gbrg)
+        self.live("bayer.strec", *FAST, "--sensor", "ideal", "--sensor-set", "cfa=gbrg",
+                  "--preview", "now.npy", "--preview-method", "naive")
+        self.assertEqual(self.samples("bayer.stipple"), self.samples("colour.stipple"))
+        self.assertEqual(self.samples("clip.stipple"), self.samples("colour.stipple"))
+        self.assertEqual(self.figures("info", "clip.stipple")["cfa"], "gbrg")
+        self.assertEqual(self.array("now.npy").shape, (1, 12, 16, 3))
+
+    def test_another_phase_is_refused(self):
+        parts = ["begins as rggb, the frames as gbrg", "cfa=gbrg", "OffsetX"]
+        self.fails(INPUT, parts, "emulate", "bayer.strec", "-o", "x.stipple", "--sensor", "ideal",
+                   "--set", "cfa=rggb")
+        self.fails(INPUT, parts, "capture", "live", "replay:bayer.strec", "-o", "x.stipple",
+                   "--sensor", "ideal", "--sensor-set", "cfa=rggb")
+
+    def test_a_sensor_without_filters_takes_it_for_grey_and_says_so(self):
+        for command in (("emulate", "bayer.strec"), ("capture", "live", "replay:bayer.strec")):
+            done = self.run_program(*command, "-o", "grey.stipple", "--force")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("mosaic of colours (gbrg)", done.stderr)
+        self.assertEqual(self.figures("info", "grey.stipple")["cfa"], "none")
+
+
+if __name__ == "__main__":
+    unittest.main()
