@@ -41,9 +41,9 @@ struct BlockGrid {
 
 /// Where similar blocks are looked for.
 struct MatchingOptions {
-    int slots = 7;        ///< before and after the slot of the reference
-    int own_radius = 4;   ///< pixels around the reference, in its own slot
-    int path_radius = 2;  ///< pixels around where motion has taken it, in the other slots
+    int slots = 10;       ///< before and after the slot of the reference
+    int own_radius = 2;   ///< pixels around the reference, in its own slot
+    int path_radius = 1;  ///< pixels around where motion has taken it, in the other slots
 };
 
 /// A block of a group is at most so many rows from its reference, wherever motion has led.

@@ -18,16 +18,16 @@ struct MosaicFilterOptions {
     int iterations = 60;
     float first_sigma = 0.2F;
     int near_iterations = 18;
-    MatchingOptions near{.slots = 2, .own_radius = 8};
+    MatchingOptions near{.slots = 2, .own_radius = 8, .path_radius = 2};
 };
 
 /// The method `best`; the values were found on natural and high-speed footage
 /// (docs/decoder_experiments.md).
 struct CollaborativeOptions {
     MotionTvOptions start = {};
-    int iterations = 40;
-    int motion_every = 10;  ///< iterations
-    int match_every = 4;    ///< iterations
+    int iterations = 24;
+    int motion_every = 12;  ///< iterations
+    int match_every = 6;    ///< iterations
     int block_step = 5;     ///< pixels between reference blocks, 1..6
     MatchingOptions matching = {};
     /// Standard deviation that the filter takes for noise, on the scale 2 sqrt(light): falls
