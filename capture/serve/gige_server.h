@@ -13,7 +13,7 @@ namespace stipple {
 struct GigeServerOptions {
     std::string address = "127.0.0.1";  ///< IPv4, of this machine
     std::string model = "Recording";
-    std::string version;
+    std::string version = {};
     std::string serial = "1";
     bool repeat = false;  ///< begin again at the end of the source
     bool can_resend = true;

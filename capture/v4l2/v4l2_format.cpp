@@ -195,6 +195,12 @@ class FormatSetter {
                                got.width, got.height, wanted.width, wanted.height));
         if (got.field != V4L2_FIELD_NONE && got.field != V4L2_FIELD_ANY)
             refuse("Input", "the device sends interlaced fields; choose a progressive input");
+        if (got.planes > 1)
+            refuse(
+                "PixelFormat",
+                fmt::format("the device sends {} in {} memory planes, of which one is read here; "
+                            "{}",
+                            format_->name, got.planes, offer()));
         check(got);
     }
 
@@ -202,11 +208,10 @@ class FormatSetter {
         constexpr std::uint32_t kLargest = 65535;
         FrameLayout& layout = result_.layout;
         layout.format = format_;
-        if (got.planes != 1 || got.width == 0 || got.height == 0 || got.width > kLargest ||
-            got.height > kLargest)
-            throw DeviceError(device_.address(),
-                              fmt::format("the driver answers with {} planes of {} x {} pixels",
-                                          got.planes, got.width, got.height));
+        if (got.width == 0 || got.height == 0 || got.width > kLargest || got.height > kLargest)
+            throw DeviceError(
+                device_.address(),
+                fmt::format("the driver answers with {} x {} pixels", got.width, got.height));
         layout.width = static_cast<int>(got.width);
         layout.height = static_cast<int>(got.height);
         const std::size_t row_bytes = format_->row_bytes(layout.width);

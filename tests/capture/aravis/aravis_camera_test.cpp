@@ -284,6 +284,21 @@ TEST_F(AravisCameraTest, SettingsThatCannotBeAreRefusedWithTheirPlaceAndChoices)
     }
 }
 
+// PFNC: images of "p" formats are one string of bits, rows have no padding.
+TEST_F(AravisCameraTest, RowsThatEndWithinAByteAreRefused) {
+    for (const char* name : {"Mono10p", "Mono12p"}) {
+        const FakeCameraProcess camera(
+            {"width=63", "height=48", "format=" + std::to_string(pixel_format_named(name)->pfnc)});
+        try {
+            static_cast<void>(open_camera("gige:127.0.0.1", {}, {}));
+            ADD_FAILURE() << name << " was taken";
+        } catch (const InputError& e) {
+            EXPECT_NE(std::string(e.what()).find("Width: rows of 63 pixels"), std::string::npos)
+                << e.what();
+        }
+    }
+}
+
 TEST_F(AravisCameraTest, WhereNoCameraAnswersTheMessageSaysWhatToCheck) {
     EXPECT_THROW(static_cast<void>(open_camera("gige:127.0.0.1", {}, {})), DeviceError);
     EXPECT_THROW(static_cast<void>(open_camera("gige:camera", {}, {})), InputError);

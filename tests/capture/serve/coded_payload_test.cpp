@@ -34,6 +34,19 @@ TEST(CodedPayloadTest, EverySlotFitsAndComesBack) {
     }
 }
 
+TEST(CodedPayloadTest, AHeaderThatIsTooLongForRegistersIsRefusedWithWhatToDo) {
+    StreamHeader header = random_header({512, 512, 1}, 1);
+    header.schedule_source = {};  // written out, not as a seed
+    try {
+        static_cast<void>(coded_image(header));
+        FAIL() << "served";
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("choose a schedule with a smaller tile"),
+                  std::string::npos)
+            << e.what();
+    }
+}
+
 // The packets of a file of three slots, one after the other.
 TEST(CodedPayloadTest, TheBytesAreThoseOfTheFile) {
     const TemporaryFolder folder;

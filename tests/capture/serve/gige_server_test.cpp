@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <map>
 
@@ -114,6 +115,42 @@ TEST_F(GigeServerTest, ARegionIsCutOut) {
     for (std::size_t row = 5; row < 15; ++row)
         for (std::size_t col = 7; col < 27; ++col) region.push_back(full[row * 64 + col]);
     EXPECT_EQ(blocks_[4].payload(), region);
+}
+
+TEST_F(GigeServerTest, PacketsAreSentTheDelayApart) {
+    open();
+    constexpr std::uint32_t kDelayNs = 2'000'000;  // a tick of the camera's clock is 1 ns
+    ASSERT_EQ(client_->write(gige::kStreamPacketDelay, kDelayNs), 0);
+    ASSERT_EQ(client_->write(gige::kStreamPacketSize, 128 + 36), 0);
+    const auto begin = std::chrono::steady_clock::now();
+    start();
+    ASSERT_TRUE(receive_until([&] { return whole() == 1; }));
+    // 64 x 48 / 128 packets, leader and trailer: each waits.
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::nanoseconds(26 * kDelayNs));
+    EXPECT_EQ(blocks_[1].payload(), source_.bytes(0, *pixel_format_named("Mono8")));
+}
+
+TEST_F(GigeServerTest, AFrozenCameraStillAnswersButSendsNothing) {
+    GigeServerOptions options;
+    options.faults.freeze_at = 5;
+    open(options);
+    start();
+    ASSERT_TRUE(receive_until([&] { return whole() == 5; }));
+    EXPECT_FALSE(receive_until([] { return false; }));
+    EXPECT_EQ(whole(), 5U);
+    EXPECT_EQ(blocks_.size(), 5U);
+    EXPECT_EQ(client_->read(gige::kWidth), 64U);
+}
+
+TEST_F(GigeServerTest, ACameraThatCannotResendSaysSo) {
+    for (const bool can : {true, false}) {
+        GigeServerOptions options;
+        options.can_resend = can;
+        open(options);
+        const auto capabilities = client_->read(gige::kCapability);
+        ASSERT_TRUE(capabilities.has_value());
+        EXPECT_EQ((*capabilities & gige::kCanResend) != 0, can);
+    }
 }
 
 TEST_F(GigeServerTest, DroppedPacketsComeWhenAskedFor) {

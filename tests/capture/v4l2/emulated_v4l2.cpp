@@ -208,7 +208,7 @@ int EmulatedV4l2::format(v4l2_format& format, bool set) {
         planes.height = driver_.height;
         planes.pixelformat = fourcc_;
         planes.field = driver_.field;
-        planes.num_planes = 1;
+        planes.num_planes = static_cast<std::uint8_t>(driver_.memory_planes);
         planes.plane_fmt[0].bytesperline = stride();
         planes.plane_fmt[0].sizeimage = frame_bytes();
     } else {

@@ -46,6 +46,7 @@ struct EmulatedDriver {
     std::uint32_t bits_per_pixel = 8;
     std::uint32_t row_padding = 0;    ///< bytes at the end of a row
     std::uint32_t frame_padding = 0;  ///< bytes behind the last row
+    std::uint32_t memory_planes = 1;  ///< of a frame, in the multi-planar API
     std::uint32_t field = V4L2_FIELD_NONE;
     bool any_size = false;  ///< else it answers with width and height, whatever it is asked
     double highest_rate = 60;

@@ -72,6 +72,16 @@ TEST(V4l2SettingsTest, EveryRawFormatIsSetAndReadWithoutConversion) {
     }
 }
 
+TEST(V4l2SettingsTest, RefusesFramesInSeveralMemoryPlanes) {
+    EmulatedDriver driver;
+    driver.multi_planar = true;
+    driver.memory_planes = 2;
+    EmulatedV4l2 emulated(driver);
+    EXPECT_THAT(error_of<InputError>({}),
+                HasSubstr("PixelFormat: the device sends Mono8 in 2 memory "
+                          "planes"));
+}
+
 TEST(V4l2SettingsTest, RefusesAFormatThatTheDriverWouldReplace) {
     EmulatedV4l2 emulated;  // GREY only
     EXPECT_THAT(error_of<InputError>({{"PixelFormat", "Mono16"}}),
