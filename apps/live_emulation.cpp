@@ -52,12 +52,16 @@ bool LiveEmulation::wants_more(double seconds) const {
 void LiveEmulation::run(const RunOptions& run) {
     Progress progress(run, "emulating live", arguments_.limits.total());
     camera_.begin();
-    while (wants_more(progress.seconds())) {
-        if (const auto frame = camera_.next(kPatience))
-            take(*frame);
-        else
-            end_ = camera_.end();
-        progress.reach(static_cast<double>(latencies_us_.size()));
+    try {
+        while (wants_more(progress.seconds())) {
+            if (const auto frame = camera_.next(kPatience))
+                take(*frame);
+            else
+                end_ = camera_.end();
+            progress.reach(static_cast<double>(latencies_us_.size()));
+        }
+    } catch (const DeviceError& e) {
+        failure_ = e;
     }
     seconds_ = progress.seconds();
 }
@@ -94,6 +98,16 @@ void LiveEmulation::compare_rates() {
     if (!std::exchange(rates_compared_, true)) say_warning(rate_warning(rate_.hz(), setup_.params));
 }
 
+void LiveEmulation::put_in_place() {
+    try {
+        if (!failure_) return recording_.finish();
+    } catch (const DeviceError& e) {
+        failure_ = e;
+    }
+    recording_.keep();
+    fmt::print(stderr, "stipple: {}: what was written before is kept\n", arguments_.output);
+}
+
 void LiveEmulation::finish() {
     totals_ = camera_.stop();
     if (latencies_us_.empty()) {
@@ -101,9 +115,10 @@ void LiveEmulation::finish() {
         throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
     }
     compare_rates();
-    recording_.finish();
+    put_in_place();
     if (preview_) preview_->finish();
     std::sort(latencies_us_.begin(), latencies_us_.end());
+    if (failure_) throw DeviceError(*failure_);
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
 
@@ -130,10 +145,11 @@ nlohmann::ordered_json LiveEmulation::json() const {
 std::string LiveEmulation::text() const {
     std::string text = fmt::format(
         "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
+        "lost: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
-        arguments_.late_after_slots, held_slots_, latency_us(0.5) * 1e-3, latency_us(0.99) * 1e-3,
-        latency_us(1) * 1e-3);
+        arguments_.late_after_slots, held_slots_, lost_text(totals_), latency_us(0.5) * 1e-3,
+        latency_us(0.99) * 1e-3, latency_us(1) * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());
     return text;
 }

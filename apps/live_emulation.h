@@ -16,6 +16,7 @@
 #include "apps/run_options.h"
 #include "apps/sensor_setup.h"
 #include "capture/frame_light.h"
+#include "core/error.h"
 
 namespace stipple {
 
@@ -41,7 +42,8 @@ class LiveEmulation {
 
     /// Until the frames or seconds are reached, a signal asks to stop, or the camera is lost.
     void run(const RunOptions& run);
-    /// Stops the camera and puts the stream in place. \throws DeviceError if the camera was lost.
+    /// Stops the camera and puts the stream in place, as far as it goes. \throws DeviceError if the
+    /// camera was lost or the disk is full.
     void finish();
 
     [[nodiscard]] nlohmann::ordered_json json() const;
@@ -53,6 +55,7 @@ class LiveEmulation {
     void hold(std::uint64_t slots);
     void expose(std::int64_t arrival_ns);
     void compare_rates();
+    void put_in_place();
     /// Microseconds that a share of the frames took at most, from arrival to packet.
     [[nodiscard]] double latency_us(double share) const;
 
@@ -69,6 +72,7 @@ class LiveEmulation {
     std::uint64_t late_slots_ = 0;
     FrameRate rate_;
     bool rates_compared_ = false;
+    std::optional<DeviceError> failure_;  ///< of the disk
     double seconds_ = 0;
     std::optional<DeviceLost> end_;  ///< of the frames
 };

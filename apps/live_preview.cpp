@@ -128,12 +128,11 @@ nlohmann::ordered_json LivePreview::json() const {
 std::string LivePreview::text() const {
     const FrameShape shape = decoder_.shape();
     std::string text =
-        fmt::format("preview {}: {} pictures of {} x {}, each from {} slots", file_.string(),
-                    made_.load(), shape.cols, shape.rows, decoder_.slots());
+        fmt::format("preview {}: {} x {} from {} slots; made {}, failed {}", file_.string(),
+                    shape.cols, shape.rows, decoder_.slots(), made_.load(), failed_.load());
     if (made_ > 0)
-        text += fmt::format(", {:.1f} s after its slot (at most {:.1f} s)", delay_ms(0.5) * 1e-3,
+        text += fmt::format("; {:.1f} s behind its slot, at most {:.1f} s", delay_ms(0.5) * 1e-3,
                             delay_ms(1) * 1e-3);
-    if (failed_ > 0) text += fmt::format("; {} failed", failed_.load());
     return text;
 }
 

@@ -26,6 +26,9 @@ class Recording {
     /// Puts the file in place. \throws DeviceError.
     void finish();
 
+    /// The same where writing has failed: a stream as far as it goes. \throws DeviceError.
+    void keep() { output_.commit(); }
+
     [[nodiscard]] const SensorSetup& setup() const { return emulator_.setup(); }
     [[nodiscard]] const ReadoutStats& stats() const { return emulator_.stats(); }
     /// Samples in the stream.

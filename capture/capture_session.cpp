@@ -120,6 +120,7 @@ struct CaptureSession::Impl {
     [[nodiscard]] SessionEvent wait_for_camera(milliseconds timeout);
     [[nodiscard]] SessionEvent wait_for_frame(milliseconds timeout);
     void count_transport(bool now);
+    void count_last_underruns();
     void number(FrameRecord& record);
     void note_reconnection(const FrameRecord& record);
     [[nodiscard]] SessionEvent deliver(CapturedFrame frame);
@@ -184,6 +185,13 @@ void CaptureSession::Impl::count_transport(bool now) {
     if (!now && first_frame) counted.underruns = unexplained;
     counted_at = Clock::now();
     incomplete_since = false;
+}
+
+/// Of a replay, after its last frame: no other will tell that they are missing.
+void CaptureSession::Impl::count_last_underruns() {
+    const std::uint64_t before = counted.underruns;
+    count_transport(true);
+    totals.lost[static_cast<std::size_t>(GapCause::kHostUnderrun)] += counted.underruns - before;
 }
 
 /// Frames that the camera would have sent while it was gone.
@@ -261,9 +269,11 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     }
     Arrival arrival = camera->wait(timeout);
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return deliver(std::move(*frame));
-    if (auto* lost = std::get_if<DeviceLost>(&arrival))
-        return lost->at_end ? SessionEvent(std::move(*lost))
-                            : begin_outage(std::move(lost->reason));
+    if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
+        if (!lost->at_end) return begin_outage(std::move(lost->reason));
+        count_last_underruns();
+        return std::move(*lost);
+    }
     const auto now_silent = std::chrono::ceil<milliseconds>(Clock::now() - last_sign);
     if (limit && now_silent >= *limit)
         return begin_outage(fmt::format("nothing came for {} ms", now_silent.count()));

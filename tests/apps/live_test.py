@@ -2,13 +2,14 @@
 
 import json
 import os
+import resource
 import signal
 import struct
 import time
 import unittest
 
 import numpy as np
-from program import INPUT, STOPPED, USAGE, ProgramTest
+from program import DEVICE, INPUT, STOPPED, USAGE, ProgramTest
 
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
 WINDOW = 16  # slots of a preview: twice the longest exposure of the schedule `random`
@@ -129,6 +130,21 @@ class PreviewTest(LiveTest):
         self.fails(INPUT, ["nowhere"], *live, "nowhere/now.png")
         self.fails(INPUT, ["clip.npy: is the output"], *live, "./clip.npy")
         self.fails(INPUT, ["light.npy", "exists already"], *live, "light.npy")
+
+
+class FullDiskTest(LiveTest):
+    def test_it_leaves_the_slots_before(self):
+        self.write_array("light.npy", moving_light(40))
+        limit = 9000  # bytes: the header and some slots
+        done = self.run_program(
+            "capture", "live", "replay:light.npy", "-o", "clip.stipple", "--set", "Loop=1",
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        for part in ("clip.stipple: cannot be written", "what was written before is kept"):
+            self.assertIn(part, done.stderr)
+        self.assertEqual(self.names(), ["clip.stipple", "light.npy"])
+        self.run_program("decode", "clip.stipple", "-o", "all.npy", "--method", "naive")
+        self.assertGreater(len(self.array("all.npy")), 5)
 
 
 class RateTest(LiveTest):

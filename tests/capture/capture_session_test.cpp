@@ -257,6 +257,15 @@ TEST(CaptureSessionTest, TheEndOfAReplayIsNoOutageAndOpensNothingAnew) {
     EXPECT_EQ(session.totals().outages, 0U);
 }
 
+TEST(CaptureSessionTest, FramesThatAReplayLosesAtItsEndAreCounted) {
+    std::deque<ScriptedStep> script = frames({1, 2});
+    script.push_back({[] { return Arrival(DeviceLost{"at its end", true}); }, {.underruns = 3}});
+    CaptureSession session(plays({script}), {});
+    for (int frame = 0; frame < 2; ++frame) static_cast<void>(next_record(session));
+    EXPECT_TRUE(wait_for<DeviceLost>(session).at_end);
+    EXPECT_EQ(session.totals().lost[static_cast<std::size_t>(GapCause::kHostUnderrun)], 3U);
+}
+
 TEST(CaptureSessionTest, ACameraThatCannotBeOpenedYetIsTriedAgain) {
     std::atomic<int> tries = 0;
     const auto first = plays({{is_lost("unplugged")}});
