@@ -176,12 +176,12 @@ using Colour = std::array<float, 3>;
 /// that moves by a pixel a slot.
 Colour cards_on_lines(float slot, float row, float col) {
     const auto distance = [](float a, float b) { return std::abs(a - b); };
-    const float edge = std::max(distance(row, 22), distance(col, 27));
+    const float edge = std::max(distance(row, 15), distance(col, 20));
     const float x = col - slot;
-    const float y = row - 40;
-    if (x * x + y * y < 36) return {0.1F, 0.4F, 0.2F};
-    if (edge > 9.5F && edge < 11) return {0.8F, 0.7F, 0.55F};
-    if (edge < 14) return {0.6F, 0.04F, 0.06F};
+    const float y = row - 29;
+    if (x * x + y * y < 25) return {0.1F, 0.4F, 0.2F};
+    if (edge > 6.5F && edge < 8) return {0.8F, 0.7F, 0.55F};
+    if (edge < 11) return {0.6F, 0.04F, 0.06F};
     const bool line =
         distance(std::fmod(row, 9.F), 4) < 0.6F || distance(std::fmod(col, 11.F), 5) < 0.6F;
     return line ? Colour{0.5F, 0.5F, 0.55F} : Colour{0.04F, 0.04F, 0.05F};
@@ -206,10 +206,10 @@ FluxVideo blurred_cards(int slots, FrameShape shape) {
 }
 
 TEST(MosaicTest, BestHasLessThanHalfTheErrorOfFastOnColouredEdges) {
-    const FrameShape shape{48, 56, 3};
-    const FluxVideo video = blurred_cards(32, shape);
+    const FrameShape shape{36, 40, 3};
+    const FluxVideo video = blurred_cards(26, shape);
     const Recorded recorded =
-        record_mosaic(video, ColourFilter::kRggb, random_schedule(48, 56, kPaperExposureSlots, 1));
+        record_mosaic(video, ColourFilter::kRggb, random_schedule(36, 40, kPaperExposureSlots, 1));
     const double fast = error_of(decode_mosaic(recorded, DecodeMethod::kFast), video);
     const double best = error_of(decode_mosaic(recorded, DecodeMethod::kBest), video);
     RecordProperty("share", std::to_string(best / fast));
