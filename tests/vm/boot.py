@@ -20,6 +20,7 @@ MACHINE = ["-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1024
            "-nographic", "-nodefaults", "-no-reboot", "-serial", "stdio", "-nic", "none",
            "-vga", "none"]
 LIMIT_S = 540
+UDEV = Path("/lib/systemd/systemd-udevd")  # the payload's
 
 
 def shared(tag, folder, *options):
@@ -32,6 +33,8 @@ def boot(program, work):
     """The exit code of `program`, a list of words."""
     if shutil.which(QEMU) is None:
         raise Unavailable(f"{QEMU} is not installed")
+    if not UDEV.is_file():
+        raise Unavailable("udev is not installed")
     kernel = unpacked_kernel()
     image = work / "initramfs"
     image.write_bytes(initramfs(kernel))
