@@ -14,7 +14,7 @@ namespace stipple {
 /// The preview of `stipple capture live`.
 struct PreviewArguments {
     std::string file;                ///< .png or .npy; empty: none
-    std::string method = "fast";     ///< or "naive"
+    std::string method = "naive";    ///< or "fast"
     std::optional<FrameShape> size;  ///< rows and columns of the middle of the frame
 };
 
