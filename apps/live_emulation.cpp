@@ -9,6 +9,7 @@
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "apps/sorted_quantile.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
 
@@ -122,11 +123,6 @@ void LiveEmulation::finish() {
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
 
-double LiveEmulation::latency_us(double share) const {
-    const auto last = static_cast<double>(latencies_us_.size() - 1);
-    return static_cast<double>(latencies_us_[static_cast<std::size_t>(share * last + 0.5)]);
-}
-
 nlohmann::ordered_json LiveEmulation::json() const {
     nlohmann::ordered_json json = recording_json(recording_, seconds_);
     json["frames"] = latencies_us_.size();
@@ -136,8 +132,9 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["held_slots"] = held_slots_;
     json["late_slots"] = late_slots_;
     json["queue_peak_frames"] = camera_.peak();
-    json["latency_us"] = {
-        {"median", latency_us(0.5)}, {"p99", latency_us(0.99)}, {"max", latency_us(1)}};
+    json["latency_us"] = {{"median", sorted_quantile(latencies_us_, 0.5)},
+                          {"p99", sorted_quantile(latencies_us_, 0.99)},
+                          {"max", sorted_quantile(latencies_us_, 1)}};
     if (preview_) json["preview"] = preview_->json();
     return json;
 }
@@ -148,8 +145,9 @@ std::string LiveEmulation::text() const {
         "lost: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
-        arguments_.late_after_slots, held_slots_, lost_text(totals_), latency_us(0.5) * 1e-3,
-        latency_us(0.99) * 1e-3, latency_us(1) * 1e-3);
+        arguments_.late_after_slots, held_slots_, lost_text(totals_),
+        sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
+        sorted_quantile(latencies_us_, 1) * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());
     return text;
 }

@@ -57,7 +57,6 @@ class LiveEmulation {
     void compare_rates();
     void put_in_place();
     /// Microseconds that a share of the frames took at most, from arrival to packet.
-    [[nodiscard]] double latency_us(double share) const;
 
     const LiveArguments& arguments_;
     LiveCamera camera_;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "apps/interrupt.h"
+#include "apps/sorted_quantile.h"
 #include "capture/host_clock.h"
 #include "core/parallel.h"
 
@@ -108,11 +109,6 @@ void LivePreview::finish() {
     std::sort(delays_ms_.begin(), delays_ms_.end());
 }
 
-double LivePreview::delay_ms(double share) const {
-    const auto last = static_cast<double>(delays_ms_.size() - 1);
-    return static_cast<double>(delays_ms_[static_cast<std::size_t>(share * last + 0.5)]);
-}
-
 nlohmann::ordered_json LivePreview::json() const {
     const FrameShape shape = decoder_.shape();
     nlohmann::ordered_json json{
@@ -121,7 +117,8 @@ nlohmann::ordered_json LivePreview::json() const {
         {"skipped_slots", skipped_}, {"last_slot", nullptr}, {"delay_ms", nullptr}};
     if (made_ == 0) return json;
     json["last_slot"] = last_slot_;
-    json["delay_ms"] = {{"median", delay_ms(0.5)}, {"max", delay_ms(1)}};
+    json["delay_ms"] = {{"median", sorted_quantile(delays_ms_, 0.5)},
+                        {"max", sorted_quantile(delays_ms_, 1)}};
     return json;
 }
 
@@ -131,8 +128,9 @@ std::string LivePreview::text() const {
         fmt::format("preview {}: {} x {} from {} slots; made {}, failed {}", file_.string(),
                     shape.cols, shape.rows, decoder_.slots(), made_.load(), failed_.load());
     if (made_ > 0)
-        text += fmt::format("; {:.1f} s behind its slot, at most {:.1f} s", delay_ms(0.5) * 1e-3,
-                            delay_ms(1) * 1e-3);
+        text += fmt::format("; {:.1f} s behind its slot, at most {:.1f} s",
+                            sorted_quantile(delays_ms_, 0.5) * 1e-3,
+                            sorted_quantile(delays_ms_, 1) * 1e-3);
     return text;
 }
 

@@ -37,7 +37,6 @@ class LivePreview {
   private:
     void run();
     void show();
-    [[nodiscard]] double delay_ms(double share) const;
 
     const std::filesystem::path file_;
     const PreviewDecoder decoder_;

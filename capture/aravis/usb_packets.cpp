@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "capture/frame_holes.h"
+#include "stream/little_endian.h"
 
 namespace stipple {
 namespace {
@@ -13,19 +14,13 @@ constexpr std::array<std::uint8_t, 3> kMagic{'U', '3', 'V'};  // then L or T
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kMostPacketBytes = 1024;
 
-std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
-    std::uint64_t value = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8U | bytes[i];
-    return value;
-}
-
 /// The size of the packet that begins with `bytes`; 0 if none does.
 std::size_t packet_bytes(std::span<const std::uint8_t> bytes, std::uint64_t frame_id) {
     if (bytes.size() < kHeaderBytes) return 0;
-    const std::uint64_t id = little_endian(bytes.subspan(8, 8));
+    const std::uint64_t id = load<std::uint64_t>(&bytes[8]);
     const bool is_ours = bytes[3] == 'T' && id == frame_id;
     const bool is_later = bytes[3] == 'L' && id > frame_id;
-    const std::size_t size = little_endian(bytes.subspan(6, 2));
+    const std::size_t size = load<std::uint16_t>(&bytes[6]);
     return (is_ours || is_later) && size >= kHeaderBytes && size <= kMostPacketBytes ? size : 0;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 namespace stipple {
+
 std::int64_t rmem_max_bytes() {
     std::ifstream file("/proc/sys/net/core/rmem_max");
     std::int64_t bytes = 0;
