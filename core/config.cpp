@@ -289,10 +289,11 @@ void Config::reject_unknown_keys() const {
             return edit_distance(name, a) < edit_distance(name, b);
         };
         const auto nearest = std::min_element(asked.begin(), asked.end(), farther);
-        throw InputError(place(key),
-                         nearest == asked.end()
-                             ? "is unknown"
-                             : fmt::format("is unknown; did you mean \"{}\"?", *nearest));
+        if (nearest == asked.end()) throw InputError(place(key), "is unknown");
+        const bool alike = 2 * edit_distance(name, *nearest) <= name.size();
+        throw InputError(place(key), alike
+                                         ? fmt::format("is unknown; did you mean \"{}\"?", *nearest)
+                                         : fmt::format("is unknown; known are {}", joined(asked)));
     }
 }
 

@@ -63,7 +63,7 @@ class Config {
 };
 
 /// Finds `name` as a file, or as `<config folder>/<kind>/<name>.toml` (kind: "sensors",
-/// "schedules", "decoders"). \throws InputError listing the names there are.
+/// "schedules"). \throws InputError listing the names there are.
 [[nodiscard]] std::filesystem::path find_config(std::string_view kind, std::string_view name);
 
 }  // namespace stipple

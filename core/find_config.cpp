@@ -12,7 +12,7 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Folders that hold sensors/, schedules/ and decoders/, the first one that has a name wins.
+/// Folders that hold sensors/ and schedules/; the first one that has a name wins.
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);

@@ -13,9 +13,14 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// The output's path without "." parts and a trailing slash.
-fs::path tidy(const fs::path& path) {
+/// The output's path without "." parts and a folder's trailing slash.
+fs::path tidy(const fs::path& path, OutputKind kind) {
+    if (path == "-")
+        throw InputError("output \"-\"", "standard output does not take it; give it a name");
     fs::path result = path.lexically_normal();
+    if (!result.has_filename() && kind == OutputKind::kFile)
+        throw InputError(fmt::format("output \"{}\"", path.string()),
+                         "ends as a folder does, but is a file; give it a name");
     if (!result.has_filename()) result = result.parent_path();
     const auto name = result.filename();
     if (name.empty() || name == "." || name == "..")
@@ -46,7 +51,7 @@ fs::path foreign_entry(const fs::path& folder) {
 }  // namespace
 
 PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind)
-    : final_(tidy(final_path)), force_(force), kind_(kind) {
+    : final_(tidy(final_path, kind)), force_(force), kind_(kind) {
     const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
     std::error_code error;
     if (!fs::is_directory(parent, error))

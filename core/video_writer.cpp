@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -19,16 +20,17 @@ struct VideoWriter::Impl {
     FrameShape shape;
     cv::VideoWriter video;
     cv::Mat pixels;  ///< as tone-mapped
-    cv::Mat colour;  ///< as encoded: BGR, even size
+    cv::Mat colour;  ///< as encoded: BGR
     int frames = 0;
 
-    [[nodiscard]] cv::Size even_size() const {
-        return {shape.cols + shape.cols % 2, shape.rows + shape.rows % 2};
+    /// Even, and at least four columns: FFmpeg 5.1 converts narrower frames beyond their memory.
+    [[nodiscard]] cv::Size encoded_size() const {
+        return {std::max(shape.cols + shape.cols % 2, 4), shape.rows + shape.rows % 2};
     }
     bool open(const char (&fourcc)[5], double frames_per_second) {
         return video.open(file, cv::CAP_FFMPEG,
                           cv::VideoWriter::fourcc(fourcc[0], fourcc[1], fourcc[2], fourcc[3]),
-                          frames_per_second, even_size());
+                          frames_per_second, encoded_size());
     }
     /// Frames that can be decoded from the file.
     [[nodiscard]] int readable_frames() const {
@@ -68,8 +70,9 @@ void VideoWriter::write(std::span<const float> frame) {
     try {
         cv::Mat colour = impl_->pixels;
         if (shape.planes == 1) cv::cvtColor(impl_->pixels, colour, cv::COLOR_GRAY2BGR);
-        cv::copyMakeBorder(colour, impl_->colour, 0, shape.rows % 2, 0, shape.cols % 2,
-                           cv::BORDER_REPLICATE);
+        const cv::Size size = impl_->encoded_size();
+        cv::copyMakeBorder(colour, impl_->colour, 0, size.height - shape.rows, 0,
+                           size.width - shape.cols, cv::BORDER_REPLICATE);
         impl_->video.write(impl_->colour);
     } catch (const cv::Exception& e) {
         throw DeviceError(impl_->place, fmt::format("cannot be written: {}", e.err));

@@ -10,7 +10,8 @@
 namespace stipple {
 
 /// Writes a film for people to look at: tone-mapped (core/tone_map.h), 8 bit, H.264 where FFmpeg
-/// has an encoder for it, else MPEG-4. Odd sizes are padded by repeating the last row or column.
+/// has an encoder for it, else MPEG-4. Odd sizes, and fewer than four columns, are
+/// padded by repeating the last row or column.
 class VideoWriter {
   public:
     /// Creates `file` (.mp4 or .mkv); messages say `place`. \throws DeviceError.

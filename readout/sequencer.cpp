@@ -20,6 +20,12 @@ bool is_open(std::span<const Exposure> exposures, std::int64_t slot, int period_
     return age < e.span_slots() && age <= slot && (e.open_slots >> age & 1U) != 0;
 }
 
+/// The same in the first period of a schedule without gaps: what is open before the first exposure
+/// of the period began before slot 0.
+bool is_open_at_first(std::span<const Exposure> exposures, std::int64_t slot) {
+    return slot >= exposures.front().first_slot;
+}
+
 struct TilePixel {
     int row;
     int col;
@@ -56,12 +62,17 @@ void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> op
     assert(open.size() == static_cast<std::size_t>(cols_));
     const int tile_row = row % schedule_->tile_rows();
     const auto once = static_cast<std::size_t>(std::min(cols_, schedule_->tile_cols()));
+    const int period = schedule_->period_slots();
+    const bool at_first = gapless_ && slot < period;
+    const bool interleaved = schedule_->interleaved();
     for (std::size_t i = 0; i < once; ++i) {
         const auto col = static_cast<int>(i);
         const auto exposures = schedule_->exposures(tile_row, col);
-        open[i] = schedule_->interleaved() ? open_store(*schedule_, slot, {tile_row, col})
-                  : is_open(exposures, slot, schedule_->period_slots()) ? 1
-                                                                        : 0;
+        if (interleaved)
+            open[i] = open_store(*schedule_, slot, {tile_row, col});
+        else
+            open[i] =
+                at_first ? is_open_at_first(exposures, slot) : is_open(exposures, slot, period);
     }
     for (std::size_t col = once; col < open.size(); ++col) open[col] = open[col - once];
 }

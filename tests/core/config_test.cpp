@@ -175,6 +175,14 @@ TEST_F(ConfigTest, SuggestsTheNearestKnownKeyForAnUnknownOne) {
                  {"sensor.toml:3: adc.bit_deptj: is unknown", "\"adc.bit_depth\""});
 }
 
+TEST_F(ConfigTest, ListsTheKnownKeysForAnUnknownOneThatIsLikeNone) {
+    Config config = parse("colour = 1");
+    number(config);
+    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 8);
+    expect_parts(message_of<InputError>([&] { config.reject_unknown_keys(); }),
+                 {"sensor.toml:1: colour: is unknown; known are adc.bit_depth, gain"});
+}
+
 TEST_F(ConfigTest, NoticesUnknownOverridesSectionsAndTablesInLists) {
     const auto unknown = [&](std::string_view text, const Texts& overrides) {
         Config config = parse(text, overrides);

@@ -58,11 +58,13 @@ TEST_P(VideoFileTest, KeepsRedAndBlueApart) {
     EXPECT_NEAR(frame[500 + 2 * shape.pixels()], 0.0, 0.05);
 }
 
-TEST_P(VideoFileTest, PadsOddSizes) {
-    for (const FrameShape shape : {FrameShape{33, 47, 1}, FrameShape{1, 1, 3}}) {
+TEST_P(VideoFileTest, PadsOddAndNarrowSizes) {
+    const std::pair<FrameShape, FrameShape> sizes[] = {{{33, 47, 1}, {34, 48, 3}},
+                                                       {{1, 1, 3}, {2, 4, 3}}};
+    for (const auto& [shape, padded] : sizes) {
         write_levels(file_, shape, {1, 1, 1});
         const FootageReader reader(file_);
-        EXPECT_EQ(reader.shape(), (FrameShape{shape.rows + 1, shape.cols + 1, 3}));
+        EXPECT_EQ(reader.shape(), padded);
         std::filesystem::remove(file_);
     }
 }
