@@ -25,7 +25,7 @@ struct MosaicFilterOptions {
 /// (docs/decoder_experiments.md).
 struct CollaborativeOptions {
     MotionTvOptions start = {};
-    int iterations = 24;
+    int iterations = 28;
     int motion_every = 12;  ///< iterations
     int match_every = 6;    ///< iterations
     int block_step = 5;     ///< pixels between reference blocks, 1..6

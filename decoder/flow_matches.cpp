@@ -7,11 +7,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/optflow.hpp>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "core/light.h"
 #include "core/parallel.h"
+#include "decoder/grey_levels.h"
 #include "decoder/motion.h"
 
 namespace stipple {
@@ -21,21 +20,9 @@ std::size_t count(int n) {
     return static_cast<std::size_t>(n);
 }
 
-/// What the flow looks at: 255 sqrt(luminance), 8 bits. The square root, unlike a power of 1/2.2,
-/// is the same bits everywhere.
 cv::Mat flow_image(const FluxVideo& video, int slot) {
-    const FrameShape shape = video.shape();
-    std::span<const float> light = video.frame(slot);
-    std::vector<float> luminance(shape.pixels());
-    if (shape.planes == 3) {
-        reduce_to_luminance(light, luminance);
-        light = luminance;
-    }
-    cv::Mat image(shape.rows, shape.cols, CV_8U);
-    for (std::size_t i = 0; i < shape.pixels(); ++i)
-        image.data[i] =
-            static_cast<std::uint8_t>(255 * std::sqrt(std::clamp(light[i], 0.0F, 1.0F)) + 0.5F);
-    return image;
+    std::vector<std::uint8_t> levels = grey_levels(video, slot);
+    return cv::Mat(video.shape().rows, video.shape().cols, CV_8U, levels.data()).clone();
 }
 
 /// Flow from each slot to the next and to the one before; the ends of the video have one only.

@@ -1,60 +1,126 @@
 #include "decoder/motion.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
-#include <optional>
-#include <span>
+#include <utility>
 #include <vector>
 
-#include "core/light.h"
 #include "core/parallel.h"
+#include "decoder/grey_levels.h"
 
 namespace stipple {
 namespace {
 
-constexpr int kPatchPixels = 8;
-constexpr int kGradientDescents = 12;
 constexpr double kBlurPixels = 0.7;
 
-/// What the flow looks at: 255 sqrt(luminance), 8 bits, slightly blurred. The square root, unlike
-/// a power of 1/2.2, is the same bits everywhere.
+/// Slightly blurred.
 cv::Mat flow_image(const FluxVideo& video, int slot) {
-    const FrameShape shape = video.shape();
-    std::span<const float> light = video.frame(slot);
-    std::vector<float> luminance;
-    if (shape.planes == 3) {
-        luminance.resize(shape.pixels());
-        reduce_to_luminance(light, luminance);
-        light = luminance;
-    }
-    cv::Mat image(shape.rows, shape.cols, CV_8U);
-    for (std::size_t i = 0; i < shape.pixels(); ++i)
-        image.data[i] =
-            static_cast<std::uint8_t>(255 * std::sqrt(std::clamp(light[i], 0.0F, 1.0F)) + 0.5F);
-    cv::GaussianBlur(image, image, {}, kBlurPixels);
+    std::vector<std::uint8_t> levels = grey_levels(video, slot);
+    const cv::Mat sharp(video.shape().rows, video.shape().cols, CV_8U, levels.data());
+    cv::Mat image;
+    cv::GaussianBlur(sharp, image, {}, kBlurPixels);
     return image;
 }
 
-cv::Mat flow(const cv::Mat& from, const cv::Mat& to, const MotionOptions& options) {
-    // A new one for each pair: results of one that has been used depend on what it has seen.
-    const auto method = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM);
-    method->setFinestScale(options.finest_scale);
-    method->setPatchSize(kPatchPixels);
-    method->setPatchStride(options.patch_stride_px);
-    method->setGradientDescentIterations(kGradientDescents);
-    method->setVariationalRefinementIterations(options.refinements);
-    cv::Mat result;
-    method->calc(from, to, result);
+/// An image at full resolution, at half, and so on, each with the border that a flow needs.
+using Pyramid = std::vector<cv::Mat>;
+
+Pyramid pyramid_of(cv::Mat image) {
+    Pyramid levels;
+    for (;;) {
+        cv::Mat& level = levels.emplace_back();
+        cv::copyMakeBorder(image, level, kFlowBorder, kFlowBorder, kFlowBorder, kFlowBorder,
+                           cv::BORDER_REPLICATE);
+        if (std::min(image.rows, image.cols) < 4 * kFlowPatchSide) return levels;
+        cv::resize(image, image, {image.cols / 2, image.rows / 2}, 0, 0, cv::INTER_AREA);
+    }
+}
+
+FlowImage flow_image_of(const cv::Mat& level) {
+    return {.pixels = level.ptr(kFlowBorder) + kFlowBorder,
+            .stride = static_cast<std::ptrdiff_t>(level.step),
+            .rows = level.rows - 2 * kFlowBorder,
+            .cols = level.cols - 2 * kFlowBorder};
+}
+
+/// Twice the resolution: each pixel as the one it is in.
+DenseFlow doubled(const DenseFlow& flow, const FlowImage& image) {
+    DenseFlow result{image.rows, image.cols, {}, {}};
+    const auto pixels = static_cast<std::size_t>(image.rows) * static_cast<std::size_t>(image.cols);
+    result.row_shift.reserve(pixels);
+    result.col_shift.reserve(pixels);
+    for (int row = 0; row < image.rows; ++row)
+        for (int col = 0; col < image.cols; ++col) {
+            const auto from = static_cast<std::size_t>(
+                std::min(row / 2, flow.rows - 1) * flow.cols + std::min(col / 2, flow.cols - 1));
+            result.row_shift.push_back(static_cast<std::int16_t>(2 * flow.row_shift[from]));
+            result.col_shift.push_back(static_cast<std::int16_t>(2 * flow.col_shift[from]));
+        }
     return result;
 }
 
-/// 255 exp(-x) in steps of 1/16: a table, whose bits do not hang on a library's exp in float.
+DenseFlow flow(const Pyramid& from, const Pyramid& to, const MotionOptions& options) {
+    const std::size_t finest = options.rough && from.size() > 1 ? 1 : 0;
+    DenseFlow result;
+    for (std::size_t level = from.size(); level-- > finest;)
+        result = inverse_search(flow_image_of(from[level]), flow_image_of(to[level]),
+                                result.rows > 0 ? &result : nullptr, options.search);
+    return result;
+}
+
+/// Flow from each slot to the next, and back from there.
+struct Flows {
+    explicit Flows(std::size_t pairs) : forth(pairs), back(pairs) {}
+    std::vector<DenseFlow> forth;
+    std::vector<DenseFlow> back;
+};
+
+/// Shifts of one pair of slots, each averaged with those of the pairs before and after that differ
+/// little.
+DenseFlow averaged_over_time(const std::vector<DenseFlow>& flows, std::size_t pair) {
+    const std::size_t first = pair - std::min<std::size_t>(pair, 1);
+    const std::size_t end = std::min(pair + 2, flows.size());
+    DenseFlow result = flows[pair];
+    for (std::size_t i = 0; i < result.row_shift.size(); ++i) {
+        float row = 0;
+        float col = 0;
+        float weights = 0;
+        for (std::size_t other = first; other < end; ++other) {
+            const float other_row = flows[other].row_shift[i];
+            const float other_col = flows[other].col_shift[i];
+            const float down = other_row - result.row_shift[i];
+            const float right = other_col - result.col_shift[i];
+            constexpr float kAlike = 0.5F * kFlowShiftsPerPixel;
+            const float weight = 1 / (1 + (down * down + right * right) / (kAlike * kAlike));
+            row += weight * other_row;
+            col += weight * other_col;
+            weights += weight;
+        }
+        result.row_shift[i] = static_cast<std::int16_t>(row / weights);
+        result.col_shift[i] = static_cast<std::int16_t>(col / weights);
+    }
+    return result;
+}
+
+/// What `rough` is about.
+void roughen(std::vector<DenseFlow>& flows, const FlowImage& image) {
+    std::vector<DenseFlow> averaged(flows.size());
+    parallel_for(0, static_cast<int>(flows.size()), [&](int pair) {
+        const auto i = static_cast<std::size_t>(pair);
+        averaged[i] = averaged_over_time(flows, i);
+        if (averaged[i].rows < image.rows) averaged[i] = doubled(averaged[i], image);
+    });
+    flows = std::move(averaged);
+}
+
+/// Confidence exp(-(e / it)^2 / 2) where a pixel is led e away by its motion and back again.
+constexpr int kConsistency = kFlowShiftsPerPixel;  // one pixel
+
+/// 255 exp(-x) of squared errors e^2, x = e^2 / (2 kConsistency^2) in steps of 1/16: a table, whose
+/// bits do not hang on a library's exp in float.
 class ConfidenceTable {
   public:
     ConfidenceTable() {
@@ -62,53 +128,45 @@ class ConfidenceTable {
             confidence_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
                 std::lround(255 * std::exp(-static_cast<double>(i) / kEntriesPerUnit)));
     }
-    [[nodiscard]] std::uint8_t operator()(float x) const {
-        const float i = x * kEntriesPerUnit + 0.5F;
+    [[nodiscard]] std::uint8_t operator()(int squared_error) const {
+        const int i = (squared_error + kPerEntry / 2) / kPerEntry;
         return i < kEntries ? confidence_[static_cast<std::size_t>(i)] : std::uint8_t{0};
     }
 
   private:
     static constexpr int kEntriesPerUnit = 16;
     static constexpr int kEntries = 112;  // 255 exp(-7) rounds to 0
+    static constexpr int kPerEntry = 2 * kConsistency * kConsistency / kEntriesPerUnit;
     std::array<std::uint8_t, kEntries> confidence_{};
 };
 
 /// One direction of the motion between two slots and the way back, order (row, col).
 struct FlowPair {
-    const cv::Mat& forth;
-    const cv::Mat& back;
+    const DenseFlow& forth;
+    const DenseFlow& back;
 };
 
-/// Where a pixel goes; nothing if that is outside the frame, or too far to be said.
-std::optional<cv::Point2f> target(const cv::Mat& forth, int row, int col) {
-    constexpr float kFarthest = 500;  // pixels; 2^15 / kShiftsPerPixel is more
-    const auto move = forth.at<cv::Vec2f>(row, col);
-    const cv::Point2f to(static_cast<float>(col) + move[0], static_cast<float>(row) + move[1]);
-    const bool inside = to.x >= 0 && to.y >= 0 && to.x <= static_cast<float>(forth.cols - 1) &&
-                        to.y <= static_cast<float>(forth.rows - 1);  // NaN is not
-    if (!inside || std::max(std::abs(move[0]), std::abs(move[1])) > kFarthest) return {};
-    return to;
-}
-
 /// Fills one slot of `field`, as sure as the flow leads back to where it came from.
-void write_slot(const FlowPair& flow, float deviation_px, std::size_t voxel, MotionField& field) {
+void write_slot(const FlowPair& flow, std::size_t voxel, MotionField& field) {
     static const ConfidenceTable confidence;
-    const float scale = 0.5F / (deviation_px * deviation_px);
-    const auto fixed = [](float pixels) {
-        const float shift = pixels * MotionField::kShiftsPerPixel;
-        return static_cast<std::int16_t>(shift + (shift < 0 ? -0.5F : 0.5F));
-    };
-    for (int row = 0; row < flow.forth.rows; ++row)
-        for (int col = 0; col < flow.forth.cols; ++col, ++voxel) {
-            const auto to = target(flow.forth, row, col);
-            if (!to) continue;
-            const auto move = flow.forth.at<cv::Vec2f>(row, col);
-            const auto error = move + flow.back.at<cv::Vec2f>(static_cast<int>(to->y + 0.5F),
-                                                              static_cast<int>(to->x + 0.5F));
-            field.row_shift[voxel] = fixed(move[1]);
-            field.col_shift[voxel] = fixed(move[0]);
-            field.confidence[voxel] =
-                confidence((error[0] * error[0] + error[1] * error[1]) * scale);
+    constexpr int kPerPixel = MotionField::kShiftsPerPixel;
+    const int last_row = (flow.forth.rows - 1) * kPerPixel;
+    const int last_col = (flow.forth.cols - 1) * kPerPixel;
+    const auto rounded = [](int shift) { return (shift + kPerPixel / 2) / kPerPixel; };
+    std::size_t i = 0;
+    for (int row = 0; row <= last_row; row += kPerPixel)
+        for (int col = 0; col <= last_col; col += kPerPixel, ++i, ++voxel) {
+            const int to_row = row + flow.forth.row_shift[i];
+            const int to_col = col + flow.forth.col_shift[i];
+            if (to_row < 0 || to_col < 0 || to_row > last_row || to_col > last_col) continue;
+            const auto there = static_cast<std::size_t>(rounded(to_row)) *
+                                   static_cast<std::size_t>(flow.forth.cols) +
+                               static_cast<std::size_t>(rounded(to_col));
+            const int row_error = flow.forth.row_shift[i] + flow.back.row_shift[there];
+            const int col_error = flow.forth.col_shift[i] + flow.back.col_shift[there];
+            field.row_shift[voxel] = flow.forth.row_shift[i];
+            field.col_shift[voxel] = flow.forth.col_shift[i];
+            field.confidence[voxel] = confidence(row_error * row_error + col_error * col_error);
         }
 }
 
@@ -116,8 +174,9 @@ void write_slot(const FlowPair& flow, float deviation_px, std::size_t voxel, Mot
 
 std::vector<MotionField> estimate_motion(const FluxVideo& video, const MotionOptions& options) {
     const auto count = [](int n) { return static_cast<std::size_t>(n); };
-    std::vector<cv::Mat> image(count(video.slots()));
-    parallel_for(0, video.slots(), [&](int slot) { image[count(slot)] = flow_image(video, slot); });
+    std::vector<Pyramid> pyramid(count(video.slots()));
+    parallel_for(0, video.slots(),
+                 [&](int slot) { pyramid[count(slot)] = pyramid_of(flow_image(video, slot)); });
     std::vector<MotionField> fields(2);
     fields[1].step = -1;
     const std::size_t pixels = video.shape().pixels();
@@ -126,16 +185,22 @@ std::vector<MotionField> estimate_motion(const FluxVideo& video, const MotionOpt
         field.col_shift.resize(count(video.slots()) * pixels);
         field.confidence.resize(count(video.slots()) * pixels);
     }
+    Flows flows(count(video.slots() - 1));
     parallel_for(0, video.slots() - 1, [&](int slot) {
-        const cv::Mat& now = image[count(slot)];
-        const cv::Mat& next = image[count(slot + 1)];
-        const cv::Mat forth = flow(now, next, options);
-        const cv::Mat back = flow(next, now, options);
-        write_slot({forth, back}, options.consistency_px, count(slot) * pixels, fields[0]);
-        write_slot({back, forth}, options.consistency_px, count(slot + 1) * pixels, fields[1]);
+        const Pyramid& now = pyramid[count(slot)];
+        const Pyramid& next = pyramid[count(slot + 1)];
+        flows.forth[count(slot)] = flow(now, next, options);
+        flows.back[count(slot)] = flow(next, now, options);
     });
-    // The flow has taken some 160 bytes a pixel in each thread, which glibc would keep.
-    malloc_trim(0);
+    if (options.rough)
+        for (auto* direction : {&flows.forth, &flows.back})
+            roughen(*direction, flow_image_of(pyramid[0][0]));
+    parallel_for(0, video.slots() - 1, [&](int slot) {
+        const DenseFlow& forth = flows.forth[count(slot)];
+        const DenseFlow& back = flows.back[count(slot)];
+        write_slot({forth, back}, count(slot) * pixels, fields[0]);
+        write_slot({back, forth}, count(slot + 1) * pixels, fields[1]);
+    });
     return fields;
 }
 

@@ -105,8 +105,9 @@ void cut_links_to_larger_steps(MotionField& field, FrameShape shape, std::span<c
 /// The first estimate shows no details, and is the least certain; details are worth a close look
 /// in the last round only.
 MotionOptions motion_options(int round, bool last) {
-    if (round == 0) return {.finest_scale = 1, .refinements = 3};
-    return {.patch_stride_px = last ? 4 : 6};
+    if (round == 0) return {.rough = true, .search = {.alike_px = 0.09F}};
+    return last ? MotionOptions{.search = {.patch_stride_px = 5}}
+                : MotionOptions{.search = {.patch_stride_px = 6, .alike_px = 0.3F}};
 }
 
 /// Counts iterations for a checkpoint. Finding the motion takes about as long as 8 of them.

@@ -26,7 +26,7 @@ struct MotionTvOptions {
     /// Along motion, once a round.
     TotalVariationOptions along_motion{.iterations = 8};
     int rounds = 3;
-    int last_iterations = 30;  ///< of the last round, instead of those of `along_motion`
+    int last_iterations = 26;  ///< of the last round, instead of those of `along_motion`
     MosaicTvOptions mosaic;
     float step = 0.005F;  ///< primal step at `step_flux`, flux^2
     float step_flux = 0.3F;

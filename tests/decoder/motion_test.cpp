@@ -14,20 +14,24 @@ namespace {
 
 constexpr FrameShape kShape{.rows = 64, .cols = 96, .planes = 1};
 
-/// A smooth texture that moves by (`down`, `right`) pixels a slot.
+/// A smooth texture that has moved by (`down`, `right`) pixels.
+void draw_texture(FluxVideo& video, int slot, double down, double right) {
+    for (int plane = 0; plane < video.shape().planes; ++plane)
+        for (int row = 0; row < video.shape().rows; ++row)
+            for (int col = 0; col < video.shape().cols; ++col) {
+                const double y = row - down;
+                const double x = col - right;
+                const double value = 0.3 + 0.1 * std::sin(0.5 * x + 0.2 * y) +
+                                     0.1 * std::sin(0.3 * y - 0.17 * x + 1) +
+                                     0.05 * std::sin(0.8 * y + 0.7 * x);
+                video.plane(slot, plane)(row, col) = static_cast<float>(value);
+            }
+}
+
+/// The texture, moving by (`down`, `right`) pixels a slot.
 FluxVideo moving_texture(int slots, FrameShape shape, double down, double right) {
     FluxVideo video(slots, shape);
-    for (int slot = 0; slot < slots; ++slot)
-        for (int plane = 0; plane < shape.planes; ++plane)
-            for (int row = 0; row < shape.rows; ++row)
-                for (int col = 0; col < shape.cols; ++col) {
-                    const double y = row - slot * down;
-                    const double x = col - slot * right;
-                    const double value = 0.3 + 0.1 * std::sin(0.5 * x + 0.2 * y) +
-                                         0.1 * std::sin(0.3 * y - 0.17 * x + 1) +
-                                         0.05 * std::sin(0.8 * y + 0.7 * x);
-                    video.plane(slot, plane)(row, col) = static_cast<float>(value);
-                }
+    for (int slot = 0; slot < slots; ++slot) draw_texture(video, slot, slot * down, slot * right);
     return video;
 }
 
@@ -55,6 +59,20 @@ TEST(MotionTest, FindsATranslationForwardsAndBackwards) {
     EXPECT_NEAR(median_shift(fields[0].col_shift, fields[0], 1), 2.25, 0.1);
     EXPECT_NEAR(median_shift(fields[1].row_shift, fields[1], 2), 0.75, 0.1);
     EXPECT_NEAR(median_shift(fields[1].col_shift, fields[1], 2), -2.25, 0.1);
+}
+
+// Estimates at rest show a pixel for as long as an exposure where it is not.
+TEST(MotionTest, RoughMotionIsThatOfSeveralSlots) {
+    FluxVideo video(8, kShape);
+    for (int slot = 0; slot < 8; ++slot) draw_texture(video, slot, 0, slot / 2);
+    const auto shift_of = [&](const MotionOptions& options, int slot) {
+        const auto fields = estimate_motion(video, options);
+        return median_shift(fields[0].col_shift, fields[0], slot);
+    };
+    EXPECT_NEAR(shift_of({}, 3), 1, 0.1);
+    EXPECT_NEAR(shift_of({}, 4), 0, 0.1);
+    EXPECT_NEAR(shift_of({.rough = true}, 3), 0.5, 0.15);
+    EXPECT_NEAR(shift_of({.rough = true}, 4), 0.5, 0.15);
 }
 
 TEST(MotionTest, HasNoConfidenceWhereThereIsNoPartner) {
