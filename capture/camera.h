@@ -3,11 +3,13 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "capture/frame_record.h"
+#include "core/error.h"
 
 namespace stipple {
 
@@ -33,6 +35,8 @@ struct NoFrame {};
 struct DeviceLost {
     std::string reason;
     bool at_end = false;  ///< the latter: no fault
+    /// Of a replay: why its file cannot be used any further.
+    std::optional<InputError> bad_file = {};
 };
 
 /// What `Camera::wait` comes back with. Of the frame's record the camera fills what it knows:

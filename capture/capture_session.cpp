@@ -270,7 +270,7 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     Arrival arrival = camera->wait(timeout);
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return deliver(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
-        if (!lost->at_end) return begin_outage(std::move(lost->reason));
+        if (!lost->at_end && !lost->bad_file) return begin_outage(std::move(lost->reason));
         count_last_underruns();
         return std::move(*lost);
     }

@@ -7,6 +7,10 @@
 
 namespace stipple {
 
+/// The kind of camera that an address names: "gige", "usb", "v4l2" or "replay". \throws InputError
+/// if none.
+[[nodiscard]] std::string camera_kind(const std::string& address);
+
 /// Opens the camera at `address` and sets it up. Addresses are "gige:IP", "usb:SERIAL",
 /// "v4l2:/dev/videoN" and "replay:FILE".
 /// \throws InputError for an address or a setting that cannot be, DeviceError if the camera does

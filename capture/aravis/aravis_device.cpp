@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 
+#include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
 
@@ -54,6 +55,9 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
     for (unsigned i = 0; i < arv_interface_get_n_devices(usb); ++i) {
         const char* found = arv_interface_get_device_serial_nbr(usb, i);
         if (found == nullptr || serial != found) continue;
+        // Aravis would say so in two lines of its own on standard error.
+        if (usb_camera_is_taken(serial))
+            throw DeviceError(address, "another program has the camera: stop it");
         ArvDevice* device =
             arv_interface_open_device(usb, arv_interface_get_device_id(usb, i), complaint.slot());
         if (device != nullptr) return device;

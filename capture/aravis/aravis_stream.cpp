@@ -8,18 +8,16 @@
 #include <atomic>
 #include <cstring>
 
+#include "capture/aravis/gige_link.h"
 #include "capture/aravis/usb_packets.h"
-#include "capture/doctor/network_facts.h"
 #include "capture/frame_holes.h"
 #include "capture/host_clock.h"
-#include "capture/network.h"
 #include "core/error.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
-constexpr int kLoopbackPacketBytes = 9000;
 
 /// Memory of a buffer.
 struct Slot {
@@ -71,13 +69,11 @@ struct AravisStream::Impl {
     std::uint64_t mismatches_seen = 0;
     std::uint64_t cut_frames = 0;
     ArvBuffer* held_back = nullptr;  ///< of the last frame, if that was incomplete
-    std::uint64_t link_faults_before = 0;
     std::uint64_t last_wire_id = 0;
     bool running = false;
     std::atomic<bool> lost = false;
     gulong lost_handler = 0;
-    std::map<std::string, std::string> facts;
-    std::vector<std::string> warnings;
+    std::optional<GigeLink> link;  ///< empty: USB3 Vision
 
     Impl(AravisDevice& opened, FrameLayout first_layout, CameraBuffers wanted)
         : device(opened),
@@ -89,8 +85,6 @@ struct AravisStream::Impl {
     Impl& operator=(const Impl&) = delete;
 
     void create(std::optional<int> packet_bytes);
-    void set_packet_size(std::optional<int> wanted);
-    void set_socket_buffer();
     void push_buffers();
     void hand_back(ArvBuffer* buffer, bool complete);
     void reuse(ArvBuffer* buffer) const;
@@ -111,7 +105,7 @@ AravisStream::Impl::~Impl() {
 }
 
 void AravisStream::Impl::create(std::optional<int> packet_bytes) {
-    if (device.is_gige()) set_packet_size(packet_bytes);
+    if (device.is_gige()) link.emplace(device, packet_bytes);
     GError* error = nullptr;
     stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
     if (stream == nullptr) {
@@ -119,7 +113,7 @@ void AravisStream::Impl::create(std::optional<int> packet_bytes) {
         g_clear_error(&error);
         throw DeviceError(device.address(), fmt::format("gives no stream: {}", why));
     }
-    if (device.is_gige()) set_socket_buffer();
+    if (link) link->set_socket_buffer(stream, layout.payload_bytes(), buffers.socket_frames);
     chunks = arv_camera_create_chunk_parser(camera);
     const auto on_lost = +[](ArvDevice*, std::atomic<bool>* flag) { *flag = true; };
     lost_handler = g_signal_connect(arv_camera_get_device(camera), "control-lost",
@@ -127,59 +121,11 @@ void AravisStream::Impl::create(std::optional<int> packet_bytes) {
     push_buffers();
 }
 
-void AravisStream::Impl::set_packet_size(std::optional<int> wanted) {
-    const auto interface = interface_towards(device.address().substr(5));
-    const auto before = arv_camera_gv_get_packet_size(camera, nullptr);
-    // A camera that answers no test packets keeps its size; on loopback no switch is in between.
-    if (!wanted && arv_camera_gv_auto_packet_size(camera, nullptr) <= before && interface &&
-        interface->is_loopback)
-        wanted = kLoopbackPacketBytes;
-    if (wanted) {
-        arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
-        arv_camera_gv_set_packet_size(camera, *wanted, nullptr);
-    }
-    const auto size = arv_camera_gv_get_packet_size(camera, nullptr);
-    facts["packet_bytes"] = fmt::format("{}", size);
-    if (!interface) return;
-    facts["interface"] = interface->name;
-    link_faults_before = link_faults(interface->name);
-    if (interface->mtu == 0) return;
-    facts["mtu"] = fmt::format("{}", interface->mtu);
-    if (static_cast<int>(size) > interface->mtu)
-        warnings.push_back(
-            fmt::format("packets of {} bytes exceed the MTU {} of {}: set "
-                        "GevSCPSPacketSize to at most that, or raise the MTU",
-                        size, interface->mtu, interface->name));
-}
-
-void AravisStream::Impl::set_socket_buffer() {
-    const std::int64_t wanted =
-        static_cast<std::int64_t>(layout.payload_bytes()) * buffers.socket_frames;
-    const std::int64_t most = rmem_max_bytes();
-    const bool packet_socket = can_open_packet_socket();
-    const std::int64_t given =
-        std::clamp<std::int64_t>(most > 0 ? std::min(wanted, most) : wanted, 65536, 1 << 30);
-    g_object_set(stream, "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS, "socket-buffer",
-                 ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", static_cast<gint>(given),
-                 nullptr);
-    facts["packet_resend"] = "always";
-    facts["socket"] = packet_socket ? "packet" : "udp";
-    facts["socket_buffer_wanted_bytes"] = fmt::format("{}", wanted);
-    facts["socket_buffer_bytes"] = fmt::format("{}", given);
-    facts["rmem_max_bytes"] = fmt::format("{}", most);
-    if (!packet_socket && wanted > most)
-        warnings.push_back(fmt::format(
-            "the receive buffer holds {:.1f} frames of {} wanted, packets may be lost: `sysctl -w "
-            "net.core.rmem_max={}` (now {}) or give CAP_NET_RAW",
-            static_cast<double>(given) / static_cast<double>(layout.payload_bytes()),
-            buffers.socket_frames, wanted, most));
-}
-
 /// What a buffer must hold.
 std::size_t AravisStream::Impl::wanted_bytes() const {
     const std::size_t payload = arv_camera_get_payload(camera, nullptr);
     // By USB as much is asked for as a buffer holds: no more than the camera sends.
-    const bool exactly = !device.is_gige() && payload > 0;
+    const bool exactly = !link && payload > 0;
     return std::clamp(exactly ? payload : std::max(payload, layout.payload_bytes()), std::size_t{1},
                       kMostPayloadBytes);
 }
@@ -196,7 +142,7 @@ void AravisStream::Impl::push_buffers() {
 /// Where the trailer of a USB3 Vision frame was lost, the leader of the next one may lie in its
 /// buffer, and Aravis (0.8.26) reads that leader after it has handed the buffer out.
 void AravisStream::Impl::hand_back(ArvBuffer* buffer, bool complete) {
-    if (!device.is_gige()) {
+    if (!link) {
         if (held_back != nullptr) reuse(held_back);
         held_back = complete ? nullptr : buffer;
         if (!complete) return;
@@ -222,7 +168,7 @@ std::uint64_t AravisStream::Impl::info(const char* name) const {
 
 /// Frames that did not fit into their buffers, or did not fill them.
 std::uint64_t AravisStream::Impl::mismatches() const {
-    return device.is_gige() ? info("n_size_mismatch_errors") : cut_frames;
+    return link ? info("n_size_mismatch_errors") : cut_frames;
 }
 
 /// Makes buffers of the size that the camera sends now.
@@ -272,9 +218,9 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     const Slot& slot = slot_of(buffer);
     const bool has_leader = arv_buffer_get_frame_id(buffer) != kNoId;
     // Frames come in order, so the least that it can be is the next one.
-    record.wire_id = has_leader         ? arv_buffer_get_frame_id(buffer)
-                     : device.is_gige() ? last_wire_id % 65535 + 1
-                                        : last_wire_id + 1;
+    record.wire_id = has_leader ? arv_buffer_get_frame_id(buffer)
+                     : link     ? last_wire_id % 65535 + 1
+                                : last_wire_id + 1;
     last_wire_id = record.wire_id;
     record.status = status_of(status);
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
@@ -301,7 +247,7 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     }
     if (record.status == FrameStatus::kSizeMismatch) ++cut_frames;
     if (record.status != FrameStatus::kComplete) {
-        if (!device.is_gige()) erase_usb_packets(frame.payload, record.wire_id);
+        if (!link) erase_usb_packets(frame.payload, record.wire_id);
         frame.holes = clear_holes(frame.payload);
         for (const auto& [begin, end] : frame.holes) record.bytes_received -= end - begin;
         // Only the trailer was lost: every byte of the image is there.
@@ -331,11 +277,11 @@ const FrameLayout& AravisStream::layout() const {
 }
 
 std::map<std::string, std::string> AravisStream::facts() const {
-    return impl_->facts;
+    return impl_->link ? impl_->link->facts() : std::map<std::string, std::string>();
 }
 
 std::vector<std::string> AravisStream::warnings() const {
-    return impl_->warnings;
+    return impl_->link ? impl_->link->warnings() : std::vector<std::string>();
 }
 
 TransportCounts AravisStream::counts() const {
@@ -344,10 +290,7 @@ TransportCounts AravisStream::counts() const {
     counts.packets_resent = impl_->info("n_resent_packets");
     counts.packets_missing = impl_->info("n_missing_packets");
     counts.size_mismatches = impl_->mismatches();
-    if (impl_->device.is_gige() && impl_->facts.at("socket") == "udp")
-        counts.socket_drops = udp_drops(arv_gv_stream_get_port(ARV_GV_STREAM(impl_->stream)));
-    if (const auto interface = impl_->facts.find("interface"); interface != impl_->facts.end())
-        counts.link_faults = link_faults(interface->second) - impl_->link_faults_before;
+    if (impl_->link) impl_->link->count(impl_->stream, counts);
     return counts;
 }
 
@@ -376,7 +319,7 @@ Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
         mismatches != impl_->mismatches_seen) {
         impl_->mismatches_seen = mismatches;
         const std::size_t wanted = impl_->wanted_bytes();
-        if (impl_->device.is_gige() ? wanted > impl_->buffer_bytes : wanted != impl_->buffer_bytes)
+        if (impl_->link ? wanted > impl_->buffer_bytes : wanted != impl_->buffer_bytes)
             impl_->rebuild();
     }
     return frame;

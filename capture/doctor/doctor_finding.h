@@ -11,7 +11,7 @@ struct DoctorFinding {
     Level level = Level::kGood;
     std::string subject;  ///< "receive buffer", "group video"
     std::string fact;     ///< what was found, with numbers
-    std::string fix;      ///< what to do, a command where there is one; empty if good
+    std::string fix;  ///< what to do, a command where there is one; empty if good or said before
 };
 
 }  // namespace stipple

@@ -22,7 +22,6 @@ void examine_path(const std::string& ip, std::vector<DoctorFinding>& findings) {
     findings.push_back(
         {Level::kGood, "path",
          fmt::format("by {} from {}", interface->name, ipv4_text(interface->address)), ""});
-    if (!interface->is_loopback) findings.push_back(judge_mtu(interface->name, interface->mtu));
 }
 
 void examine_control(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
@@ -75,10 +74,8 @@ std::vector<DoctorFinding> examine_genicam_camera(const std::string& address) {
         examine_format(device, findings);
         for (const auto& [name, value] : device.features())
             findings.push_back({Level::kGood, name, value, ""});
-    } catch (const InputError& e) {
-        findings.push_back({Level::kProblem, "camera", e.what(), "stipple capture list"});
     } catch (const DeviceError& e) {
-        findings.push_back({Level::kProblem, "camera", e.what(), "power, cable, subnet"});
+        findings.push_back({Level::kProblem, "camera", e.what(), ""});
     }
     return findings;
 }

@@ -20,7 +20,8 @@ namespace stipple {
 [[nodiscard]] DoctorFinding judge_mtu(const std::string& interface, int mtu);
 
 /// One GenICam camera: the interface towards it, who controls it, the packet size, its pixel format
-/// and its features. Opens it for a moment; what is wrong becomes a finding.
+/// and its features. Opens it for a moment; what is wrong becomes a finding. \throws InputError if
+/// the address is none.
 [[nodiscard]] std::vector<DoctorFinding> examine_genicam_camera(const std::string& address);
 
 }  // namespace stipple

@@ -51,13 +51,24 @@ DoctorFinding memory_finding(const fs::path& root) {
             "usbcore.usbfs_memory_mb=1000 on the kernel's command line"};
 }
 
-/// A device with an interface of class EF, subclass 05: USB3 Vision.
-bool is_usb3_vision(const fs::path& device) {
-    const auto interfaces = entries(device);
-    return std::any_of(interfaces.begin(), interfaces.end(), [](const fs::path& interface) {
-        return first_line(interface / "bInterfaceClass") == "ef" &&
-               first_line(interface / "bInterfaceSubClass") == "05";
+/// The interfaces of class EF, subclass 05: those of USB3 Vision.
+std::vector<fs::path> vision_interfaces(const fs::path& device) {
+    std::vector<fs::path> interfaces = entries(device);
+    std::erase_if(interfaces, [](const fs::path& interface) {
+        return first_line(interface / "bInterfaceClass") != "ef" ||
+               first_line(interface / "bInterfaceSubClass") != "05";
     });
+    return interfaces;
+}
+
+bool is_usb3_vision(const fs::path& device) {
+    return !vision_interfaces(device).empty();
+}
+
+/// The driver "usbfs" is a program that has claimed the interface.
+bool is_claimed(const fs::path& interface) {
+    std::error_code error;
+    return fs::read_symlink(interface / "driver", error).filename() == "usbfs";
 }
 
 DoctorFinding access_finding(const fs::path& root, const fs::path& device) {
@@ -86,6 +97,15 @@ std::vector<DoctorFinding> usb_findings(const fs::path& root) {
     for (const auto& device : entries(root / "sys/bus/usb/devices"))
         if (is_usb3_vision(device)) findings.push_back(access_finding(root, device));
     return findings;
+}
+
+bool usb_camera_is_taken(const std::string& serial, const fs::path& root) {
+    const auto devices = entries(root / "sys/bus/usb/devices");
+    return std::any_of(devices.begin(), devices.end(), [&](const fs::path& device) {
+        if (first_line(device / "serial") != serial) return false;
+        const auto interfaces = vision_interfaces(device);
+        return std::any_of(interfaces.begin(), interfaces.end(), is_claimed);
+    });
 }
 
 }  // namespace stipple

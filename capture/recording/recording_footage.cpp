@@ -31,7 +31,9 @@ bool RecordingFootage::advance() {
     while (reader_.next(coming_)) {
         const FrameRecord& record = coming_.record;
         const bool usable = !options_.drop_incomplete || record.status == FrameStatus::kComplete;
-        const std::uint64_t gap = std::min(record.lost_before, kMaxHeld + 1) + (usable ? 0 : 1);
+        const std::uint64_t lost = last_id_ ? missing_after(*last_id_, record) : record.lost_before;
+        last_id_ = record.id;
+        const std::uint64_t gap = std::min(lost, kMaxHeld + 1) + (usable ? 0 : 1);
         missing_ += gap;
         to_hold_ += gap;
         if (!usable) continue;

@@ -39,8 +39,10 @@ class RecordingFootage {
 
     /// Slots that repeat the frame before.
     [[nodiscard]] std::uint64_t held_slots() const { return held_; }
-    /// Frames that are missing or incomplete, so far.
+    /// Frames that are missing, also by damage of the file, or incomplete, so far.
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
+    /// Whether all frames were read, so that the reader's report is complete.
+    [[nodiscard]] bool at_end() const { return !has_coming_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
 
   private:
@@ -50,6 +52,7 @@ class RecordingFootage {
     std::filesystem::path file_;
     RecordingReader reader_;
     RecordingFootageOptions options_;
+    std::optional<std::uint64_t> last_id_;  ///< of the frame read last, usable or not
     CapturedFrame coming_;
     bool has_coming_;
     FrameLight light_;

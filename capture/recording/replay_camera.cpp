@@ -91,8 +91,9 @@ class ReplayCamera final : public Camera {
     TransportCounts counts_;
     CapturedFrame coming_;
     bool has_coming_ = false;
-    bool first_ = true;       ///< of the file: no stamp before it
-    std::int64_t stamp_ = 0;  ///< of the frame before, as the file has it
+    bool first_ = true;          ///< of the file: no stamp before it
+    std::int64_t stamp_ = 0;     ///< of the frame before, as the file has it
+    std::uint64_t file_id_ = 0;  ///< of the frame before, as the file has it
     std::uint64_t next_id_ = 0;
     nanoseconds period_ = kFootagePeriod;
     Clock::time_point due_;
@@ -128,7 +129,8 @@ bool ReplayCamera::load() {
 /// Ids go on from round to round; ids that the recording lacks stay lacking.
 void ReplayCamera::number_frame() {
     FrameRecord& record = coming_.record;
-    const std::uint64_t gap = first_ ? 0 : std::min(record.lost_before, kPeriod / 4);
+    const std::uint64_t gap = first_ ? 0 : std::min(missing_after(file_id_, record), kPeriod / 4);
+    file_id_ = record.id;
     next_id_ += gap;
     record.id = next_id_++;
     record.wire_id = record.id % kPeriod;
@@ -178,7 +180,7 @@ Arrival ReplayCamera::wait(std::chrono::milliseconds timeout) {
             has_coming_ = false;
         }
     } catch (const InputError& e) {
-        return DeviceLost{e.what()};
+        return DeviceLost{.reason = e.what(), .bad_file = e};
     }
 }
 

@@ -16,7 +16,7 @@ namespace stipple {
 /// Payloads, device stamps, exposure, gain, black level, layout, status and holes are those of the
 /// recording, and wire ids leave out what it left out; arrival stamps are new. Whoever takes frames
 /// later than `buffers.frames` of them loses the oldest, as with a camera: they count as underruns.
-/// At the end comes DeviceLost (at_end).
+/// At the end comes DeviceLost (at_end), of a file that cannot be read further too (bad_file).
 /// \throws InputError if the file is neither, or for a setting that it does not have.
 [[nodiscard]] std::unique_ptr<Camera> open_replay_camera(const std::string& address,
                                                          const CameraSettings& settings,

@@ -1,28 +1,32 @@
 #include "capture/serve/footage_frames.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "sensor_model/colour_mosaic.h"
 #include "stream/bit_packing.h"
 
 namespace stipple {
 namespace {
 
-/// The formats that footage of this shape can be given in.
-std::vector<const PixelFormat*> formats_for(FrameShape shape) {
+/// The formats that footage of this shape can be given in; those of a colour filter array only if
+/// it is taken for what lies behind one.
+std::vector<const PixelFormat*> formats_for(FrameShape shape, ColourFilter filter) {
     std::vector<const PixelFormat*> formats;
-    const auto offer = [&](std::string_view name) {
-        const PixelFormat* format = pixel_format_named(name);
-        if (format == nullptr || shape.cols * format->bits_per_pixel % 8 != 0) return;
-        formats.push_back(format);
-    };
-    if (shape.planes == 1)
-        for (const auto* name : {"Mono8", "Mono10", "Mono10p", "Mono12", "Mono12p", "Mono16"})
-            offer(name);
-    if (shape.planes == 3) offer("RGB8");
+    for (const PixelFormat& format : pixel_formats()) {
+        const bool has_planes = filter == ColourFilter::kNone
+                                    ? format.planes == shape.planes
+                                    : shape.planes == 1 || shape.planes == 3;
+        const bool can_pack =
+            format.packing == Packing::kLsbPacked || format.packing == Packing::kBytes;
+        if (format.filter == filter && has_planes && can_pack && format.pfnc != 0 &&
+            shape.cols * format.bits_per_pixel % 8 == 0)
+            formats.push_back(&format);
+    }
     return formats;
 }
 
@@ -34,14 +38,26 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
     shape_ = reader_.shape();
     image_.width = shape_.cols;
     image_.height = shape_.rows;
-    image_.formats = formats_for(shape_);
+    if (preferred != nullptr) filter_ = preferred->filter;
+    check_cells();
+    image_.formats = formats_for(shape_, filter_);
     image_.frames_per_s = frames_per_s;
     if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);
     if (image_.formats.empty())
         throw InputError(footage_.string(), "has neither 1 nor 3 planes; add --luminance");
     if (preferred != nullptr) make_default(*preferred);
     light_.resize(shape_.sites());
-    dn_.resize(shape_.sites());
+    const bool takes_mosaic = filter_ != ColourFilter::kNone && shape_.planes == 3;
+    if (takes_mosaic) mosaic_.resize(shape_.pixels());
+    dn_.resize(takes_mosaic ? shape_.pixels() : shape_.sites());
+}
+
+void FootageFrames::check_cells() const {
+    if (filter_ == ColourFilter::kNone || (shape_.rows % 2 == 0 && shape_.cols % 2 == 0)) return;
+    throw InputError(footage_.string(),
+                     fmt::format("has {} x {} pixels; a colour filter array has cells of 2 x 2, so "
+                                 "both must be even",
+                                 shape_.cols, shape_.rows));
 }
 
 void FootageFrames::make_default(const PixelFormat& format) {
@@ -66,7 +82,12 @@ void FootageFrames::start(const PixelFormat& format) {
 
 std::optional<ServedFrame> FootageFrames::next() {
     if (!reader_.read(light_)) return {};
-    quantise_light(light_, shape_, format_->significant_bits, dn_);
+    if (mosaic_.empty()) {
+        quantise_light(light_, shape_, format_->significant_bits, dn_);
+    } else {
+        take_mosaic(filter_, shape_, light_, mosaic_);
+        quantise_light(mosaic_, {shape_.rows, shape_.cols, 1}, format_->significant_bits, dn_);
+    }
     ServedFrame frame;
     frame.number = number_++;
     const int sample_bits = format_->bits_per_pixel / format_->planes;

@@ -9,9 +9,11 @@
 namespace stipple {
 
 /// Footage as the frames of a camera without noise: light 1.0 is full scale, DN are rounded to the
-/// nearest and clipped. One plane can be had as Mono8, Mono10, Mono10p, Mono12, Mono12p and Mono16
-/// (packed ones if rows are whole bytes), three as RGB8. So 8-bit footage as Mono8 and 16-bit
-/// footage as Mono16 keep their numbers.
+/// nearest and clipped. One plane can be had as Mono8 to Mono16 and the "p" formats whose rows are
+/// whole bytes, three as RGB8. So 8-bit footage as Mono8 and 16-bit footage as Mono16 keep their
+/// numbers. Where the preferred format is of a colour filter array, one plane is what lies behind
+/// it, of three each pixel has the colour of its filter, and all formats with that filter can be
+/// had.
 class FootageFrames final : public FrameSource {
   public:
     /// `preferred` becomes the default format; null: Mono8 or RGB8. \throws InputError as
@@ -25,15 +27,18 @@ class FootageFrames final : public FrameSource {
 
   private:
     void make_default(const PixelFormat& format);
+    void check_cells() const;
 
     std::filesystem::path footage_;
     FootageOptions options_;
     FootageReader reader_;
     FrameShape shape_;
+    ColourFilter filter_ = ColourFilter::kNone;
     ServedImage image_;
     const PixelFormat* format_ = nullptr;
     std::uint64_t number_ = 0;
     std::vector<float> light_;
+    std::vector<float> mosaic_;  ///< of light in colour, behind a colour filter array
     std::vector<std::uint16_t> dn_;
 };
 

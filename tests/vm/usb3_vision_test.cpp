@@ -229,7 +229,7 @@ TEST_F(Usb3VisionTest, ASecondProgramIsToldThatTheCameraIsTaken) {
         static_cast<void>(open_camera(kAddress, {}, {}));
         FAIL() << "opened twice";
     } catch (const DeviceError& e) {
-        EXPECT_THAT(e.what(), testing::HasSubstr("another program may have it"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("another program has the camera"));
     }
 }
 

@@ -71,6 +71,19 @@ TEST(UsbFindingsTest, ACameraAtASlowPortIsAWarning) {
     }
 }
 
+TEST(UsbFindingsTest, ACameraIsTakenWhileAProgramHasClaimedItsInterface) {
+    const TemporaryFolder folder;
+    write_files(folder.path(), machine("5000"));
+    EXPECT_FALSE(usb_camera_is_taken("4711", folder.path()));
+    const auto driver = folder.path() / "sys/bus/usb/devices/2-1/2-1:1.0/driver";
+    fs::create_symlink("../../../../bus/usb/drivers/usbfs", driver);
+    EXPECT_TRUE(usb_camera_is_taken("4711", folder.path()));
+    EXPECT_FALSE(usb_camera_is_taken("4712", folder.path()));
+    fs::remove(driver);
+    fs::create_symlink("../../../../bus/usb/drivers/snd-usb-audio", driver);
+    EXPECT_FALSE(usb_camera_is_taken("4711", folder.path()));
+}
+
 TEST(UsbFindingsTest, AMachineWithoutUsbIsFine) {
     const TemporaryFolder folder;
     const auto findings = usb_findings(folder.path());

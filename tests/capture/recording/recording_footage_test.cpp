@@ -77,6 +77,20 @@ TEST(RecordingFootageTest, TheFrameBeforeStandsInForMissingOnes) {
     EXPECT_EQ(numbers(keeping), (std::vector<int>{0, 1, 1, 1, 4, 5, 6}));
 }
 
+TEST(RecordingFootageTest, FramesThatDamageHasTakenAreMissingToo) {
+    const TemporaryFolder folder;
+    std::vector<CapturedFrame> frames;
+    for (const unsigned id : {0U, 1U, 4U}) {  // 2 and 3 were in the file
+        frames.push_back(two_pixels(id, 0));
+        frames.back().record.id = id;
+    }
+    write_recording(folder / "a", frames);
+    RecordingFootage footage(folder / "a");
+    EXPECT_EQ(numbers(footage), (std::vector<int>{0, 1, 1, 1, 4}));
+    EXPECT_EQ(footage.missing_frames(), 2U);
+    EXPECT_TRUE(footage.at_end());
+}
+
 TEST(RecordingFootageTest, AnotherLayoutAndEndlessGapsAreErrors) {
     const TemporaryFolder folder;
     write_recording(folder / "a", {two_pixels(1, 2), test_frame(1, "Mono8", 2, 1)});

@@ -68,6 +68,18 @@ TEST(ReplayCameraTest, IdsThatWereLostStayLost) {
     EXPECT_EQ(ids, (std::vector<std::uint64_t>{0, 1, 5, 6, 7, 8, 12, 13, 14}));
 }
 
+TEST(ReplayCameraTest, FramesThatDamageHasTakenAreLostToo) {
+    const TemporaryFolder folder;
+    auto recorded = test_frames(6);
+    recorded.erase(recorded.begin() + 2, recorded.begin() + 4);
+    write_recording(folder / "a", recorded);
+    const auto camera =
+        open_replay_camera(address(folder / "a"), {{"AcquisitionFrameRate", "0"}}, {});
+    std::vector<std::uint64_t> ids;
+    for (const CapturedFrame& frame : play(*camera)) ids.push_back(frame.record.wire_id);
+    EXPECT_EQ(ids, (std::vector<std::uint64_t>{0, 1, 4, 5}));
+}
+
 TEST(ReplayCameraTest, WhoeverIsLateLosesFramesThatAreCounted) {
     const TemporaryFolder folder;
     write_recording(folder / "a", test_frames(300));
