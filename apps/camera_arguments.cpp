@@ -1,8 +1,12 @@
 #include "apps/camera_arguments.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
+#include "capture/open_camera.h"
 #include "core/config.h"
+#include "core/error.h"
 
 namespace stipple {
 
@@ -29,6 +33,20 @@ CameraSettings camera_settings(const CameraArguments& arguments) {
     const Config config = arguments.config.empty() ? Config(arguments.settings)
                                                    : Config(arguments.config, arguments.settings);
     return config.entries();
+}
+
+std::unique_ptr<Camera> open_picture_camera(const CameraArguments& arguments,
+                                            const CameraSettings& settings) {
+    auto camera = open_camera(arguments.address, settings, arguments.buffers);
+    if (!camera->description().features.contains("CodedStreamHeader")) return camera;
+    const std::string place = arguments.address + ": CodedStreamHeader";
+    if (is_replay(arguments))
+        throw InputError(place,
+                         "what was recorded is a coded stream, not pictures; record the camera "
+                         "anew with `stipple capture record --coded`");
+    throw InputError(place, fmt::format("the camera sends a coded stream, not pictures; write it "
+                                        "with `stipple capture record --coded {} -o FILE.stipple`",
+                                        arguments.address));
 }
 
 bool is_replay(const CameraArguments& arguments) {

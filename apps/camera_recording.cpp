@@ -13,7 +13,6 @@
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "capture/host_clock.h"
-#include "capture/open_camera.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
 #include "core/error.h"
@@ -68,7 +67,7 @@ class CameraRecording {
 
   private:
     [[nodiscard]] std::unique_ptr<Camera> open() const {
-        return open_camera(arguments_.camera.address, settings_, arguments_.camera.buffers);
+        return open_picture_camera(arguments_.camera, settings_);
     }
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(CapturedFrame frame);
@@ -77,7 +76,9 @@ class CameraRecording {
     void take(const Recovery& recovery) { say(recovery); }
     void take(const DeviceLost& lost) {
         at_end_ = lost.at_end;
-        end_reason_ = at_end_ ? lost.reason : fmt::format("camera lost: {}", lost.reason);
+        bad_file_ = lost.bad_file;
+        const bool gone = !at_end_ && !bad_file_;
+        end_reason_ = gone ? fmt::format("camera lost: {}", lost.reason) : lost.reason;
     }
 
     const CameraRecordingArguments& arguments_;
@@ -90,6 +91,7 @@ class CameraRecording {
     std::uint64_t refused_ = 0;  ///< frames that it had no room for
     std::string end_reason_;
     bool at_end_ = false;  ///< of a replay
+    std::optional<InputError> bad_file_;
     std::optional<DeviceError> failure_;
     double seconds_ = 0;
 };
@@ -142,7 +144,11 @@ void CameraRecording::finish() {
     else
         throw_if_stopped();
     if (failure_) throw DeviceError(*failure_);
+    if (bad_file_) throw InputError(*bad_file_);
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);
+    if (writer_.totals().frames == 0)
+        throw DeviceError(arguments_.camera.address,
+                          "no frame came; record for longer, or see `stipple capture doctor`");
 }
 
 nlohmann::ordered_json CameraRecording::json() const {

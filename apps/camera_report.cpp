@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "apps/chart.h"
 
@@ -52,7 +53,8 @@ std::string row_text(const Row& row, const CameraReport& report) {
         text += expected == 0 ? std::string(11, ' ')
                               : fmt::format("{:>+9.2f} %", 100 * (measured / expected - 1));
     }
-    return text + fmt::format("   {}\n", row.unit);
+    if (!std::string_view(row.unit).empty()) text += fmt::format("   {}", row.unit);
+    return text + "\n";
 }
 
 }  // namespace

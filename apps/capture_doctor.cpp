@@ -9,7 +9,9 @@
 #include "apps/json_file.h"
 #include "capture/doctor/network_doctor.h"
 #include "capture/doctor/usb_findings.h"
+#include "capture/open_camera.h"
 #include "capture/v4l2/v4l2_listing.h"
+#include "core/error.h"
 
 namespace stipple {
 namespace {
@@ -20,13 +22,23 @@ const char* name_of(DoctorFinding::Level level) {
     return kLevels[static_cast<std::size_t>(level)];
 }
 
+/// Of the camera at `address`, if there is one.
+std::vector<DoctorFinding> examine_camera(const std::string& address) {
+    if (address.empty()) return {};
+    const std::string kind = camera_kind(address);
+    if (kind == "gige" || kind == "usb") return examine_genicam_camera(address);
+    throw InputError(address,
+                     "the doctor looks at one camera if it is gige:IP or usb:SERIAL; without an "
+                     "address it looks at all V4L2 devices, and a replay needs no doctor");
+}
+
 std::vector<DoctorFinding> examine(const std::string& address) {
+    const std::vector<DoctorFinding> camera = examine_camera(address);
     std::vector<DoctorFinding> findings = examine_network();
     const auto add = [&](const std::vector<DoctorFinding>& more) {
         findings.insert(findings.end(), more.begin(), more.end());
     };
-    if (address.starts_with("gige:") || address.starts_with("usb:"))
-        add(examine_genicam_camera(address));
+    add(camera);
     add(usb_findings());
     add(v4l2_findings());
     return findings;

@@ -4,8 +4,10 @@
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
 #include "apps/live_emulation.h"
+#include "apps/number_check.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_arguments.h"
+#include "apps/unused_options.h"
 
 namespace stipple {
 namespace {
@@ -35,7 +37,7 @@ void add_capture_live(CLI::App& capture, Action& action) {
     add_preview_arguments(*command, options->preview);
     add_session_arguments(*command, options->session);
     command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_check(0))
         ->type_name("DN");
     command->add_option("--queue", options->queue_frames, "frames that may wait (64)")
         ->check(CLI::Range(1, 4096))
@@ -43,15 +45,20 @@ void add_capture_live(CLI::App& capture, Action& action) {
     command
         ->add_option("--late-after", options->late_after_slots,
                      "a packet is late so many slots after its frame (2)")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_check())
         ->type_name("N");
     command->footer(
         "Examples:\n"
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
         "  stipple capture live v4l2:/dev/video0 -o clip.stipple --preview now.png\n"
         "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
-    command->callback(
-        [options, &action] { action = [options](const RunOptions& run) { live(*options, run); }; });
+    command->callback([command, options, &action] {
+        if (options->preview.file.empty())
+            refuse_options(*command, {"--preview-method", "--preview-size"},
+                           "there is no preview; add --preview FILE or leave it out");
+        check_session_arguments(*command, options->camera);
+        action = [options](const RunOptions& run) { live(*options, run); };
+    });
 }
 
 }  // namespace stipple

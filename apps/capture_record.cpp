@@ -29,7 +29,8 @@ void add_capture_record(CLI::App& capture, Action& action) {
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
         "      --set PixelFormat=Mono12p --set ExposureTime=2000");
-    command->callback([options, coded, &action] {
+    command->callback([command, options, coded, &action] {
+        check_session_arguments(*command, options->camera);
         action = [options, coded](const RunOptions& run) {
             *coded ? record_coded_stream(*options, run) : record_camera(*options, run);
         };

@@ -6,6 +6,7 @@
 #include "apps/capture_commands.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/progress.h"
 #include "capture/recording/recording_footage.h"
 #include "core/frame_writer.h"
@@ -70,7 +71,7 @@ void add_capture_replay(CLI::App& capture, Action& action) {
     command->add_flag("--keep-incomplete", options->keep_incomplete,
                       "use incomplete frames, with black holes; else they count as missing");
     command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_check(0))
         ->type_name("DN");
     command->footer(
         "Examples:\n"

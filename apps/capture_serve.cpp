@@ -10,8 +10,10 @@
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/sensor_arguments.h"
 #include "apps/served_source.h"
+#include "apps/unused_options.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -61,13 +63,28 @@ void add_source_arguments(CLI::App& command, ServedSourceChoice& source) {
     command
         .add_option("--fps", source.frames_per_s,
                     "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
-        ->check(CLI::Range(0.01, 100000.0))
+        ->check(number_check(0.01, 100000.0))
         ->type_name("N");
     command.add_option("--format", source.format, "pixel format of footage (Mono8)")
         ->type_name("NAME");
     add_sensor_arguments(command, source.sensor);
     add_footage_arguments(command, source.reading);
     add_max_value(command, source.reading.max_value);
+}
+
+/// GigE Vision 2.0, 27.17: 16 bytes, the last of which is 0.
+std::string check_serial(const std::string& serial) {
+    constexpr std::size_t kMostBytes = 15;
+    if (!serial.empty() && serial.size() <= kMostBytes) return {};
+    return fmt::format("has {} bytes; GigE Vision has room for 1 to {}", serial.size(), kMostBytes);
+}
+
+void check_mode(const CLI::App& command, const ServedSourceChoice& source) {
+    if (source.mode == "coded")
+        refuse_options(command, {"--format"}, "is of --mode frames; leave it out");
+    else
+        refuse_options(command, {"--sensor", "--schedule", "--set", "--seed", "--overrun"},
+                       "is of the sensor of --mode coded; add that or leave this out");
 }
 
 }  // namespace
@@ -78,14 +95,17 @@ void add_capture_serve(CLI::App& capture, Action& action) {
     add_source_arguments(*command, options->source);
     command->add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
         ->type_name("IP");
-    command->add_option("--serial", options->server.serial, "serial number (1)")->type_name("TEXT");
+    command->add_option("--serial", options->server.serial, "serial number (1)")
+        ->check(check_serial)
+        ->type_name("TEXT");
     command->add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
     add_fault_arguments(*command, options->server);
     command->footer(
         "Examples:\n"
         "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
-    command->callback([options, &action] {
+    command->callback([command, options, &action] {
+        check_mode(*command, options->source);
         action = [options](const RunOptions& run) { serve(*options, run); };
     });
 }

@@ -6,6 +6,7 @@
 #include "apps/flat_field_series.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/sensor_setup.h"
 #include "apps/subcommands.h"
@@ -77,7 +78,7 @@ void add_characterize(CLI::App& app, Action& action) {
         command->add_option("--set", options->sensor.settings, "change a key of the sensor");
     set->allow_extra_args(false)->type_name("KEY=VALUE");
     auto* seed = command->add_option("--seed", options->sensor.seed, "of the noise (1)");
-    seed->check(CLI::NonNegativeNumber)->type_name("S");
+    seed->check(whole_check(0))->type_name("S");
     auto* evaluate = command->add_option("--evaluate", options->descriptor,
                                          "images that exist: their descriptor");
     evaluate->type_name("FILE")->excludes(sensor)->excludes(set)->excludes(seed);

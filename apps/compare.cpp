@@ -7,6 +7,7 @@
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/quality_json.h"
 #include "apps/read_ahead.h"
@@ -82,7 +83,7 @@ void add_compare(CLI::App& app, Action& action) {
     command->add_option("RESULT", options->result, "video in linear light")->required();
     command->add_option("REFERENCE", options->reference, "footage")->required();
     command->add_option("--margin", options->quality.margin, "frames left out at each end (0)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_check(0, 1'000'000))
         ->type_name("N");
     add_max_value(*command, options->quality.max_value);
     add_footage_arguments(*command, options->footage);

@@ -7,6 +7,7 @@
 
 #include "apps/decode_file.h"
 #include "apps/name_check.h"
+#include "apps/number_check.h"
 #include "apps/subcommands.h"
 #include "decoder/reconstruct.h"
 
@@ -54,7 +55,7 @@ void add_decode(CLI::App& app, Action& action) {
     command
         ->add_option("--timeout", options->timeout_s,
                      "with --follow: end where nothing more has come for so long (10)")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_check(0, 1e6))
         ->type_name("SECONDS");
     command
         ->add_flag("--check-schedule", options->check_schedule,

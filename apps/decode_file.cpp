@@ -12,6 +12,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
+#include "apps/session_report.h"
 #include "apps/stage_outputs.h"
 #include "apps/stream_follower.h"
 #include "apps/stream_text.h"
@@ -27,9 +28,12 @@ namespace {
 
 DecodeOptions options_of(const DecodeArguments& arguments) {
     const DecodeMethod method = decode_method_from_name(arguments.method);
+    if (!arguments.stages.empty() && method != DecodeMethod::kPortz2013)
+        throw InputError("--stages",
+                         fmt::format("method {} has none; portz2013 has", arguments.method));
     Config config = arguments.options.empty()
                         ? Config(arguments.settings)
-                        : Config(find_config("decoders", arguments.options), arguments.settings);
+                        : Config(std::filesystem::path(arguments.options), arguments.settings);
     return read_decode_options(method, config);
 }
 
@@ -145,6 +149,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
                         arguments.output, report.slots, arguments.method, report.seconds,
                         figures["voxels_per_second"].get<double>(), peak_memory_bytes() / 1000000));
     StreamReport found = reader.report();
+    if (found.samples == 0)
+        say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));
     if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
         throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +

@@ -22,6 +22,8 @@ std::string residual_text(const std::optional<double>& residual) {
 /// What speaks for and against the header's schedule.
 std::string evidence(const ScheduleCheck& check) {
     if (check.tried == 0) return "the recording is too short";
+    if (!check.best_residual && check.possible > 0)
+        return "all of its samples are saturated, or too few";
     const std::string header =
         check.header_residual
             ? fmt::format("residual of the header's schedule {:.3f}", *check.header_residual)

@@ -29,6 +29,8 @@ fs::path made_folder(const fs::path& folder, bool force) {
     if (fs::is_directory(folder, error) && !force)
         throw InputError(folder.string(),
                          "exists already; give another name, or --force to replace what is in it");
+    if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+        throw InputError(folder.string(), "is not a folder; give another name");
     if (!fs::is_directory(folder, error) && !fs::create_directory(folder, error))
         throw DeviceError(folder.string(), "cannot be created: " + error.message());
     return folder;

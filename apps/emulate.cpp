@@ -12,6 +12,7 @@
 #include "apps/progress.h"
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
+#include "apps/recording_faults.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_report.h"
 #include "apps/slot_emulator.h"
@@ -43,8 +44,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
     Recording recording(options.output, run.force, setup, footage_name(options.footage));
     Progress progress(run, "emulating", footage.slots());
-    for (auto frame = footage.next(); !frame.empty() && stop_signal() == 0;
-         frame = footage.next()) {
+    auto frame = footage.next();
+    for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {
         recording.expose(frame);
         if (truth) truth->write(frame);
         progress.advance();
@@ -55,6 +56,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (waveform)
         waveform->write(*recording.account(), setup.params.name, 0,
                         std::min<std::int64_t>(options.waveform.slots, progress.done()));
+    if (frame.empty() && footage.recording() != nullptr)
+        say_warning(recording_faults(options.footage, *footage.recording()));
     json.write(recording_json(recording, progress.seconds()));
     run.say(fmt::format("{}: {}", options.output, recording_text(recording, progress.seconds())));
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/number_check.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -12,7 +13,7 @@ void add_fault_arguments(CLI::App& command, GigeServerOptions& options) {
     GvspFaults& faults = options.faults;
     const auto share = [&](const std::string& name, double& value, const std::string& what) {
         command.add_option(name, value, what)
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(number_check(0, 1))
             ->type_name("SHARE")
             ->group(kGroup);
     };
@@ -23,8 +24,10 @@ void add_fault_arguments(CLI::App& command, GigeServerOptions& options) {
     share("--fault-lose", faults.lose, "packets that are never sent");
     share("--fault-duplicate", faults.duplicate, "packets that are sent twice");
     command.add_flag("--fault-reorder", faults.reorder, "packets change places")->group(kGroup);
-    count("--fault-gap-at", faults.gap_at, "frame before which ids are left out");
-    count("--fault-gap", faults.gap_frames, "how many ids are left out there");
+    auto* gap_at = count("--fault-gap-at", faults.gap_at, "frame before which ids are left out");
+    auto* gap = count("--fault-gap", faults.gap_frames, "how many ids are left out there");
+    gap_at->needs(gap);
+    gap->needs(gap_at);
     count("--fault-first-block", faults.first_block, "block id of the first frame (1)")
         ->check(CLI::Range(1, 65535));
     count("--fault-freeze-at", faults.freeze_at, "frame from which on nothing is sent");

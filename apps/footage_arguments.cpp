@@ -1,9 +1,11 @@
 #include "apps/footage_arguments.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <map>
 #include <string>
+
+#include "apps/number_check.h"
+#include "core/error.h"
 
 namespace stipple {
 
@@ -22,13 +24,15 @@ void add_footage_arguments(CLI::App& command, FootageOptions& options) {
 
 void add_max_value(CLI::App& command, std::optional<double>& max_value) {
     command.add_option("--max-value", max_value, "clip light to V first")
-        ->check([](const std::string& text) {
-            double value = 0;
-            const bool usable =
-                CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
-            return usable ? std::string() : "\"" + text + "\" is not a number above 0";
-        })
+        ->check(positive_check())
         ->type_name("V");
+}
+
+void check_recording_options(const std::string& recording, const FootageOptions& options) {
+    if (options.transfer != Transfer::kLinear || options.luminance || options.max_value)
+        throw InputError(recording,
+                         "is a recording of a camera, whose numbers are linear: --transfer, "
+                         "--luminance and --max-value are for other footage");
 }
 
 }  // namespace stipple

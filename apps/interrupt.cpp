@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <string_view>
 
@@ -15,9 +16,11 @@ static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handl
 void remember(int signal) {
     constexpr std::string_view kText =
         "\nstipple: stopping when this step is done; a second Ctrl-C stops at once\n";
+    const int interrupted_errno = errno;
     received_signal.store(signal);
     // Whether or not somebody can read it.
     static_cast<void>(!write(STDERR_FILENO, kText.data(), kText.size()));
+    errno = interrupted_errno;
 }
 
 }  // namespace

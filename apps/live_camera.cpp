@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "apps/session_report.h"
-#include "capture/open_camera.h"
 
 namespace stipple {
 namespace {
@@ -16,11 +15,9 @@ constexpr std::chrono::milliseconds kPatience{50};
 LiveCamera::LiveCamera(const CameraArguments& camera, const SessionOptions& session,
                        std::size_t waiting_frames)
     : replay_(is_replay(camera)),
-      session_(
-          [camera, settings = camera_settings(camera)] {
-              return open_camera(camera.address, settings, camera.buffers);
-          },
-          session_options(camera, session)),
+      session_([camera, settings = camera_settings(
+                            camera)] { return open_picture_camera(camera, settings); },
+               session_options(camera, session)),
       layout_(session_.layout()),
       description_(session_.description()),
       most_(waiting_frames),

@@ -20,6 +20,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{50};
 constexpr double kRateAfterS = 1;
+constexpr std::size_t kMostLateListed = 1000;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// What the stream says of where its light came from: no address, no time.
@@ -41,6 +42,8 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
       light_(to_light_.shape().sites()) {
     say_warnings(camera_.description());
     say_warning(mosaic_warning(setup_, to_light_.filter()));
+    // Threads and code are in place before the first frame comes.
+    static_cast<void>(SlotEmulator(setup_).expose(light_));
     if (!arguments.preview.file.empty())
         preview_.emplace(arguments.preview.file,
                          PreviewDecoder(stream_header_of(setup_, ""), arguments.preview));
@@ -92,7 +95,10 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     const auto latency_us =
         static_cast<double>(monotonic_ns() - frame.record.host_monotonic_ns) * 1e-3;
     latencies_us_.push_back(static_cast<float>(latency_us));
-    if (latency_us > arguments_.late_after_slots * setup_.params.slot_us) ++late_slots_;
+    if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
+    ++late_slots_;
+    if (late_.size() < kMostLateListed)
+        late_.push_back({recording_.stats().slots - 1, frame.record.host_monotonic_ns, latency_us});
 }
 
 void LiveEmulation::compare_rates() {
@@ -113,6 +119,7 @@ void LiveEmulation::finish() {
     totals_ = camera_.stop();
     if (latencies_us_.empty()) {
         throw_if_stopped();
+        if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
         throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
     }
     compare_rates();
@@ -120,6 +127,7 @@ void LiveEmulation::finish() {
     if (preview_) preview_->finish();
     std::sort(latencies_us_.begin(), latencies_us_.end());
     if (failure_) throw DeviceError(*failure_);
+    if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
 
@@ -131,6 +139,11 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["lost"] = lost_json(totals_);
     json["held_slots"] = held_slots_;
     json["late_slots"] = late_slots_;
+    json["late"] = nlohmann::ordered_json::array();
+    for (const LateSlot& late : late_)
+        json["late"].push_back({{"slot", late.slot},
+                                {"arrival_monotonic_ns", late.arrival_ns},
+                                {"latency_us", late.latency_us}});
     json["queue_peak_frames"] = camera_.peak();
     json["latency_us"] = {{"median", sorted_quantile(latencies_us_, 0.5)},
                           {"p99", sorted_quantile(latencies_us_, 0.99)},

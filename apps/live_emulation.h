@@ -56,7 +56,12 @@ class LiveEmulation {
     void expose(std::int64_t arrival_ns);
     void compare_rates();
     void put_in_place();
-    /// Microseconds that a share of the frames took at most, from arrival to packet.
+
+    struct LateSlot {
+        std::int64_t slot;
+        std::int64_t arrival_ns;
+        double latency_us;
+    };
 
     const LiveArguments& arguments_;
     LiveCamera camera_;
@@ -69,6 +74,7 @@ class LiveEmulation {
     std::vector<float> latencies_us_;  ///< of each frame
     std::uint64_t held_slots_ = 0;
     std::uint64_t late_slots_ = 0;
+    std::vector<LateSlot> late_;  ///< the first of them
     FrameRate rate_;
     bool rates_compared_ = false;
     std::optional<DeviceError> failure_;  ///< of the disk

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -63,6 +64,21 @@ void add_run_options_to_all(CLI::App& app, RunOptions& options) {
                                              : add_run_options_to_all(*command, options);
 }
 
+/// The word of the command line that stands for a subcommand and is none, or null. CLI11 says of it
+/// only that a subcommand is missing.
+const char* unknown_subcommand(CLI::App& app, std::span<char* const> words) {
+    CLI::App* command = &app;
+    for (const char* word : words) {
+        const auto choices = command->get_subcommands({});
+        if (choices.empty() || word[0] == '-') return nullptr;
+        const auto chosen = std::ranges::find_if(
+            choices, [&](const CLI::App* choice) { return choice->check_name(word); });
+        if (chosen == choices.end()) return word;
+        command = *chosen;
+    }
+    return nullptr;
+}
+
 int main(int argc, char** argv) {
     RunOptions options;
     Action action;
@@ -75,10 +91,8 @@ int main(int argc, char** argv) {
                            add_timing, add_characterize, add_capture, add_demo})
         add(app, action);
     add_run_options_to_all(app, options);
-    const auto is_first = [&](const CLI::App* command) { return command->check_name(argv[1]); };
-    if (argc > 1 && argv[1][0] != '-' && std::ranges::none_of(app.get_subcommands({}), is_first))
-        return fail(kUsage,
-                    fmt::format("there is no subcommand \"{}\"; --help lists them", argv[1]));
+    if (const char* word = unknown_subcommand(app, {argv + 1, argv + argc}))
+        return fail(kUsage, fmt::format("there is no subcommand \"{}\"; --help lists them", word));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -28,9 +28,8 @@ void add_preview_arguments(CLI::App& command, PreviewArguments& arguments) {
         ->check(check_extension)
         ->type_name("FILE");
     command
-        .add_option(
-            "--preview-method", arguments.method,
-            "naive: at once, noisier; fast: as it will be decoded, but may cost frames (naive)")
+        .add_option("--preview-method", arguments.method,
+                    "naive: at once, noisier; fast: as it will be decoded, in seconds (naive)")
         ->check(CLI::IsMember({"fast", "naive"}))
         ->type_name("NAME");
     command

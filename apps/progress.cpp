@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
@@ -71,7 +70,8 @@ std::string Progress::line() const {
     text += fmt::format("{}/{} frames{}", done, *total_, rate_text);
     if (rate == 0) return text;
     const double left_s = done_at_s_ + (static_cast<double>(*total_) - exact) / rate - seconds();
-    const std::chrono::seconds left(static_cast<std::int64_t>(std::max(left_s, 0.0)));
+    if (left_s < 0) return text;  // this step takes longer than those before it
+    const std::chrono::seconds left(static_cast<std::int64_t>(left_s));
     return text + fmt::format(", {:%T} left", left);
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/error.h"
+#include "apps/footage_arguments.h"
 
 namespace stipple {
 namespace {
@@ -12,10 +12,7 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
     if (!is_recording(source))
         return std::variant<FootageReader, RecordingFootage>(std::in_place_type<FootageReader>,
                                                              source, options);
-    if (options.transfer != Transfer::kLinear || options.luminance || options.max_value)
-        throw InputError(source.string(),
-                         "is a recording of a camera, whose numbers are linear: --transfer, "
-                         "--luminance and --max-value are for other footage");
+    check_recording_options(source.string(), options);
     return std::variant<FootageReader, RecordingFootage>(std::in_place_type<RecordingFootage>,
                                                          source);
 }
@@ -37,8 +34,11 @@ std::optional<int> ReadAhead::slots() const {
 }
 
 ColourFilter ReadAhead::filter() const {
-    const auto* const recording = std::get_if<RecordingFootage>(&reader_);
-    return recording == nullptr ? ColourFilter::kNone : recording->filter();
+    return recording() == nullptr ? ColourFilter::kNone : recording()->filter();
+}
+
+const RecordingFootage* ReadAhead::recording() const {
+    return std::get_if<RecordingFootage>(&reader_);
 }
 
 void ReadAhead::start_reading() {

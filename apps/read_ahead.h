@@ -31,6 +31,9 @@ class ReadAhead {
     /// \throws InputError as FootageReader::read and RecordingFootage::read.
     std::span<const float> next();
 
+    /// The recording; null of other footage. Not while a frame is read: after `next` was empty.
+    [[nodiscard]] const RecordingFootage* recording() const;
+
   private:
     void start_reading();
 

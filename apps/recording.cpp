@@ -61,12 +61,17 @@ nlohmann::ordered_json recording_json(const Recording& recording, double seconds
 std::string recording_text(const Recording& recording, double seconds) {
     const SensorSetup& setup = recording.setup();
     const ReadoutStats& stats = recording.stats();
+    const std::string per_sample =
+        fmt::format(", 1 for {:.2f} values of light", recording.compression_ratio());
+    const std::string saturated =
+        fmt::format(", {:.2f} % of the samples saturated", 100 * recording.saturated_fraction());
+    const bool any = stats.samples > 0;
     std::string text = fmt::format(
-        "{} slots of {} x {} x {}, {} samples of {} bits, 1 for {:.2f} values of light\n"
-        "light throughput {:.1f} %, {:.2f} % of the samples saturated, {:.3g} slots/s",
+        "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
+        "light throughput {:.1f} %{}, {:.3g} slots/s",
         stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
-        setup.params.bit_depth, recording.compression_ratio(),
-        100 * setup.schedule.schedule.light_throughput(), 100 * recording.saturated_fraction(),
+        setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
+        100 * setup.schedule.schedule.light_throughput(), any ? saturated : "",
         static_cast<double>(stats.slots) / seconds);
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/number_check.h"
 #include "apps/size_argument.h"
 
 namespace stipple {
@@ -27,7 +28,7 @@ void add_scene_arguments(CLI::App& command, SceneOptions& options) {
             "width and height (320x240)")
         ->type_name("WxH");
     command.add_option("--seed", options.seed, "textures and arrangement (1)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_check(0))
         ->type_name("S");
 }
 

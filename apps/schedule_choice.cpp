@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/number_check.h"
 #include "apps/sensor_setup.h"
 #include "apps/size_argument.h"
 
@@ -30,7 +31,7 @@ void add_schedule_choice(CLI::App& command, ScheduleChoice& choice) {
             "width and height of the array (640x480)")
         ->type_name("WxH");
     command.add_option("--seed", choice.seed, "of random codes (1)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_check(0))
         ->type_name("S");
 }
 

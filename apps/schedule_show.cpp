@@ -31,7 +31,7 @@ void show(const ShowOptions& options, const RunOptions& run) {
     const ScheduleFigures figures = schedule_figures(schedule, options.schedule.shape);
     json.write(figures_json(name, figures));
     const std::string diagram =
-        options.output.empty() ? diagram_text(schedule, pixels, slots) : std::string();
+        options.output.empty() ? diagram_text(schedule, pixels, slots) : options.output + ": ";
     run.say(diagram + figures_text(name, figures));
 }
 

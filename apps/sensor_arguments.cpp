@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/number_check.h"
 #include "apps/timing_arguments.h"
 
 namespace stipple {
@@ -18,7 +19,7 @@ void add_sensor_arguments(CLI::App& command, SensorChoice& sensor, const char* s
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
     command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_check(0))
         ->type_name("S");
     add_overrun(command, sensor.overrun);
 }

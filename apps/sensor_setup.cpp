@@ -130,6 +130,11 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, Colour
     const SensorDescription sensor = read_sensor_file(choice);
     const FrameShape shape = array_of(sensor.params, footage, mosaic);
     if (sensor.timing) check_window(*sensor.timing, shape);
+    if (!sensor.timing && choice.overrun == OverrunPolicy::kDrop)
+        throw InputError("--overrun drop",
+                         fmt::format("the sensor '{}' has no section [timing], so nothing exceeds "
+                                     "a slot; `stipple timing` lists those that have one",
+                                     sensor.params.name));
     const ColumnAddressing addressing =
         sensor.timing ? sensor.timing->addressing : ColumnAddressing{};
     return {.params = sensor.params,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/coded_frames.h"
+#include "apps/footage_arguments.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
@@ -33,6 +34,7 @@ std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice
     if (!choice.format.empty())
         throw InputError("--format " + choice.format,
                          "a recording is served in the format it was recorded in; leave it out");
+    check_recording_options(choice.path, choice.reading);
     return std::make_unique<RecordingFrames>(choice.path, choice.frames_per_s);
 }
 

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "apps/unused_options.h"
+
 namespace stipple {
 
 void add_session_arguments(CLI::App& command, SessionOptions& options) {
@@ -26,6 +28,12 @@ void add_session_arguments(CLI::App& command, SessionOptions& options) {
         ->type_name("MS");
     command.add_flag_callback(
         "--no-reconnect", [&options] { options.reconnect = false; }, "end when the camera is gone");
+}
+
+void check_session_arguments(const CLI::App& command, const CameraArguments& camera) {
+    if (is_replay(camera))
+        refuse_options(command, {"--stall", "--no-reconnect"},
+                       "a replay has no camera that could fail; leave it out");
 }
 
 }  // namespace stipple

@@ -9,6 +9,7 @@
 
 #include "apps/account_text.h"
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/sensor_setup.h"
 #include "apps/size_argument.h"
 #include "apps/subcommands.h"
@@ -93,7 +94,7 @@ void add_timing(CLI::App& app, Action& action) {
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
     command->add_option("--seed", options->sensor.seed, "of the schedule (1)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_check(0))
         ->type_name("S");
     add_waveform_arguments(*command, options->waveform);
     command->footer(

@@ -17,6 +17,13 @@ class BadSettingsTest(ProgramTest):
         self.refuse(["--set read_noise", "unknown", "read_noise_e"], "--set", "read_noise=3")
         self.refuse(["unknown"], "--schedule", "tiled", "--set", "schedule.tile_row=3")
 
+    def test_an_unknown_key_that_is_like_none_with_the_known_ones(self):
+        message = "--set tile_rows: is unknown; known are exposure_slots, kind, name"
+        self.refuse([message], "--set", "schedule.tile_rows=8")
+
+    def test_a_policy_for_overruns_without_timing(self):
+        self.refuse(["--overrun drop", "[timing]", "stipple timing"], "--overrun", "drop")
+
     def test_a_value_out_of_range_with_the_range(self):
         for setting, limits in (("bit_depth=17", "1..16"), ("photons_per_unit=0", "0.001"),
                                 ("read_noise_e=-1", "0..100000"), ("slot_us=nan", "slot_us")):
@@ -58,7 +65,7 @@ class BadSettingsTest(ProgramTest):
                                (["--set rounds", "0..100"], ["--set", "rounds=-1"]),
                                (["rounds", "unknown"], ["--set", "rounds=2", "--method", "naive"]),
                                (["mine.toml:2", "0..10000"], ["--options", "mine.toml"]),
-                               (["there is no such file"], ["--options", "yours.toml"])):
+                               (["yours.toml", "No such file"], ["--options", "yours.toml"])):
             self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy",
                        *([] if "--method" in options else ["--method", "fast"]), *options)
 
@@ -69,8 +76,14 @@ class BadSettingsTest(ProgramTest):
     def test_numbers_of_the_command_line(self):
         for option, value in (("--max-value", "nan"), ("--max-value", "0"), ("--max-value", "inf"),
                               ("--seed", "-1"), ("--seed", "1.5"), ("--threads", "-1"),
-                              ("--transfer", "log")):
-            self.refuse([option], option, value, code=USAGE)
+                              ("--seed", str(2**64)), ("--transfer", "log")):
+            message = self.fails(USAGE, [option], "emulate", "light.npy", "-o", "clip.stipple",
+                                 option, value)
+            self.assertLess(len(message), 200)
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--seed", str(2**64 - 1))
+        for option, value in (("--timeout", "nan"), ("--timeout", "-1"), ("--until", "0")):
+            self.fails(USAGE, [option, value], "decode", "clip.stipple", "-o", "out.npy", option,
+                       value)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from program import INPUT, ProgramTest
+from program import INPUT, OK, ProgramTest
 
 
 class BadStreamsTest(ProgramTest):
@@ -35,6 +35,14 @@ class BadStreamsTest(ProgramTest):
         path = self.folder / self.write_stream()
         path.write_bytes(path.read_bytes()[:70])
         self.refuse("clip.stipple", "header")
+
+    def test_a_stream_without_samples_is_decoded_to_black_with_a_warning(self):
+        emulate = ["emulate", self.write_flat("light.npy", 3), "-o", "clip.stipple"]
+        self.assertIn("no exposure ended", self.succeed(*emulate, "--schedule", "full4x"))
+        done = self.run_program("decode", "clip.stipple", "-o", "out.npy", "--method", "fast")
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertIn("clip.stipple: holds no sample", done.stderr)
+        self.assertEqual(self.array("out.npy").max(), 0)
 
     def damaged_stream(self):
         """A stream of 30 slots with a changed byte in a packet in its middle."""

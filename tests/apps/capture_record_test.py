@@ -155,6 +155,22 @@ class CaptureRecordTest(ProgramTest):
         self.assertIn("stop that program", control["fix"])
         self.end(recorder)
 
+    def test_the_doctor_refuses_what_it_cannot_look_at(self):
+        for address in ("foo", "xyz:1", "gige", "gige:foo"):
+            said = [self.fails(INPUT, [address], *words) for words in (
+                ("capture", "doctor", address), ("capture", "record", address, "-o", "x"))]
+            self.assertEqual(*said)
+        for address in ("v4l2:/dev/null", "replay:missing"):
+            self.fails(INPUT, [address, "gige:IP or usb:SERIAL"], "capture", "doctor", address)
+
+    def test_the_doctor_says_once_what_to_do_of_a_camera_that_does_not_answer(self):
+        findings = self.figures("capture", "doctor", "gige:127.254.254.253")["findings"]
+        subjects = [one["subject"] for one in findings]
+        self.assertEqual(len(subjects), len(set(subjects)), subjects)
+        (camera,) = [one for one in findings if one["subject"] == "camera"]
+        self.assertEqual((camera["level"], camera["fix"]), ("problem", ""))
+        self.assertIn("check power, cable", camera["fact"])
+
     def test_what_cannot_be_is_refused(self):
         self.serve()
         camera = ("capture", "record", self.address, "-o", "clip.strec")

@@ -41,7 +41,8 @@ class CommandLineTest(ProgramTest):
                      ["decode", "c.stipple", "-o", "x", "--method", "magic"],
                      ["compare", "a"], ["compare", "a", "b", "--margin", "-1"]):
             self.fails(USAGE, ["--help"], *line)
-        self.fails(USAGE, ['"dance"'], "dance")
+        for line in (["dance"], ["schedule", "dance"], ["capture", "dance", "--force"]):
+            self.fails(USAGE, ['there is no subcommand "dance"', "--help"], *line)
 
     def test_unusable_inputs_exit_with_1_and_say_which(self):
         self.fails(INPUT, ["stipple: missing.stipple: "], "info", "missing.stipple")

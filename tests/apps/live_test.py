@@ -127,6 +127,12 @@ class PreviewTest(LiveTest):
         live = ("capture", "live", "replay:light.npy", "-o", "clip.npy", "--preview")
         self.fails(USAGE, ["neither a .png nor a .npy"], *live, "now.jpg")
         self.fails(USAGE, ["--preview-size"], *live, "now.png", "--preview-size", "big")
+        for option, value in (("--preview-size", "8x8"), ("--preview-method", "fast")):
+            self.fails(USAGE, [option, "add --preview FILE"], *live[:-1], option, value)
+        for verb in ("live", "record"):
+            for option in (("--stall", 0), ("--no-reconnect",)):
+                self.fails(USAGE, [option[0], "a replay has no camera"], "capture", verb,
+                           "replay:light.npy", "-o", "x", *option)
         self.fails(INPUT, ["nowhere"], *live, "nowhere/now.png")
         self.fails(INPUT, ["clip.npy: is the output"], *live, "./clip.npy")
         self.fails(INPUT, ["light.npy", "exists already"], *live, "light.npy")

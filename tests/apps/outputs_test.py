@@ -40,6 +40,18 @@ class OutputsTest(ProgramTest):
     def test_an_output_in_a_folder_that_does_not_exist(self):
         self.fails(INPUT, ["nowhere/out.npy", "nowhere"], *SYNTH, "nowhere/out.npy")
 
+    def test_an_output_that_names_no_file(self):
+        self.write_flat("light.npy")
+        for name in ("-", ".", "clip/"):
+            self.fails(INPUT, [f'output "{name}"', "name"], "emulate", "light.npy", "-o", name)
+
+    def test_a_film_of_any_shape(self):
+        for rows, cols in ((1, 1), (1, 40), (40, 1), (40, 2), (40, 3), (5, 7)):
+            self.write_stream(f"{rows}x{cols}.stipple", slots=4, rows=rows, cols=cols)
+            self.succeed("decode", f"{rows}x{cols}.stipple", "-o", f"{rows}x{cols}.mp4",
+                         "--method", "naive")
+            (self.folder / "light.npy").unlink()
+
     def test_an_output_of_unknown_kind(self):
         self.fails(INPUT, ["out.avi", ".npy", ".mp4"], *SYNTH, "out.avi")
 

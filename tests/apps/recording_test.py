@@ -104,6 +104,31 @@ class RecordingTest(ProgramTest):
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
         self.assertEqual((figures["slots"], figures["cut_off"]), (5, True))
 
+    def test_what_the_emulator_finds_missing_in_a_recording_is_said(self):
+        self.record()
+        clip, whole = self.folder / "clip.strec", (self.folder / "clip.strec").read_bytes()
+        starts = [found.start() for found in re.finditer(rb"\xc5FRM", whole)][1:]  # of frames
+
+        def emulate(content):
+            clip.write_bytes(content)
+            done = self.run_program("emulate", "clip.strec", "-o", "a.stipple", "--truth", "a.npy",
+                                    "--force", "-q")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stderr
+
+        self.assertEqual(emulate(whole), "")
+        self.assertIn("clip.strec: was cut off", emulate(whole[:starts[4] + 100]))
+        self.assertEqual(len(self.array("a.npy")), 4)
+        flipped = bytearray(whole)
+        flipped[starts[3] - 1] ^= 0xFF  # the last sample of frame 2
+        said = emulate(flipped)
+        self.assertIn("clip.strec: is damaged (1 of its blocks cannot be read), lacks 1 frames", said)
+        light = (self.dn / 65535).astype(np.float32)
+        light[2] = light[1]  # the frame before stands in
+        np.testing.assert_array_equal(self.array("a.npy"), light)
+        (self.folder / "none.strec").write_bytes(whole[:starts[0] + 50])
+        self.fails(INPUT, ["none.strec", "no frame"], "emulate", "none.strec", "-o", "x.stipple")
+
     def test_a_full_disk_keeps_what_was_recorded(self):
         shell = 'ulimit -f 3 && exec "$0" "$@"'  # 3 blocks of 1024 bytes: two frames or so
         done = subprocess.run(["bash", "-c", shell, PROGRAM, "capture", "record",
@@ -115,6 +140,23 @@ class RecordingTest(ProgramTest):
         self.assertGreaterEqual(figures["slots"], 1)
         np.testing.assert_array_equal(
             self.array("again.npy"), (self.dn / 65535).astype(np.float32)[:figures["slots"]])
+
+    def test_footage_that_cannot_be_read_further_is_bad_input_and_leaves_what_came_before(self):
+        light = np.full((6, 5, 8), 0.5, np.float32)
+        light[3, 1, 2] = np.nan
+        np.save(self.folder / "nan.npy", light)
+        for verb, output in (("record", "a.strec"), ("live", "a.stipple")):
+            done = self.run_program("capture", verb, "replay:nan.npy", "-o", output, *FAST)
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            self.assertIn("nan.npy: frame 3", done.stderr)
+            self.assertNotIn("camera", done.stderr)
+        self.assertEqual(self.figures("info", "a.stipple")["slots"], 3)
+        replayed = self.figures("capture", "replay", "a.strec", "-o", "again.npy")
+        self.assertEqual((replayed["slots"], replayed["cut_off"]), (3, False))
+
+    def test_a_recording_without_a_frame_is_no_success(self):
+        self.fails(DEVICE, ["replay:light.npy: no frame came"], "capture", "record",
+                   "replay:light.npy", "-o", "x.strec", "--seconds", 1e-9)
 
     def test_other_files_are_refused(self):
         self.fails(INPUT, ["light.npy", "not a recording"], "capture", "replay", "light.npy", "-o",

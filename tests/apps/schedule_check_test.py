@@ -61,12 +61,20 @@ class ScheduleCheckTest(ProgramTest):
         text = self.succeed(*self.decode("clip.stipple", "out.npy", "--check-schedule"))
         self.assertIn("follow the schedule", text)
 
-    def test_the_dark_does_not_tell(self):
-        self.write_flat("dark.npy", SLOTS, ROWS, COLS, 0)
-        self.record("clip.stipple", self.lengths, "dark.npy")
+    def warning_of_flat(self, level):
+        self.write_flat("flat.npy", SLOTS, ROWS, COLS, level)
+        self.record("clip.stipple", self.lengths, "flat.npy")
         done = self.run_program(*self.decode("clip.stipple", "out.npy", "--check-schedule"))
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("cannot tell", done.stderr)
+        return done.stderr
+
+    def test_the_dark_does_not_tell(self):
+        self.assertIn("cannot tell", self.warning_of_flat(0))
+
+    def test_saturated_samples_do_not_tell(self):
+        warning = self.warning_of_flat(100)
+        self.assertIn("cannot tell", warning)
+        self.assertIn("saturated", warning)
 
     def test_another_schedule_is_refused_and_a_plain_decode_says_where_to_look(self):
         self.record("stated.stipple", self.lengths)

@@ -59,7 +59,8 @@ class ShowTest(ProgramTest):
 
     def test_pictures(self):
         for name in ("random", "two_bucket", "global_flutter", "rolling"):
-            self.succeed("schedule", "show", name, "-o", f"{name}.svg", "--size", "32x32")
+            text = self.succeed("schedule", "show", name, "-o", f"{name}.svg", "--size", "32x32")
+            self.assertTrue(text.startswith(f"{name}.svg: {name}: tile of "), text)
             picture = ElementTree.parse(self.folder / f"{name}.svg").getroot()
             self.assertTrue(picture.tag.endswith("svg"))
         self.succeed("schedule", "show", "random", "-o", "random.png", "--pixels", "16")

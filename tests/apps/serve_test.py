@@ -129,6 +129,16 @@ class ServeTest(ProgramTest):
         self.assertIn("--mode coded", done.stderr)
         self.assertNotIn("x.stipple", self.names())
 
+    def test_a_coded_stream_is_not_taken_for_pictures(self):
+        address = self.serve(self.scene(), "--mode", "coded")
+        for verb in ("live", "record"):
+            done = self.run_program("capture", verb, "gige:" + address, "-o", "x.out", "--frames", 5)
+            if BUILT_WITHOUT in done.stderr:
+                self.skipTest(BUILT_WITHOUT)
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            self.assertIn(f"capture record --coded gige:{address}", done.stderr)
+            self.assertEqual(self.names(), ["scene.npy"])
+
     def test_a_recording_is_served_with_the_same_bytes_and_stamps(self):
         dn = np.random.default_rng(5).integers(0, 65536, (12, 40, 64)).astype(np.uint16)
         self.write_array("dn.npy", dn, np.uint16)
@@ -142,6 +152,46 @@ class ServeTest(ProgramTest):
         for name in ("device_ns", "width", "height", "payload_hash"):
             self.assertEqual([record[name] for record, _ in two],
                              [record[name] for record, _ in one], name)
+
+    def test_mosaics_are_served_and_come_back_bit_by_bit(self):
+        random = np.random.default_rng(6)
+        for name, bits, kind in (("BayerRG8", 8, np.uint8), ("BayerGR10p", 10, None),
+                                 ("BayerBG12p", 12, None), ("BayerGB16", 16, np.uint16)):
+            once, twice = name + "_once.strec", name + "_twice.strec"
+            dn = random.integers(0, 2**bits, (5, 12, 16)).astype(np.uint16)
+            np.save(self.folder / "light.npy", (dn / (2**bits - 1)).astype(np.float32))
+            self.record(self.serve("light.npy", "--format", name, "--fps", 100), once,
+                        "--frames", 5)
+            self.record(self.serve(once), twice, "--frames", 5)
+            if kind is None:  # one string of bits, each sample from its lowest
+                bit = dn.reshape(5, -1, 1) >> np.arange(bits) & 1
+                wanted = np.packbits(bit.reshape(5, -1).astype(np.uint8), axis=1, bitorder="little")
+            else:
+                wanted = dn.astype(kind)
+            for file in (once, twice):
+                frames = frames_of(self.folder / file)
+                self.assertEqual([payload for _, payload in frames],
+                                 [frame.tobytes() for frame in wanted], name)
+                self.assertEqual({record["format"] for record, _ in frames}, {name.encode()})
+
+    def test_colour_behind_a_filter_array_is_its_mosaic(self):
+        dn = np.random.default_rng(7).integers(0, 256, (3, 8, 12, 3)).astype(np.uint8)
+        self.write_array("colour.npy", dn, np.uint8)
+        self.record(self.serve("colour.npy", "--format", "BayerGB8"), "one.strec", "--frames", 3)
+        wanted = dn[..., 1].copy()  # G B over R G
+        wanted[:, 0::2, 1::2] = dn[:, 0::2, 1::2, 2]
+        wanted[:, 1::2, 0::2] = dn[:, 1::2, 0::2, 0]
+        self.assertEqual([payload for _, payload in frames_of(self.folder / "one.strec")],
+                         [frame.tobytes() for frame in wanted])
+
+    def test_mosaics_that_cannot_be_are_refused(self):
+        np.save(self.folder / "odd.npy", np.zeros((2, 7, 12), np.uint8))
+        self.fails(INPUT, ["odd.npy", "even"], "capture", "serve", "odd.npy", "--format", "BayerRG8")
+        np.save(self.folder / "cells.npy", np.zeros((2, 8, 6), np.uint8))
+        self.fails(INPUT, ["BayerRG10p", "BayerRG12p"], "capture", "serve", "cells.npy", "--format",
+                   "BayerRG10p")  # 6 x 10 bits
+        self.fails(INPUT, ["BayerRG10MIPI", "BayerRG8"], "capture", "serve", "cells.npy",
+                   "--format", "BayerRG10MIPI")
 
     def test_arv_tool_finds_reads_and_sets(self):
         address = self.serve(self.scene(), "--serial", "ab12")
@@ -175,6 +225,21 @@ class ServeTest(ProgramTest):
         self.fails(INPUT, ["no.such.sensor"], "capture", "serve", scene, "--mode", "coded", "--sensor",
                    "no.such.sensor")
         self.fails(USAGE, ["--fault-drop"], "capture", "serve", scene, "--fault-drop", 2)
+        for serial in ("", "x" * 16):
+            self.fails(USAGE, ["--serial", f"{len(serial)} bytes"], "capture", "serve", scene,
+                       "--serial", serial)
+
+    def test_options_of_another_mode_are_refused(self):
+        serve = ("capture", "serve", self.scene())
+        for option, value in (("--sensor", "ideal"), ("--schedule", "tiled"), ("--seed", 3),
+                              ("--set", "bit_depth=8"), ("--overrun", "stretch")):
+            self.fails(USAGE, [option, "--mode coded"], *serve, option, value)
+        self.fails(USAGE, ["--format", "--mode frames"], *serve, "--mode", "coded", "--format",
+                   "Mono8")
+        self.fails(USAGE, ["--fault-gap-at requires --fault-gap"], *serve, "--fault-gap-at", 3)
+        self.succeed("capture", "record", "replay:scene.npy", "-o", "clip.strec")
+        self.fails(INPUT, ["clip.strec", "numbers are linear"], "capture", "serve", "clip.strec",
+                   "--max-value", 0.5)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,50 @@
+#include "apps/number_check.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+namespace stipple {
+namespace {
+
+template <typename Number>
+std::optional<Number> number_of(const std::string& text) {
+    Number value{};
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end) return {};
+    return value;
+}
+
+template <typename Number>
+NumberCheck range_check(std::string kind, Number least, Number most) {
+    return [=](const std::string& text) -> std::string {
+        const auto value = number_of<Number>(text);
+        if (value && *value >= least && *value <= most) return {};
+        if (most == std::numeric_limits<Number>::max())
+            return fmt::format("\"{}\" is not {} of {} or more", text, kind, least);
+        return fmt::format("\"{}\" is not {} from {} to {}", text, kind, least, most);
+    };
+}
+
+}  // namespace
+
+NumberCheck number_check(double least, double most) {
+    return range_check("a number", least, most);
+}
+
+NumberCheck positive_check() {
+    return [](const std::string& text) {
+        const auto value = number_of<double>(text);
+        const bool usable = value && *value > 0 && *value <= std::numeric_limits<double>::max();
+        return usable ? std::string() : fmt::format("\"{}\" is not a number above 0", text);
+    };
+}
+
+NumberCheck whole_check(std::uint64_t least, std::uint64_t most) {
+    return range_check("a whole number", least, most);
+}
+
+}  // namespace stipple
