@@ -64,8 +64,11 @@ class GigeAravisTest : public ::testing::Test {
             arv_camera_create_stream(camera_.get(), nullptr, nullptr, &error));
         EXPECT_EQ(take(error), "");
         if (!stream) return {};
+        // Where the machine pauses this client and the socket overflows, all that is missing is
+        // asked for again, and waited for.
         g_object_set(stream.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,
-                     "socket-buffer-size", 4 << 20, nullptr);
+                     "socket-buffer-size", 4 << 20, "packet-request-ratio", 1.0, "frame-retention",
+                     500'000, nullptr);
         const Owned<ArvChunkParser> parser(arv_camera_create_chunk_parser(camera_.get()));
         const auto payload = arv_camera_get_payload(camera_.get(), &error);
         for (int i = 0; i < 50; ++i)
@@ -117,8 +120,9 @@ class GigeAravisTest : public ::testing::Test {
         EXPECT_EQ(good, frames) << format;
     }
 
+    // So small that a socket holds a dozen frames, whatever the machine's limit.
     std::unique_ptr<NoiseFrames> source_ = std::make_unique<NoiseFrames>(
-        320, 240, std::vector<std::string>{"Mono8", "Mono10p", "Mono12p", "Mono16"}, 40);
+        128, 64, std::vector<std::string>{"Mono8", "Mono10p", "Mono12p", "Mono16"}, 40);
     std::unique_ptr<GigeServing> serving_;
     Owned<ArvCamera> camera_;
     ArvDevice* device_ = nullptr;
@@ -159,7 +163,7 @@ TEST_F(GigeAravisTest, ReorderedAndDoubledPacketsMakeWholeFrames) {
 
 TEST_F(GigeAravisTest, PacketsLostForGoodMakeIncompleteFrames) {
     GigeServerOptions options;
-    options.faults.lose = 0.01;
+    options.faults.lose = 0.05;
     open(options);
     arv_gv_device_set_packet_size(ARV_GV_DEVICE(device_), 1500, nullptr);
     std::size_t incomplete = 0;
@@ -194,7 +198,7 @@ TEST_F(GigeAravisTest, ARegionCanBeSetAndIsCutOut) {
     const Bytes full = source_->bytes(received[5].id - 1, *pixel_format_named("Mono16"));
     Bytes region;
     for (std::ptrdiff_t row = 10; row < 30; ++row)
-        region.insert(region.end(), full.begin() + row * 640 + 16, full.begin() + row * 640 + 144);
+        region.insert(region.end(), full.begin() + row * 256 + 16, full.begin() + row * 256 + 144);
     EXPECT_EQ(received[5].bytes, region);
 }
 
