@@ -50,12 +50,14 @@ class CollaborativeSolver {
         find_groups(iteration);
         filter_groups(noisy_, pilot_, groups_, sigma, filtered_);
         std::swap(filtered_, pilot_);
+        const bool last = iteration + 1 == options_.iterations;
+        if (!last) extrapolate();
         for_each_slot([&](int slot) {
-            restore_light(std::as_const(pilot_).frame(slot), shape().planes, offset_,
-                          x_.frame(slot));
+            restore_light(std::as_const(last ? pilot_ : filtered_).frame(slot), shape().planes,
+                          offset_, x_.frame(slot));
         });
         refresh_variances(measurements_, noise_, x_.data());
-        if (iteration + 1 == options_.iterations) return;
+        if (last) return;
         feed_back();
         draw_to_samples(sigma);
     }
@@ -94,6 +96,18 @@ class CollaborativeSolver {
                                near ? options_.mosaic.near : options_.matching);
     }
 
+    /// Replaces the filtered estimate before the last one: the last is led on by a share of what
+    /// separates the two (heavy ball; Polyak, USSR Comput. Math. Math. Phys. 4(5), 1964), as
+    /// voxels without samples follow slowly.
+    void extrapolate() {
+        for_each_slot([&](int slot) {
+            const auto now = std::as_const(pilot_).frame(slot);
+            const auto before = filtered_.frame(slot);
+            for (std::size_t i = 0; i < now.size(); ++i)
+                before[i] = now[i] + options_.momentum * (now[i] - before[i]);
+        });
+    }
+
     /// What the filter has taken from the samples is added to them, as in generalised alternating
     /// projection (Liao et al., SIAM J. Imaging Sci. 7(2), 2014), but fades, so that noise does
     /// not come back with it.
@@ -103,9 +117,9 @@ class CollaborativeSolver {
         for_each_slot([&](int slot) {
             const std::size_t begin = index(slot) * shape().sites();
             for (std::size_t i = begin; i < begin + shape().sites(); ++i) {
-                const float residual = sampled_[i] - explained.data()[i];
                 const bool saturated = (measurements_.state[i] & Measurements::kSaturated) != 0;
-                if (saturated && residual < 0) continue;
+                float residual = sampled_[i] - explained.data()[i];
+                if (saturated) residual = std::max(residual, 0.0F);
                 float& sum = measurements_.sum[i];
                 sum = sampled_[i] + options_.feedback_kept * (sum - sampled_[i]) +
                       options_.feedback * residual;

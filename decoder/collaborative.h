@@ -42,6 +42,7 @@ struct CollaborativeOptions {
     /// iteration.
     float feedback = 0.25F;
     float feedback_kept = 0.9F;
+    float momentum = 0.6F;  ///< share of the last step of the estimate that is taken again
     MosaicFilterOptions mosaic = {};
 };
 

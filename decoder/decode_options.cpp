@@ -109,6 +109,7 @@ void read_options(Config& config, CollaborativeOptions& best) {
     read_number(config, "light_offset", 1e-4, 1e3, best.light_offset);
     read_number(config, "feedback", 0, 2, best.feedback);
     read_number(config, "feedback_kept", 0, 1, best.feedback_kept);
+    read_number(config, "momentum", 0, 1, best.momentum);
     read_integer(config, "mosaic.iterations", 0, 10000, best.mosaic.iterations);
     read_number(config, "mosaic.first_sigma", 1e-3, 10, best.mosaic.first_sigma);
     read_integer(config, "mosaic.near_iterations", 0, 10000, best.mosaic.near_iterations);
