@@ -75,6 +75,7 @@ class CameraRecording {
     void take(const Outage& outage) { say(outage); }
     void take(const Recovery& recovery) { say(recovery); }
     void take(const DeviceLost& lost) {
+        say_warning(lost.warning);
         at_end_ = lost.at_end;
         bad_file_ = lost.bad_file;
         const bool gone = !at_end_ && !bad_file_;

@@ -87,6 +87,12 @@ void check_mode(const CLI::App& command, const ServedSourceChoice& source) {
                        "is of the sensor of --mode coded; add that or leave this out");
 }
 
+void check_faults(const CLI::App& command, const GvspFaults& faults) {
+    if (faults.drop + faults.lose + faults.duplicate > 0) return;
+    refuse_options(command, {"--fault-seed"},
+                   "no packet is hit; add --fault-drop, --fault-lose or --fault-duplicate");
+}
+
 }  // namespace
 
 void add_capture_serve(CLI::App& capture, Action& action) {
@@ -106,6 +112,7 @@ void add_capture_serve(CLI::App& capture, Action& action) {
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
     command->callback([command, options, &action] {
         check_mode(*command, options->source);
+        check_faults(*command, options->server.faults);
         action = [options](const RunOptions& run) { serve(*options, run); };
     });
 }

@@ -59,6 +59,7 @@ void LiveCamera::run(const std::stop_token& stop) {
         if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
         if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
         if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
+            say_warning(lost->warning);
             const std::lock_guard lock(mutex_);
             end_ = *lost;
             changed_.notify_all();

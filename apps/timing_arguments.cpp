@@ -9,11 +9,13 @@ namespace stipple {
 
 void add_waveform_arguments(CLI::App& command, WaveformOptions& options) {
     constexpr int kMostSlots = 1'000'000;
-    command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
-        ->type_name("FILE");
+    auto* file =
+        command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
+            ->type_name("FILE");
     command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
         ->check(CLI::Range(1, kMostSlots))
-        ->type_name("N");
+        ->type_name("N")
+        ->needs(file);
 }
 
 std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,

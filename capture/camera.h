@@ -37,6 +37,7 @@ struct DeviceLost {
     bool at_end = false;  ///< the latter: no fault
     /// Of a replay: why its file cannot be used any further.
     std::optional<InputError> bad_file = {};
+    std::string warning = {};  ///< of a replay: what is wrong with its file, which is at its end
 };
 
 /// What `Camera::wait` comes back with. Of the frame's record the camera fills what it knows:

@@ -1,5 +1,7 @@
 #include "capture/recording/recording_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -208,6 +210,15 @@ const std::optional<RecordingEnd>& RecordingReader::end() const {
 
 const RecordingReport& RecordingReader::report() const {
     return impl_->report;
+}
+
+std::vector<std::string> RecordingReader::faults() const {
+    std::vector<std::string> faults;
+    if (!report().damage.empty())
+        faults.push_back(
+            fmt::format("is damaged ({} of its blocks cannot be read)", report().missing_blocks));
+    if (!end()) faults.emplace_back("was cut off before its end");
+    return faults;
 }
 
 bool RecordingReader::next(CapturedFrame& frame) {

@@ -49,6 +49,9 @@ class RecordingReader {
     /// The end record, once `next` has returned false; nothing if the recording was cut off.
     [[nodiscard]] const std::optional<RecordingEnd>& end() const;
     [[nodiscard]] const RecordingReport& report() const;
+    /// What is wrong with the file, once `next` has returned false: damage, no end. Empty if
+    /// nothing is.
+    [[nodiscard]] std::vector<std::string> faults() const;
     /// Begins again with the first frame; the report too. Not possible with a pipe.
     void rewind();
 

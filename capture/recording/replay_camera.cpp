@@ -11,6 +11,7 @@
 #include "capture/recording/replay_source.h"
 #include "capture/setting_value.h"
 #include "core/error.h"
+#include "core/joined.h"
 
 namespace stipple {
 namespace {
@@ -82,6 +83,7 @@ class ReplayCamera final : public Camera {
     void number_frame();
     void schedule_frame();
     CapturedFrame deliver();
+    [[nodiscard]] DeviceLost end() const;
 
     std::string path_;
     ReplaySettings settings_;
@@ -164,11 +166,18 @@ CapturedFrame ReplayCamera::deliver() {
     return std::exchange(coming_, {});
 }
 
+DeviceLost ReplayCamera::end() const {
+    DeviceLost end{.reason = path_ + " is at its end", .at_end = true};
+    const auto faults = source_.faults();
+    if (!faults.empty()) end.warning = fmt::format("{}: {}", path_, joined(faults));
+    return end;
+}
+
 Arrival ReplayCamera::wait(std::chrono::milliseconds timeout) {
     const auto give_up = Clock::now() + timeout;
     try {
         for (;;) {
-            if (!has_coming_ && !load()) return DeviceLost{path_ + " is at its end", true};
+            if (!has_coming_ && !load()) return end();
             if (!paced()) return deliver();
             if (due_ > give_up) {
                 std::this_thread::sleep_until(give_up);

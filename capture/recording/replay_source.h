@@ -29,6 +29,10 @@ class ReplaySource {
     /// The next frame; of footage, id counts from 0. False at the end. \throws InputError.
     bool next(CapturedFrame& frame);
     void rewind();
+    /// What is wrong with a recording that is at its end; empty if nothing is.
+    [[nodiscard]] std::vector<std::string> faults() const {
+        return recording_ ? recording_->faults() : std::vector<std::string>();
+    }
 
   private:
     void quantise(std::vector<std::uint8_t>& payload) const;

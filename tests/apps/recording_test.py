@@ -104,6 +104,19 @@ class RecordingTest(ProgramTest):
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
         self.assertEqual((figures["slots"], figures["cut_off"]), (5, True))
 
+    def test_a_replay_says_that_its_recording_was_cut_off(self):
+        self.record()
+        clip = self.folder / "clip.strec"
+        whole = clip.read_bytes()
+        for content, said in ((whole, ""), (whole[:-10], "clip.strec: was cut off")):
+            clip.write_bytes(content)
+            for command, output in (("live", "a.stipple"), ("record", "b.strec")):
+                done = self.run_program("capture", command, "replay:clip.strec", "-o", output,
+                                        "--force", "-q")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.stderr.count("was cut off"), 1 if said else 0, done.stderr)
+                self.assertIn(said, done.stderr)
+
     def test_what_the_emulator_finds_missing_in_a_recording_is_said(self):
         self.record()
         clip, whole = self.folder / "clip.strec", (self.folder / "clip.strec").read_bytes()

@@ -237,6 +237,7 @@ class ServeTest(ProgramTest):
         self.fails(USAGE, ["--format", "--mode frames"], *serve, "--mode", "coded", "--format",
                    "Mono8")
         self.fails(USAGE, ["--fault-gap-at requires --fault-gap"], *serve, "--fault-gap-at", 3)
+        self.fails(USAGE, ["--fault-seed", "--fault-drop"], *serve, "--fault-seed", 3)
         self.succeed("capture", "record", "replay:scene.npy", "-o", "clip.strec")
         self.fails(INPUT, ["clip.strec", "numbers are linear"], "capture", "serve", "clip.strec",
                    "--max-value", 0.5)

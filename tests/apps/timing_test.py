@@ -158,6 +158,8 @@ class WaveformTest(ProgramTest):
         self.succeed("timing", "--sensor", "vita", *SMALL, "--vcd", "readout.vcd")
         self.fails(INPUT, ["readout.vcd", "--force"], "timing", "--sensor", "vita", *SMALL,
                    "--vcd", "readout.vcd")
+        self.fails(USAGE, ["--vcd-slots requires --vcd"], "timing", "--sensor", "vita", *SMALL,
+                   "--vcd-slots", 3)
 
 
 if __name__ == "__main__":
