@@ -17,7 +17,7 @@ namespace stipple {
 struct MosaicFilterOptions {
     int iterations = 60;
     float first_sigma = 0.2F;
-    int near_iterations = 18;
+    int near_iterations = 6;
     MatchingOptions near{.slots = 2, .own_radius = 8, .path_radius = 2};
 };
 
