@@ -1,8 +1,7 @@
 #include "apps/camera_arguments.h"
 
 #include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
+#include "apps/number_check.h"
 
 #include "capture/open_camera.h"
 #include "core/config.h"
@@ -10,23 +9,22 @@
 
 namespace stipple {
 
-void add_camera_arguments(CLI::App& command, CameraArguments& arguments) {
+void add_camera_arguments(Command& command, CameraArguments& arguments) {
     command
         .add_option("ADDRESS", arguments.address,
                     "gige:IP, usb:SERIAL, v4l2:/dev/videoN or replay:FILE")
-        ->required();
+        .required();
     command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
-        ->type_name("FILE");
+        .type_name("FILE");
     command
-        .add_option("--set", arguments.settings,
-                    "set a feature or control of the camera, over --config")
-        ->allow_extra_args(false)
-        ->type_name("FEATURE=VALUE");
+        .add_list("--set", arguments.settings,
+                  "set a feature or control of the camera, over --config")
+        .type_name("FEATURE=VALUE");
     command
         .add_option("--buffers", arguments.buffers.frames,
                     "frames that the host can hold while we are busy (32)")
-        ->check(CLI::Range(2, 1024))
-        ->type_name("N");
+        .check(whole_check(2, 1024))
+        .type_name("N");
 }
 
 CameraSettings camera_settings(const CameraArguments& arguments) {

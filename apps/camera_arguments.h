@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "capture/camera.h"
 #include "capture/capture_session.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stipple {
 
@@ -22,7 +19,7 @@ struct CameraArguments {
 };
 
 /// `ADDRESS`, `--config`, `--set` and `--buffers`.
-void add_camera_arguments(CLI::App& command, CameraArguments& arguments);
+void add_camera_arguments(Command& command, CameraArguments& arguments);
 
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);

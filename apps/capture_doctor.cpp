@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -73,16 +72,16 @@ void doctor(const std::string& address, const RunOptions& run) {
 
 }  // namespace
 
-void add_capture_doctor(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand(
+void add_capture_doctor(Command& capture, Action& action) {
+    Command command = capture.add_command(
         "doctor", "What of this machine, or of a camera, would cost frames, with its fix");
     const auto address = std::make_shared<std::string>();
-    command->add_option("ADDRESS", *address, "a camera to look at: gige:IP or usb:SERIAL");
-    command->footer(
+    command.add_option("ADDRESS", *address, "a camera to look at: gige:IP or usb:SERIAL");
+    command.footer(
         "Examples:\n"
         "  stipple capture doctor\n"
         "  stipple capture doctor gige:192.168.0.5");
-    command->callback([address, &action] {
+    command.callback([address, &action] {
         action = [address](const RunOptions& run) { doctor(*address, run); };
     });
 }

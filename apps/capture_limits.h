@@ -3,9 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace CLI {
-class App;
-}
+#include "apps/command_line.h"
 
 namespace stipple {
 
@@ -25,6 +23,6 @@ struct CaptureLimits {
 };
 
 /// `--frames` and `--seconds`.
-void add_capture_limits(CLI::App& command, CaptureLimits& limits);
+void add_capture_limits(Command& command, CaptureLimits& limits);
 
 }  // namespace stipple

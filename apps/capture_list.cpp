@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/capture_commands.h"
@@ -40,12 +39,12 @@ void list(const RunOptions& run) {
 
 }  // namespace
 
-void add_capture_list(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand("list", "Cameras that can be opened, with addresses");
-    command->footer(
+void add_capture_list(Command& capture, Action& action) {
+    Command command = capture.add_command("list", "Cameras that can be opened, with addresses");
+    command.footer(
         "Example:\n"
         "  stipple capture list");
-    command->callback([&action] { action = list; });
+    command.callback([&action] { action = list; });
 }
 
 }  // namespace stipple

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/capture_commands.h"
@@ -7,7 +6,6 @@
 #include "apps/number_check.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_arguments.h"
-#include "apps/unused_options.h"
 
 namespace stipple {
 namespace {
@@ -25,38 +23,38 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
 
 }  // namespace
 
-void add_capture_live(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand("live", "A camera through the sensor as it runs");
+void add_capture_live(Command& capture, Action& action) {
+    Command command = capture.add_command("live", "A camera through the sensor as it runs");
     const auto options = std::make_shared<LiveArguments>();
-    add_camera_arguments(*command, options->camera);
-    command->add_option("-o,--output", options->output, "sample stream")
-        ->type_name("FILE")
-        ->required();
-    add_capture_limits(*command, options->limits);
-    add_sensor_arguments(*command, options->sensor, "--sensor-set");
-    add_preview_arguments(*command, options->preview);
-    add_session_arguments(*command, options->session);
-    command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
-        ->check(number_check(0))
-        ->type_name("DN");
-    command->add_option("--queue", options->queue_frames, "frames that may wait (64)")
-        ->check(CLI::Range(1, 4096))
-        ->type_name("N");
+    add_camera_arguments(command, options->camera);
+    command.add_option("-o,--output", options->output, "sample stream")
+        .type_name("FILE")
+        .required();
+    add_capture_limits(command, options->limits);
+    add_sensor_arguments(command, options->sensor, "--sensor-set");
+    add_preview_arguments(command, options->preview);
+    add_session_arguments(command, options->session);
+    command.add_option("--black-level", options->black_level_dn, "DN without light (0)")
+        .check(number_check(0))
+        .type_name("DN");
+    command.add_option("--queue", options->queue_frames, "frames that may wait (64)")
+        .check(whole_check(1, 4096))
+        .type_name("N");
     command
-        ->add_option("--late-after", options->late_after_slots,
-                     "a packet is late so many slots after its frame (2)")
-        ->check(positive_check())
-        ->type_name("N");
-    command->footer(
+        .add_option("--late-after", options->late_after_slots,
+                    "a packet is late so many slots after its frame (2)")
+        .check(positive_check())
+        .type_name("N");
+    command.footer(
         "Examples:\n"
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
         "  stipple capture live v4l2:/dev/video0 -o clip.stipple --preview now.png\n"
         "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
-    command->callback([command, options, &action] {
+    command.callback([command, options, &action] {
         if (options->preview.file.empty())
-            refuse_options(*command, {"--preview-method", "--preview-size"},
+            command.refuse({"--preview-method", "--preview-size"},
                            "there is no preview; add --preview FILE or leave it out");
-        check_session_arguments(*command, options->camera);
+        check_session_arguments(command, options->camera);
         action = [options](const RunOptions& run) { live(*options, run); };
     });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 
 #include "apps/camera_recording.h"
 #include "apps/capture_commands.h"
@@ -7,30 +6,30 @@
 
 namespace stipple {
 
-void add_capture_record(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand("record", "Record a camera, every frame accounted for");
+void add_capture_record(Command& capture, Action& action) {
+    Command command = capture.add_command("record", "Record a camera, every frame accounted for");
     const auto options = std::make_shared<CameraRecordingArguments>();
     const auto coded = std::make_shared<bool>(false);
-    add_camera_arguments(*command, options->camera);
+    add_camera_arguments(command, options->camera);
     command
-        ->add_option("-o,--output", options->output,
-                     "recording, or a folder for one that is named by the time")
-        ->type_name("FILE|DIR")
-        ->required();
-    add_capture_limits(*command, options->limits);
-    add_session_arguments(*command, options->session);
-    auto* coded_flag = command->add_flag(
+        .add_option("-o,--output", options->output,
+                    "recording, or a folder for one that is named by the time")
+        .type_name("FILE|DIR")
+        .required();
+    add_capture_limits(command, options->limits);
+    add_session_arguments(command, options->session);
+    auto coded_flag = command.add_flag(
         "--coded", *coded,
         "the samples of a camera of `capture serve --mode coded`, as `emulate` writes them");
     for (const char* option : {"--incomplete", "--stall", "--no-reconnect"})
-        coded_flag->excludes(command->get_option(option));
-    command->footer(
+        coded_flag.excludes(command.option(option));
+    command.footer(
         "Examples:\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
         "      --set PixelFormat=Mono12p --set ExposureTime=2000");
-    command->callback([command, options, coded, &action] {
-        check_session_arguments(*command, options->camera);
+    command.callback([command, options, coded, &action] {
+        check_session_arguments(command, options->camera);
         action = [options, coded](const RunOptions& run) {
             *coded ? record_coded_stream(*options, run) : record_camera(*options, run);
         };

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/capture_commands.h"
@@ -59,25 +58,25 @@ void replay(const ReplayOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_capture_replay(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand("replay", "A recording as footage");
+void add_capture_replay(Command& capture, Action& action) {
+    Command command = capture.add_command("replay", "A recording as footage");
     const auto options = std::make_shared<ReplayOptions>();
-    command->add_option("RECORDING", options->recording, "file of `capture record`")->required();
-    command->add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")
-        ->type_name("OUT")
-        ->required();
-    command->add_flag("--skip-gaps", options->skip_gaps,
-                      "leave missing frames out; else the frame before stands in");
-    command->add_flag("--keep-incomplete", options->keep_incomplete,
-                      "use incomplete frames, with black holes; else they count as missing");
-    command->add_option("--black-level", options->black_level_dn, "DN without light (0)")
-        ->check(number_check(0))
-        ->type_name("DN");
-    command->footer(
+    command.add_option("RECORDING", options->recording, "file of `capture record`").required();
+    command.add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")
+        .type_name("OUT")
+        .required();
+    command.add_flag("--skip-gaps", options->skip_gaps,
+                     "leave missing frames out; else the frame before stands in");
+    command.add_flag("--keep-incomplete", options->keep_incomplete,
+                     "use incomplete frames, with black holes; else they count as missing");
+    command.add_option("--black-level", options->black_level_dn, "DN without light (0)")
+        .check(number_check(0))
+        .type_name("DN");
+    command.footer(
         "Examples:\n"
         "  stipple capture replay clip.strec -o light.npy --black-level 64\n"
         "  stipple emulate clip.strec -o clip.stipple        without a file in between");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { replay(*options, run); };
     });
 }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,7 +12,6 @@
 #include "apps/number_check.h"
 #include "apps/sensor_arguments.h"
 #include "apps/served_source.h"
-#include "apps/unused_options.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -52,21 +50,21 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     throw_if_stopped();  // there is no output that could be shorter
 }
 
-void add_source_arguments(CLI::App& command, ServedSourceChoice& source) {
+void add_source_arguments(Command& command, ServedSourceChoice& source) {
     command
         .add_option("SOURCE", source.path,
                     "footage, or in mode frames a recording of `capture record`")
-        ->required();
+        .required();
     command.add_option("--mode", source.mode, "frames as they are, or the samples of a sensor")
-        ->check(CLI::IsMember({"frames", "coded"}))
-        ->type_name("frames|coded");
+        .one_of({"frames", "coded"})
+        .type_name("frames|coded");
     command
         .add_option("--fps", source.frames_per_s,
                     "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
-        ->check(number_check(0.01, 100000.0))
-        ->type_name("N");
+        .check(number_check(0.01, 100000.0))
+        .type_name("N");
     command.add_option("--format", source.format, "pixel format of footage (Mono8)")
-        ->type_name("NAME");
+        .type_name("NAME");
     add_sensor_arguments(command, source.sensor);
     add_footage_arguments(command, source.reading);
     add_max_value(command, source.reading.max_value);
@@ -79,40 +77,40 @@ std::string check_serial(const std::string& serial) {
     return fmt::format("has {} bytes; GigE Vision has room for 1 to {}", serial.size(), kMostBytes);
 }
 
-void check_mode(const CLI::App& command, const ServedSourceChoice& source) {
+void check_mode(const Command& command, const ServedSourceChoice& source) {
     if (source.mode == "coded")
-        refuse_options(command, {"--format"}, "is of --mode frames; leave it out");
+        command.refuse({"--format"}, "is of --mode frames; leave it out");
     else
-        refuse_options(command, {"--sensor", "--schedule", "--set", "--seed", "--overrun"},
+        command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun"},
                        "is of the sensor of --mode coded; add that or leave this out");
 }
 
-void check_faults(const CLI::App& command, const GvspFaults& faults) {
+void check_faults(const Command& command, const GvspFaults& faults) {
     if (faults.drop + faults.lose + faults.duplicate > 0) return;
-    refuse_options(command, {"--fault-seed"},
+    command.refuse({"--fault-seed"},
                    "no packet is hit; add --fault-drop, --fault-lose or --fault-duplicate");
 }
 
 }  // namespace
 
-void add_capture_serve(CLI::App& capture, Action& action) {
-    auto* command = capture.add_subcommand("serve", "Frames or a coded stream as a GigE camera");
+void add_capture_serve(Command& capture, Action& action) {
+    Command command = capture.add_command("serve", "Frames or a coded stream as a GigE camera");
     const auto options = std::make_shared<ServeOptions>();
-    add_source_arguments(*command, options->source);
-    command->add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
-        ->type_name("IP");
-    command->add_option("--serial", options->server.serial, "serial number (1)")
-        ->check(check_serial)
-        ->type_name("TEXT");
-    command->add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
-    add_fault_arguments(*command, options->server);
-    command->footer(
+    add_source_arguments(command, options->source);
+    command.add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
+        .type_name("IP");
+    command.add_option("--serial", options->server.serial, "serial number (1)")
+        .check(check_serial)
+        .type_name("TEXT");
+    command.add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
+    add_fault_arguments(command, options->server);
+    command.footer(
         "Examples:\n"
         "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
-    command->callback([command, options, &action] {
-        check_mode(*command, options->source);
-        check_faults(*command, options->server.faults);
+    command.callback([command, options, &action] {
+        check_mode(command, options->source);
+        check_faults(command, options->server.faults);
         action = [options](const RunOptions& run) { serve(*options, run); };
     });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -69,30 +68,32 @@ void characterize_images(const CharacterizeOptions& options, const RunOptions& r
 
 }  // namespace
 
-void add_characterize(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("characterize", "EMVA 1288 figures of a sensor or camera");
+void add_characterize(Command& app, Action& action) {
+    Command command = app.add_command("characterize", "EMVA 1288 figures of a sensor or camera");
     const auto options = std::make_shared<CharacterizeOptions>();
-    auto* sensor = command->add_option("--sensor", options->sensor.sensor, "sensor (paper)");
-    sensor->type_name("NAME|FILE");
-    auto* set =
-        command->add_option("--set", options->sensor.settings, "change a key of the sensor");
-    set->allow_extra_args(false)->type_name("KEY=VALUE");
-    auto* seed = command->add_option("--seed", options->sensor.seed, "of the noise (1)");
-    seed->check(whole_check(0))->type_name("S");
-    auto* evaluate = command->add_option("--evaluate", options->descriptor,
-                                         "images that exist: their descriptor");
-    evaluate->type_name("FILE")->excludes(sensor)->excludes(set)->excludes(seed);
-    auto* output = command->add_option("-o,--output", options->output,
-                                       "folder for images, descriptor and charts");
-    output->type_name("DIR");
-    command->footer(
+    const auto sensor = command.add_option("--sensor", options->sensor.sensor, "sensor (paper)")
+                            .type_name("NAME|FILE");
+    const auto set =
+        command.add_list("--set", options->sensor.settings, "change a key of the sensor")
+            .type_name("KEY=VALUE");
+    const auto seed = command.add_option("--seed", options->sensor.seed, "of the noise (1)")
+                          .check(whole_check(0))
+                          .type_name("S");
+    command.add_option("--evaluate", options->descriptor, "images that exist: their descriptor")
+        .type_name("FILE")
+        .excludes(sensor)
+        .excludes(set)
+        .excludes(seed);
+    command.add_option("-o,--output", options->output, "folder for images, descriptor and charts")
+        .type_name("DIR");
+    command.footer(
         "Examples:\n"
         "  stipple characterize --sensor grasshopper -o series\n"
         "  stipple characterize --sensor t6 --set temperature_c=60 -o warm --json figures.json\n"
         "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         if (options->descriptor.empty() && options->output.empty())
-            throw CLI::RequiredError("--output (a folder for the series) or --evaluate");
+            throw UsageError("--output", "a folder for the series is required, or --evaluate");
         action = [options](const RunOptions& run) {
             options->descriptor.empty() ? characterize_sensor(*options, run)
                                         : characterize_images(*options, run);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -77,21 +76,21 @@ void compare(const CompareOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("compare", "Measure a video against its reference");
+void add_compare(Command& app, Action& action) {
+    Command command = app.add_command("compare", "Measure a video against its reference");
     const auto options = std::make_shared<CompareOptions>();
-    command->add_option("RESULT", options->result, "video in linear light")->required();
-    command->add_option("REFERENCE", options->reference, "footage")->required();
-    command->add_option("--margin", options->quality.margin, "frames left out at each end (0)")
-        ->check(whole_check(0, 1'000'000))
-        ->type_name("N");
-    add_max_value(*command, options->quality.max_value);
-    add_footage_arguments(*command, options->footage);
-    command->footer(
+    command.add_option("RESULT", options->result, "video in linear light").required();
+    command.add_option("REFERENCE", options->reference, "footage").required();
+    command.add_option("--margin", options->quality.margin, "frames left out at each end (0)")
+        .check(whole_check(0, 1'000'000))
+        .type_name("N");
+    add_max_value(command, options->quality.max_value);
+    add_footage_arguments(command, options->footage);
+    command.footer(
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"
         "  stipple compare decoded.npy footage.npy --max-value 2 --json figures.json");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { compare(*options, run); };
     });
 }

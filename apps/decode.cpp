@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -23,53 +22,52 @@ std::string method_help() {
 
 }  // namespace
 
-void add_decode(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("decode", "Sample stream to high-speed video");
+void add_decode(Command& app, Action& action) {
+    Command command = app.add_command("decode", "Sample stream to high-speed video");
     const auto options = std::make_shared<DecodeArguments>();
-    command->add_option("STREAM", options->stream, "sample stream")->required();
+    command.add_option("STREAM", options->stream, "sample stream").required();
     command
-        ->add_option("-o,--output", options->output,
-                     "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
-        ->type_name("OUT")
-        ->required();
-    command->add_option("--method", options->method, method_help())
-        ->check(name_check(decode_method_from_name))
-        ->type_name("NAME");
+        .add_option("-o,--output", options->output,
+                    "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
+        .type_name("OUT")
+        .required();
+    command.add_option("--method", options->method, method_help())
+        .check(name_check(decode_method_from_name))
+        .type_name("NAME");
     command
-        ->add_option("--options", options->options,
-                     "options of the method: a file as docs/decoder_options.md says")
-        ->type_name("FILE");
-    command->add_option("--set", options->settings, "change one option of the method")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
+        .add_option("--options", options->options,
+                    "options of the method: a file as docs/decoder_options.md says")
+        .type_name("FILE");
+    command.add_list("--set", options->settings, "change one option of the method")
+        .type_name("KEY=VALUE");
     command
-        ->add_option("--stages", options->stages,
-                     "keep the estimate of each stage as .npy, and a chart of the convergence")
-        ->type_name("DIR");
-    command->add_flag("--strict", options->strict, "write nothing if the stream is damaged");
-    command->add_option("--until", options->until, "stop after the first N frames")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U))
-        ->type_name("N");
-    command->add_flag("--follow", options->follow,
-                      "the stream is still being written: wait for more until its end marker");
+        .add_option("--stages", options->stages,
+                    "keep the estimate of each stage as .npy, and a chart of the convergence")
+        .type_name("DIR");
+    command.add_flag("--strict", options->strict, "write nothing if the stream is damaged");
+    command.add_option("--until", options->until, "stop after the first N frames")
+        .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))
+        .type_name("N");
+    command.add_flag("--follow", options->follow,
+                     "the stream is still being written: wait for more until its end marker");
     command
-        ->add_option("--timeout", options->timeout_s,
-                     "with --follow: end where nothing more has come for so long (10)")
-        ->check(number_check(0, 1e6))
-        ->type_name("SECONDS");
+        .add_option("--timeout", options->timeout_s,
+                    "with --follow: end where nothing more has come for so long (10)")
+        .check(number_check(0, 1e6))
+        .type_name("SECONDS");
     command
-        ->add_flag("--check-schedule", options->check_schedule,
-                   "first see whether the samples follow the schedule, or which shift of it; "
-                   "=fix goes on with that shift")
-        ->check(CLI::IsMember({"true", "fix"}));
-    command->footer(
+        .add_flag("--check-schedule", options->check_schedule,
+                  "first see whether the samples follow the schedule, or which shift of it; "
+                  "=fix goes on with that shift")
+        .one_of({"true", "fix"});
+    command.footer(
         "Examples:\n"
         "  stipple decode clip.stipple -o decoded\n"
         "  stipple decode clip.stipple -o decoded.mp4 --method naive --threads 1\n"
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { decode_file(*options, run); };
     });
 }

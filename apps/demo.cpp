@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -64,19 +63,19 @@ void demo(const DemoOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_demo(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("demo", "Render, emulate, decode and compare a scene");
+void add_demo(Command& app, Action& action) {
+    Command command = app.add_command("demo", "Render, emulate, decode and compare a scene");
     const auto options = std::make_shared<DemoOptions>();
-    command->add_option("-o,--output", options->folder, "folder (stipple_demo)")->type_name("DIR");
-    command->add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
-        ->check(name_check(scene_from_name))
-        ->type_name("NAME");
-    add_scene_arguments(*command, options->rendering);
-    command->footer(
+    command.add_option("-o,--output", options->folder, "folder (stipple_demo)").type_name("DIR");
+    command.add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
+        .check(name_check(scene_from_name))
+        .type_name("NAME");
+    add_scene_arguments(command, options->rendering);
+    command.footer(
         "Examples:\n"
         "  stipple demo\n"
         "  stipple demo -o dice_demo --scene dice --frames 32 --size 160x120");
-    command->callback(
+    command.callback(
         [options, &action] { action = [options](const RunOptions& run) { demo(*options, run); }; });
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -64,30 +63,30 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_emulate(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("emulate", "Footage through the sensor to a sample stream");
+void add_emulate(Command& app, Action& action) {
+    Command command = app.add_command("emulate", "Footage through the sensor to a sample stream");
     const auto options = std::make_shared<EmulateOptions>();
     command
-        ->add_option(
+        .add_option(
             "FOOTAGE", options->footage,
             "folder or printf pattern of PNG, TIFF or EXR, video file, .npy, or a recording")
-        ->required();
-    command->add_option("-o,--output", options->output, "sample stream")
-        ->type_name("FILE")
-        ->required();
-    add_sensor_arguments(*command, options->sensor);
-    add_footage_arguments(*command, options->reading);
-    add_max_value(*command, options->reading.max_value);
-    command->add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
-        ->type_name("OUT");
-    add_waveform_arguments(*command, options->waveform);
-    command->footer(
+        .required();
+    command.add_option("-o,--output", options->output, "sample stream")
+        .type_name("FILE")
+        .required();
+    add_sensor_arguments(command, options->sensor);
+    add_footage_arguments(command, options->reading);
+    add_max_value(command, options->reading.max_value);
+    command.add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
+        .type_name("OUT");
+    add_waveform_arguments(command, options->waveform);
+    command.footer(
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set read_noise_e=5 --set bit_depth=10 --set schedule.tile_rows=8");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { emulate(*options, run); };
     });
 }

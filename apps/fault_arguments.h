@@ -1,14 +1,12 @@
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include "apps/command_line.h"
 
 namespace stipple {
 
 struct GigeServerOptions;
 
 /// What a served camera shall do wrong: `--fault-...`, for tests of clients.
-void add_fault_arguments(CLI::App& command, GigeServerOptions& options);
+void add_fault_arguments(Command& command, GigeServerOptions& options);
 
 }  // namespace stipple

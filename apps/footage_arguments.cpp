@@ -1,7 +1,5 @@
 #include "apps/footage_arguments.h"
 
-#include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 
 #include "apps/number_check.h"
@@ -9,23 +7,21 @@
 
 namespace stipple {
 
-void add_footage_arguments(CLI::App& command, FootageOptions& options) {
-    static const std::map<std::string, Transfer> kTransfers = {
-        {"linear", Transfer::kLinear}, {"gamma22", Transfer::kGamma22}, {"srgb", Transfer::kSrgb}};
+void add_footage_arguments(Command& command, FootageOptions& options) {
     command
-        .add_option_function<std::string>(
-            "--transfer",
-            [&options](const std::string& name) { options.transfer = kTransfers.at(name); },
-            "how the numbers of the footage map to light (linear)")
-        ->check(CLI::IsMember(kTransfers))
-        ->type_name("linear|gamma22|srgb");
+        .add_choice("--transfer", options.transfer,
+                    {{"linear", Transfer::kLinear},
+                     {"gamma22", Transfer::kGamma22},
+                     {"srgb", Transfer::kSrgb}},
+                    "how the numbers of the footage map to light (linear)")
+        .type_name("linear|gamma22|srgb");
     command.add_flag("--luminance", options.luminance, "Rec. 709 luminance of colour footage");
 }
 
-void add_max_value(CLI::App& command, std::optional<double>& max_value) {
+void add_max_value(Command& command, std::optional<double>& max_value) {
     command.add_option("--max-value", max_value, "clip light to V first")
-        ->check(positive_check())
-        ->type_name("V");
+        .check(positive_check())
+        .type_name("V");
 }
 
 void check_recording_options(const std::string& recording, const FootageOptions& options) {

@@ -3,19 +3,16 @@
 #include <optional>
 #include <string>
 
+#include "apps/command_line.h"
 #include "core/footage_reader.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stipple {
 
 /// `--transfer` and `--luminance`.
-void add_footage_arguments(CLI::App& command, FootageOptions& options);
+void add_footage_arguments(Command& command, FootageOptions& options);
 
 /// `--max-value V`: positive and finite.
-void add_max_value(CLI::App& command, std::optional<double>& max_value);
+void add_max_value(Command& command, std::optional<double>& max_value);
 
 /// \throws InputError for a recording if any of these options was given: its numbers are linear.
 void check_recording_options(const std::string& recording, const FootageOptions& options);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -28,16 +27,16 @@ void info(const std::string& file, const RunOptions& run) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("info", "Say what a sample stream is and holds");
+void add_info(Command& app, Action& action) {
+    Command command = app.add_command("info", "Say what a sample stream is and holds");
     const auto file = std::make_shared<std::string>();
-    command->add_option("STREAM", *file, "sample stream")->required();
-    command->footer(
+    command.add_option("STREAM", *file, "sample stream").required();
+    command.footer(
         "Examples:\n"
         "  stipple info clip.stipple\n"
         "  stipple info clip.stipple --json -\n"
         "The whole stream is checked. If it is damaged, the damage is listed, the exit code is 1.");
-    command->callback(
+    command.callback(
         [file, &action] { action = [file](const RunOptions& run) { info(*file, run); }; });
 }
 

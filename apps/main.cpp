@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <span>
 #include <string_view>
 #include <system_error>
 
+#include "apps/command_line.h"
 #include "apps/interrupt.h"
 #include "apps/run_options.h"
 #include "apps/subcommands.h"
@@ -57,46 +55,26 @@ int run(const Action& action, const RunOptions& options) {
     return fail(static_cast<ExitCode>(kSignal + stop_signal()), "stopped; the output is shorter");
 }
 
-/// To each subcommand that does something, however deep.
-void add_run_options_to_all(CLI::App& app, RunOptions& options) {
-    for (CLI::App* command : app.get_subcommands({}))
-        command->get_subcommands({}).empty() ? add_run_options(*command, options)
-                                             : add_run_options_to_all(*command, options);
-}
-
-/// The word of the command line that stands for a subcommand and is none, or null. CLI11 says of it
-/// only that a subcommand is missing.
-const char* unknown_subcommand(CLI::App& app, std::span<char* const> words) {
-    CLI::App* command = &app;
-    for (const char* word : words) {
-        const auto choices = command->get_subcommands({});
-        if (choices.empty() || word[0] == '-') return nullptr;
-        const auto chosen = std::ranges::find_if(
-            choices, [&](const CLI::App* choice) { return choice->check_name(word); });
-        if (chosen == choices.end()) return word;
-        command = *chosen;
-    }
-    return nullptr;
-}
-
 int main(int argc, char** argv) {
     RunOptions options;
     Action action;
-    CLI::App app("Stipple: emulate a coded-exposure sensor, decode its stream to high-speed video",
-                 "stipple");
-    app.set_version_flag("--version", "stipple " STIPPLE_VERSION);
-    app.footer(kExamples);
-    app.require_subcommand(1);
+    CommandLine line(
+        "stipple",
+        "Stipple: emulate a coded-exposure sensor, decode its stream to high-speed video",
+        STIPPLE_VERSION);
+    Command root = line.root();
+    root.footer(kExamples);
     for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_schedule,
                            add_timing, add_characterize, add_capture, add_demo})
-        add(app, action);
-    add_run_options_to_all(app, options);
-    if (const char* word = unknown_subcommand(app, {argv + 1, argv + argc}))
-        return fail(kUsage, fmt::format("there is no subcommand \"{}\"; --help lists them", word));
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? kOk : kUsage;
+        add(root, action);
+    for (Command& command : root.leaves()) add_run_options(command, options);
+    switch (line.parse(argc, argv)) {
+        case CommandLine::Parsed::kHelp:
+            return kOk;
+        case CommandLine::Parsed::kWrong:
+            return kUsage;
+        case CommandLine::Parsed::kAction:
+            break;
     }
     catch_signals();
     return run(action, options);

@@ -6,7 +6,7 @@
 
 namespace stipple {
 
-/// A check for CLI11 that passes the names that `from_name` does not throw for, so that the list
+/// A check that passes the names that `from_name` does not throw for, so that the list
 /// of names stays in one place.
 template <typename FromName>
 [[nodiscard]] auto name_check(FromName from_name) {

@@ -19,7 +19,7 @@ std::optional<Number> number_of(const std::string& text) {
 }
 
 template <typename Number>
-NumberCheck range_check(std::string kind, Number least, Number most) {
+ValueCheck range_check(std::string kind, Number least, Number most) {
     return [=](const std::string& text) -> std::string {
         const auto value = number_of<Number>(text);
         if (value && *value >= least && *value <= most) return {};
@@ -31,11 +31,11 @@ NumberCheck range_check(std::string kind, Number least, Number most) {
 
 }  // namespace
 
-NumberCheck number_check(double least, double most) {
+ValueCheck number_check(double least, double most) {
     return range_check("a number", least, most);
 }
 
-NumberCheck positive_check() {
+ValueCheck positive_check() {
     return [](const std::string& text) {
         const auto value = number_of<double>(text);
         const bool usable = value && *value > 0 && *value <= std::numeric_limits<double>::max();
@@ -43,7 +43,7 @@ NumberCheck positive_check() {
     };
 }
 
-NumberCheck whole_check(std::uint64_t least, std::uint64_t most) {
+ValueCheck whole_check(std::uint64_t least, std::uint64_t most) {
     return range_check("a whole number", least, most);
 }
 

@@ -1,6 +1,5 @@
 #include "apps/preview_arguments.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "apps/size_argument.h"
@@ -18,28 +17,28 @@ std::string check_extension(const std::string& file) {
 
 }  // namespace
 
-void add_preview_arguments(CLI::App& command, PreviewArguments& arguments) {
+void add_preview_arguments(Command& command, PreviewArguments& arguments) {
     constexpr int kLeast = 8;
     constexpr int kMost = 65536;
     command
         .add_option("--preview", arguments.file,
                     "picture of what the decoder makes of the newest slots, replaced again and "
                     "again: .png to look at, .npy linear light")
-        ->check(check_extension)
-        ->type_name("FILE");
+        .check(check_extension)
+        .type_name("FILE");
     command
         .add_option("--preview-method", arguments.method,
                     "naive: at once, noisier; fast: as it will be decoded, in seconds (naive)")
-        ->check(CLI::IsMember({"fast", "naive"}))
-        ->type_name("NAME");
+        .one_of({"fast", "naive"})
+        .type_name("NAME");
     command
-        .add_option_function<std::string>(
+        .add_parsed(
             "--preview-size",
             [&arguments](const std::string& text) {
                 parse_size("--preview-size", text, kLeast, kMost, arguments.size.emplace());
             },
             "so much of the middle of the frame (all, or what is decoded in some seconds)")
-        ->type_name("WxH");
+        .type_name("WxH");
 }
 
 void check_preview_file(const PreviewArguments& arguments, const std::string& output, bool force) {

@@ -3,11 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "apps/command_line.h"
 #include "core/geometry.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stipple {
 
@@ -19,7 +16,7 @@ struct PreviewArguments {
 };
 
 /// `--preview`, `--preview-method` and `--preview-size`.
-void add_preview_arguments(CLI::App& command, PreviewArguments& arguments);
+void add_preview_arguments(Command& command, PreviewArguments& arguments);
 
 /// \throws InputError if `file` cannot become the preview of a recording named `output`: another
 /// file of that name, no folder, or the recording itself.

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
+
+#include "apps/command_line.h"
+#include "apps/number_check.h"
 
 namespace stipple {
 
@@ -11,12 +13,12 @@ void RunOptions::say(std::string_view text) const {
     if (!quiet && json != "-") fmt::print("{}\n", text);
 }
 
-void add_run_options(CLI::App& command, RunOptions& run) {
+void add_run_options(Command& command, RunOptions& run) {
     command.add_option("--json", run.json, "write the figures as JSON; - is standard output")
-        ->type_name("FILE");
+        .type_name("FILE");
     command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
-        ->check(CLI::Range(0, 1024))
-        ->type_name("N");
+        .check(whole_check(0, 1024))
+        .type_name("N");
     command.add_flag("--force", run.force, "replace existing outputs");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
 }

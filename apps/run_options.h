@@ -4,11 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace CLI {
-class App;
-}
-
 namespace stipple {
+
+class Command;
 
 /// What every subcommand can be told.
 struct RunOptions {
@@ -25,6 +23,6 @@ struct RunOptions {
 /// What the chosen subcommand does.
 using Action = std::function<void(const RunOptions&)>;
 
-void add_run_options(CLI::App& command, RunOptions& run);
+void add_run_options(Command& command, RunOptions& run);
 
 }  // namespace stipple

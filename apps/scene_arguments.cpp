@@ -1,6 +1,5 @@
 #include "apps/scene_arguments.h"
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "apps/number_check.h"
@@ -15,21 +14,21 @@ constexpr int kMostSlots = 1000000;
 
 }  // namespace
 
-void add_scene_arguments(CLI::App& command, SceneOptions& options) {
+void add_scene_arguments(Command& command, SceneOptions& options) {
     command.add_option("--frames", options.slots, "frames of 1/200 s (48)")
-        ->check(CLI::Range(1, kMostSlots))
-        ->type_name("N");
+        .check(whole_check(1, kMostSlots))
+        .type_name("N");
     command
-        .add_option_function<std::string>(
+        .add_parsed(
             "--size",
             [&options](const std::string& text) {
                 parse_size("--size", text, kLeastSide, kMostSide, options.shape);
             },
             "width and height (320x240)")
-        ->type_name("WxH");
+        .type_name("WxH");
     command.add_option("--seed", options.seed, "textures and arrangement (1)")
-        ->check(whole_check(0))
-        ->type_name("S");
+        .check(whole_check(0))
+        .type_name("S");
 }
 
 }  // namespace stipple

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
@@ -57,17 +56,17 @@ void check(const CheckOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_schedule_check(CLI::App& schedule, Action& action) {
-    auto* command = schedule.add_subcommand(
+void add_schedule_check(Command& schedule, Action& action) {
+    Command command = schedule.add_command(
         "check", "Whether a sensor can do what a schedule says; exit code 1 if not");
     const auto options = std::make_shared<CheckOptions>();
-    add_schedule_choice(*command, options->schedule);
-    command->add_option("--sensor", options->sensor, "sensor (paper)")->type_name("NAME|FILE");
-    command->footer(
+    add_schedule_choice(command, options->schedule);
+    command.add_option("--sensor", options->sensor, "sensor (paper)").type_name("NAME|FILE");
+    command.footer(
         "Examples:\n"
         "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2\n"
         "  stipple schedule check tiled --sensor lux1310 --size 1280x1024");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { check(*options, run); };
     });
 }

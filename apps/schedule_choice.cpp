@@ -1,7 +1,5 @@
 #include "apps/schedule_choice.h"
 
-#include <CLI/CLI.hpp>
-
 #include "apps/number_check.h"
 #include "apps/sensor_setup.h"
 #include "apps/size_argument.h"
@@ -13,26 +11,25 @@ constexpr int kMostSide = 65535;
 
 }  // namespace
 
-void add_schedule_choice(CLI::App& command, ScheduleChoice& choice) {
+void add_schedule_choice(Command& command, ScheduleChoice& choice) {
     command
         .add_option("SCHEDULE", choice.schedule,
                     "name of config/schedules, file of that form, or compiled .mem or .hex")
-        ->type_name("NAME|FILE")
-        ->required();
-    command.add_option("--set", choice.settings, "change a key of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
+        .type_name("NAME|FILE")
+        .required();
+    command.add_list("--set", choice.settings, "change a key of the schedule")
+        .type_name("KEY=VALUE");
     command
-        .add_option_function<std::string>(
+        .add_parsed(
             "--size",
             [&choice](const std::string& text) {
                 parse_size("--size", text, 1, kMostSide, choice.shape);
             },
             "width and height of the array (640x480)")
-        ->type_name("WxH");
+        .type_name("WxH");
     command.add_option("--seed", choice.seed, "of random codes (1)")
-        ->check(whole_check(0))
-        ->type_name("S");
+        .check(whole_check(0))
+        .type_name("S");
 }
 
 NamedSchedule set_up_schedule(const ScheduleChoice& choice) {

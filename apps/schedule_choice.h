@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "core/geometry.h"
 #include "readout/schedule_catalogue.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stipple {
 
@@ -22,7 +19,7 @@ struct ScheduleChoice {
 };
 
 /// NAME|FILE, --set, --size and --seed.
-void add_schedule_choice(CLI::App& command, ScheduleChoice& choice);
+void add_schedule_choice(Command& command, ScheduleChoice& choice);
 
 /// \throws InputError naming file, line and key of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);

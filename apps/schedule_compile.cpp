@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -45,20 +44,20 @@ void compile(const CompileOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_schedule_compile(CLI::App& schedule, Action& action) {
-    auto* command = schedule.add_subcommand(
+void add_schedule_compile(Command& schedule, Action& action) {
+    Command command = schedule.add_command(
         "compile", "Write the program of the chip's sequencer, a memory image for $readmemh");
     const auto options = std::make_shared<CompileOptions>();
-    add_schedule_choice(*command, options->schedule);
-    command->add_option("-o,--output", options->output, "memory image, .mem or .hex")
-        ->required()
-        ->type_name("FILE");
-    command->footer(
+    add_schedule_choice(command, options->schedule);
+    command.add_option("-o,--output", options->output, "memory image, .mem or .hex")
+        .required()
+        .type_name("FILE");
+    command.footer(
         "Examples:\n"
         "  stipple schedule compile tiled -o tiled.mem\n"
         "  stipple schedule compile tiled -o tiled.mem --set tile_rows=8 --seed 7\n"
         "  stipple emulate scene -o clip.stipple --schedule tiled.mem");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { compile(*options, run); };
     });
 }

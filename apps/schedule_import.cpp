@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/schedule_commands.h"
 #include "apps/schedule_text.h"
 #include "apps/text_file.h"
@@ -42,33 +42,32 @@ void import(const ImportOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_schedule_import(CLI::App& schedule, Action& action) {
-    auto* command =
-        schedule.add_subcommand("import", "A schedule from masks or exposure lengths in a .npy");
+void add_schedule_import(Command& schedule, Action& action) {
+    Command command =
+        schedule.add_command("import", "A schedule from masks or exposure lengths in a .npy");
     const auto options = std::make_shared<ImportOptions>();
     command
-        ->add_option("VOLUME", options->volume,
-                     ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
-        ->type_name("FILE.npy")
-        ->required();
-    command->add_option("-o,--output", options->output, "schedule file, .toml")
-        ->type_name("FILE")
-        ->required();
-    command->add_flag("--lengths", options->lengths,
-                      "layers are the lengths of successive exposures in slots, from slot 0 on");
+        .add_option("VOLUME", options->volume,
+                    ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
+        .type_name("FILE.npy")
+        .required();
+    command.add_option("-o,--output", options->output, "schedule file, .toml")
+        .type_name("FILE")
+        .required();
+    command.add_flag("--lengths", options->lengths,
+                     "layers are the lengths of successive exposures in slots, from slot 0 on");
     command
-        ->add_option("--period", options->period_slots,
-                     "with --lengths: slots after which all repeats (the largest sum)")
-        ->check(CLI::Range(1, 65535))
-        ->type_name("N");
-    command->add_option("--name", options->name, "of the schedule (the output's)")
-        ->type_name("NAME");
-    command->footer(
+        .add_option("--period", options->period_slots,
+                    "with --lengths: slots after which all repeats (the largest sum)")
+        .check(whole_check(1, 65535))
+        .type_name("N");
+    command.add_option("--name", options->name, "of the schedule (the output's)").type_name("NAME");
+    command.footer(
         "Examples:\n"
         "  stipple schedule import masks.npy -o masks.toml\n"
         "  stipple schedule import lengths.npy -o lengths.toml --lengths --period 16\n"
         "  stipple emulate scene -o clip.stipple --schedule masks.toml");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { import(*options, run); };
     });
 }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
@@ -29,19 +28,19 @@ void make(const MakeOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_schedule_make(CLI::App& schedule, Action& action) {
-    auto* command =
-        schedule.add_subcommand("make", "Write out what each pixel of a schedule does (kind code)");
+void add_schedule_make(Command& schedule, Action& action) {
+    Command command =
+        schedule.add_command("make", "Write out what each pixel of a schedule does (kind code)");
     const auto options = std::make_shared<MakeOptions>();
-    add_schedule_choice(*command, options->schedule);
-    command->add_option("-o,--output", options->output, "schedule file, .toml")
-        ->type_name("FILE")
-        ->required();
-    command->footer(
+    add_schedule_choice(command, options->schedule);
+    command.add_option("-o,--output", options->output, "schedule file, .toml")
+        .type_name("FILE")
+        .required();
+    command.footer(
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"
         "  stipple schedule make random -o tile.toml --size 32x32 --seed 7");
-    command->callback(
+    command.callback(
         [options, &action] { action = [options](const RunOptions& run) { make(*options, run); }; });
 }
 

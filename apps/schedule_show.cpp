@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
+#include "apps/number_check.h"
 #include "apps/schedule_chart.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
@@ -37,25 +37,25 @@ void show(const ShowOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_schedule_show(CLI::App& schedule, Action& action) {
-    auto* command = schedule.add_subcommand("show", "Timing diagram and figures of a schedule");
+void add_schedule_show(Command& schedule, Action& action) {
+    Command command = schedule.add_command("show", "Timing diagram and figures of a schedule");
     const auto options = std::make_shared<ShowOptions>();
-    add_schedule_choice(*command, options->schedule);
-    command->add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
-        ->type_name("FILE");
-    command->add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
-        ->check(CLI::Range(1, 64))
-        ->type_name("N");
-    command->add_option("--slots", options->slots, "slots that it shows (two periods, 24 to 64)")
-        ->check(CLI::Range(1, 1024))
-        ->type_name("N");
-    command->footer(
+    add_schedule_choice(command, options->schedule);
+    command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
+        .type_name("FILE");
+    command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
+        .check(whole_check(1, 64))
+        .type_name("N");
+    command.add_option("--slots", options->slots, "slots that it shows (two periods, 24 to 64)")
+        .check(whole_check(1, 1024))
+        .type_name("N");
+    command.footer(
         "In the text, - is open, = open in the second charge store, . closed; a digit is the slot\n"
         "at whose end a pixel is read and how many slots it was open, # for ten or more.\n"
         "Examples:\n"
         "  stipple schedule show random\n"
         "  stipple schedule show two_bucket -o two_bucket.png --pixels 16");
-    command->callback(
+    command.callback(
         [options, &action] { action = [options](const RunOptions& run) { show(*options, run); }; });
 }
 

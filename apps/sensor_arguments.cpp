@@ -1,26 +1,23 @@
 #include "apps/sensor_arguments.h"
 
-#include <CLI/CLI.hpp>
-
 #include "apps/number_check.h"
 #include "apps/timing_arguments.h"
 
 namespace stipple {
 
-void add_sensor_arguments(CLI::App& command, SensorChoice& sensor, const char* settings_option) {
-    command.add_option("--sensor", sensor.sensor, "sensor (paper)")->type_name("NAME|FILE");
+void add_sensor_arguments(Command& command, SensorChoice& sensor, const char* settings_option) {
+    command.add_option("--sensor", sensor.sensor, "sensor (paper)").type_name("NAME|FILE");
     command
         .add_option("--schedule", sensor.schedule,
                     "who exposes when: docs/schedules.md lists the names (random)")
-        ->type_name("NAME|FILE");
+        .type_name("NAME|FILE");
     command
-        .add_option(settings_option, sensor.settings,
-                    "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
+        .add_list(settings_option, sensor.settings,
+                  "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        .type_name("KEY=VALUE");
     command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
-        ->check(whole_check(0))
-        ->type_name("S");
+        .check(whole_check(0))
+        .type_name("S");
     add_overrun(command, sensor.overrun);
 }
 

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
+
+#include "apps/command_line.h"
 
 namespace stipple {
 
@@ -14,11 +15,11 @@ void parse_size(const std::string& option, const std::string& text, int least, i
     const bool crossed = cols.ptr != end && *cols.ptr == 'x';
     const auto rows = std::from_chars(crossed ? cols.ptr + 1 : end, end, shape.rows);
     if (cols.ec != std::errc() || rows.ec != std::errc() || rows.ptr != end)
-        throw CLI::ValidationError(option, "\"" + text + "\" is not a size like 640x480");
+        throw UsageError(option, "\"" + text + "\" is not a size like 640x480");
     for (const int side : {shape.cols, shape.rows})
         if (side < least || side > most)
-            throw CLI::ValidationError(
-                option, fmt::format("{}: sides are {} to {} pixels", text, least, most));
+            throw UsageError(option,
+                             fmt::format("{}: sides are {} to {} pixels", text, least, most));
 }
 
 }  // namespace stipple

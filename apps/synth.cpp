@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -50,21 +49,21 @@ void synth(const SynthOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_synth(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("synth", "Render an embedded HDR scene as footage");
+void add_synth(Command& app, Action& action) {
+    Command command = app.add_command("synth", "Render an embedded HDR scene as footage");
     const auto options = std::make_shared<SynthOptions>();
-    command->add_option("SCENE", options->scene, "pan, roll, pencils, dice or still")
-        ->check(name_check(scene_from_name))
-        ->required();
-    command->add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
-        ->type_name("OUT")
-        ->required();
-    add_scene_arguments(*command, options->rendering);
-    command->footer(
+    command.add_option("SCENE", options->scene, "pan, roll, pencils, dice or still")
+        .check(name_check(scene_from_name))
+        .required();
+    command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
+        .type_name("OUT")
+        .required();
+    add_scene_arguments(command, options->rendering);
+    command.footer(
         "Examples:\n"
         "  stipple synth pan -o scene\n"
         "  stipple synth dice -o dice.mp4 --frames 200 --size 640x480 --seed 7");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { synth(*options, run); };
     });
 }

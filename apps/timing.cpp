@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -72,37 +71,36 @@ void time_readout(const TimingOptions& options, const RunOptions& run) {
 
 }  // namespace
 
-void add_timing(CLI::App& app, Action& action) {
-    auto* command = app.add_subcommand("timing", "How fast a sensor reads, in full and coded");
+void add_timing(Command& app, Action& action) {
+    Command command = app.add_command("timing", "How fast a sensor reads, in full and coded");
     const auto options = std::make_shared<TimingOptions>();
-    command->add_option("--sensor", options->sensor.sensor, "sensor with a section [timing]")
-        ->type_name("NAME|FILE")
-        ->required();
-    command->add_option("--schedule", options->sensor.schedule, "who is read when (random)")
-        ->type_name("NAME|FILE");
+    command.add_option("--sensor", options->sensor.sensor, "sensor with a section [timing]")
+        .type_name("NAME|FILE")
+        .required();
+    command.add_option("--schedule", options->sensor.schedule, "who is read when (random)")
+        .type_name("NAME|FILE");
     command
-        ->add_option_function<std::string>(
+        .add_parsed(
             "--roi",
             [options](const std::string& text) {
                 parse_size("--roi", text, 1, 65535, options->roi);
             },
             "width and height of what is read (the whole array)")
-        ->type_name("WxH");
+        .type_name("WxH");
     command
-        ->add_option("--set", options->sensor.settings,
-                     "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-    command->add_option("--seed", options->sensor.seed, "of the schedule (1)")
-        ->check(whole_check(0))
-        ->type_name("S");
-    add_waveform_arguments(*command, options->waveform);
-    command->footer(
+        .add_list("--set", options->sensor.settings,
+                  "change a key of the sensor, or with \"schedule.\" before it of the schedule")
+        .type_name("KEY=VALUE");
+    command.add_option("--seed", options->sensor.seed, "of the schedule (1)")
+        .check(whole_check(0))
+        .type_name("S");
+    add_waveform_arguments(command, options->waveform);
+    command.footer(
         "Examples:\n"
         "  stipple timing --sensor lux1310\n"
         "  stipple timing --sensor vita --roi 640x480 --schedule tiled --json -\n"
         "  stipple timing --sensor lux1310 --set timing.addressing=group --vcd readout.vcd");
-    command->callback([options, &action] {
+    command.callback([options, &action] {
         action = [options](const RunOptions& run) { time_readout(*options, run); };
     });
 }

@@ -1,21 +1,19 @@
 #include "apps/timing_arguments.h"
 
-#include <CLI/CLI.hpp>
-#include <map>
-
+#include "apps/number_check.h"
 #include "core/error.h"
 
 namespace stipple {
 
-void add_waveform_arguments(CLI::App& command, WaveformOptions& options) {
+void add_waveform_arguments(Command& command, WaveformOptions& options) {
     constexpr int kMostSlots = 1'000'000;
-    auto* file =
+    const auto file =
         command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
-            ->type_name("FILE");
+            .type_name("FILE");
     command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
-        ->check(CLI::Range(1, kMostSlots))
-        ->type_name("N")
-        ->needs(file);
+        .check(whole_check(1, kMostSlots))
+        .type_name("N")
+        .needs(file);
 }
 
 std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
@@ -28,16 +26,12 @@ std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool f
     return std::optional<WaveformFile>(std::in_place, options.file, force);
 }
 
-void add_overrun(CLI::App& command, OverrunPolicy& policy) {
-    const std::map<std::string, OverrunPolicy> policies{{"stretch", OverrunPolicy::kStretch},
-                                                        {"drop", OverrunPolicy::kDrop}};
+void add_overrun(Command& command, OverrunPolicy& policy) {
     command
-        .add_option_function<std::string>(
-            "--overrun",
-            [&policy, policies](const std::string& name) { policy = policies.at(name); },
-            "what a readout that exceeds its slot does: stretch it, or drop rows (stretch)")
-        ->check(CLI::IsMember({"stretch", "drop"}))
-        ->type_name("POLICY");
+        .add_choice("--overrun", policy,
+                    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}},
+                    "what a readout that exceeds its slot does: stretch it, or drop rows (stretch)")
+        .type_name("POLICY");
 }
 
 }  // namespace stipple

@@ -3,12 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "apps/command_line.h"
 #include "apps/waveform_file.h"
 #include "readout/readout_account.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stipple {
 
@@ -17,7 +14,7 @@ struct WaveformOptions {
     std::string file;  ///< empty: none
     int slots = 16;
 };
-void add_waveform_arguments(CLI::App& command, WaveformOptions& options);
+void add_waveform_arguments(Command& command, WaveformOptions& options);
 
 /// The waveform file that is asked for, if any. \throws InputError as WaveformFile, or if the
 /// sensor has no timing to show.
@@ -25,6 +22,6 @@ void add_waveform_arguments(CLI::App& command, WaveformOptions& options);
                                                         bool has_timing);
 
 /// `--overrun stretch|drop`.
-void add_overrun(CLI::App& command, OverrunPolicy& policy);
+void add_overrun(Command& command, OverrunPolicy& policy);
 
 }  // namespace stipple

@@ -8,13 +8,20 @@ if(STIPPLE_FUZZ)
 endif()
 
 # stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...])
-# One library per module, built from the folder of the same name. Headers are listed so that
-# CMAKE_VERIFY_INTERFACE_HEADER_SETS compiles each of them alone.
+# One library per module, built from the folder of the same name. The build proves that a header
+# compiles alone where a source of its name includes it first (tests/checks/headers.py sees to that);
+# CMAKE_VERIFY_INTERFACE_HEADER_SETS compiles each of the others alone.
 function(stipple_module name)
     cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
     add_library(stipple_${name} STATIC ${arg_SOURCES})
-    target_sources(stipple_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR}
-                                          FILES ${arg_HEADERS})
+    list(TRANSFORM arg_SOURCES REPLACE "[.]cpp$" ".h" OUTPUT_VARIABLE proved)
+    set(alone ${arg_HEADERS})
+    list(REMOVE_ITEM alone ${proved})
+    target_sources(stipple_${name} PUBLIC
+        FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR} FILES ${arg_HEADERS}
+        FILE_SET headers_without_source TYPE HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR} FILES ${alone})
+    set_target_properties(stipple_${name} PROPERTIES
+        INTERFACE_HEADER_SETS_TO_VERIFY headers_without_source)
     target_link_libraries(stipple_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 
@@ -33,23 +40,45 @@ function(stipple_verify_headers)
     target_link_libraries(stipple_inner_headers INTERFACE ${arg_LIBS})
 endfunction()
 
-# stipple_test(MODULE [LABEL label] file_test.cpp ...): one executable tests/MODULE; every TEST is a
-# ctest entry.
+# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] file_test.cpp ...): one executable
+# MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of their own
+# match the GoogleTest filter APART: each is a ctest entry.
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "LABEL" "" ${ARGN})
+    cmake_parse_arguments(arg "" "SHARDS;APART;LABEL" "" ${ARGN})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
-    target_link_libraries(${module}_test PRIVATE stipple_test_support GTest::gtest_main)
-    gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60
-                         PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}")
+    target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
+    target_precompile_headers(${module}_test REUSE_FROM stipple_test_main)
+    set(results ${CMAKE_BINARY_DIR}/test_results)  # what tests/support/test_summary.py counts
+    if(arg_APART)
+        gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}"
+                             XML_OUTPUT_DIR ${results} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}")
+    endif()
+    if(arg_APART STREQUAL "*")
+        return()
+    endif()
+    if(NOT arg_SHARDS)
+        set(arg_SHARDS 1)
+    endif()
+    foreach(shard RANGE 1 ${arg_SHARDS})
+        set(name ${module}_test)
+        if(arg_SHARDS GREATER 1)
+            string(APPEND name _${shard}_of_${arg_SHARDS})
+        endif()
+        math(EXPR index "${shard} - 1")
+        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${arg_APART}
+                                                     --gtest_output=xml:${results}/${name}.xml)
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}"
+            ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
+    endforeach()
 endfunction()
 
 # stipple_fuzz(NAME file.cpp LIBS lib ... [SECONDS n]): `file.cpp` defines LLVMFuzzerTestOneInput,
 # tests/fuzz/corpus/NAME holds its inputs. With STIPPLE_FUZZ a libFuzzer program that a test runs
-# for n seconds (default 20); without, the corpus alone is replayed, with any compiler.
+# for n seconds (default 5); without, the corpus alone is replayed, with any compiler.
 function(stipple_fuzz name source)
     cmake_parse_arguments(arg "" "SECONDS" "LIBS" ${ARGN})
     if(NOT arg_SECONDS)
-        set(arg_SECONDS 20)
+        set(arg_SECONDS 5)
     endif()
     set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     add_executable(fuzz_${name} ${source})

@@ -1,12 +1,13 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over blocks and
 // columns are left to the compiler's vectoriser; every target gives the same bits.
+#include "decoder/block_kernels.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/block_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>
 
-#include "decoder/block_kernels.h"
 #include "decoder/colour_axes.h"
 
 HWY_BEFORE_NAMESPACE();

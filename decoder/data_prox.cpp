@@ -1,5 +1,7 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over sites are
 // left to the compiler's vectoriser; every target gives the same bits.
+#include "decoder/data_prox.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/data_prox.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -9,8 +11,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-
-#include "decoder/data_prox.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {

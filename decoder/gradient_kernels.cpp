@@ -1,5 +1,7 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over columns
 // are left to the compiler's vectoriser; every target gives the same bits.
+#include "decoder/gradient_kernels.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/gradient_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -10,8 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <vector>
-
-#include "decoder/gradient_kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {

@@ -1,5 +1,7 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time. Sums of patches are in
 // integers, so every target gives the same bits.
+#include "decoder/inverse_search.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/inverse_search.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -11,8 +13,6 @@
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include "decoder/inverse_search.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {

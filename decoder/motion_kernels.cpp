@@ -1,5 +1,7 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time; every target gives the
 // same bits.
+#include "decoder/motion_kernels.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/motion_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -10,7 +12,6 @@
 #include <cstddef>
 
 #include "decoder/motion.h"
-#include "decoder/motion_kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {

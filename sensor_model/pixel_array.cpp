@@ -1,3 +1,5 @@
+#include "sensor_model/pixel_array.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sensor_model/pixel_array.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -11,7 +13,6 @@
 #include "sensor_model/normal-inl.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/philox-inl.h"
-#include "sensor_model/pixel_array.h"
 #include "sensor_model/poisson-inl.h"
 #include "sensor_model/poisson.h"
 

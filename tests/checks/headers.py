@@ -2,6 +2,9 @@
 headers only, so that no third-party type gets into an interface. `*-inl.h` are the inside of
 Highway kernels, compiled once per target: they have a guard of their own and include hwy.
 
+A source of a library includes its own header first, which proves that the header compiles alone:
+stipple_module() then leaves it out of the headers that are compiled one at a time.
+
 No two headers define a type of the same name: a program that links both is broken, and neither
 compiler nor linker says so."""
 
@@ -13,6 +16,8 @@ from tree import LIBRARIES, report
 FOREIGN = re.compile(r"\s*#\s*include\s*<([^>]*[/.][^>]*)>")
 # At the start of a line: a type of the namespace, no forward declaration.
 DEFINITION = re.compile(r"(?:struct|class|enum class) (\w+)(?: final)?(?: :[^;]*)? \{")
+# The preprocessor's work may begin with nothing else: a macro before it could be what it needs.
+FIRST_INCLUDE = re.compile(r"\A(?:\s*//.*\n|\s*\n)*#include \"([^\"]+)\"")
 
 
 def defined_twice(tree):
@@ -26,8 +31,18 @@ def defined_twice(tree):
                     yield f"{name}:{number}: {definition[1]} is defined in {first} too; rename one"
 
 
+def included_late(tree):
+    for name in tree.of_modules(".cpp", modules=LIBRARIES):
+        own = name.removesuffix(".cpp") + ".h"
+        if own in tree.files:
+            first = FIRST_INCLUDE.search(tree.text(name))
+            if not first or first[1] != own:
+                yield f"{name}:1: include \"{own}\" first, so that it is proved to compile alone"
+
+
 def check(tree):
     yield from defined_twice(tree)
+    yield from included_late(tree)
     inner = tree.ending("-inl.h")
     for name in tree.ending(".h"):
         if name not in inner and "#pragma once" not in tree.text(name).splitlines():

@@ -67,12 +67,19 @@ class ChecksTest(unittest.TestCase):
     def test_third_party_types_stay_out_of_headers(self):
         foreign = "#pragma once\n#include <vector>\n#include <opencv2/core.hpp>\n"
         kernel = "#include <hwy/highway.h>\n"
-        files = {"core/a.h": foreign, "core/a.cpp": foreign, "apps/a.h": foreign,
+        files = {"core/a.h": foreign, "core/z.cpp": foreign, "apps/a.h": foreign,
                  "core/b-inl.h": kernel, "core/c.h": "#pragma once\n" + kernel}
         self.assertEqual(self.places(headers.check, files), ["core/a.h:3", "core/c.h:2"])
 
     def test_a_header_has_pragma_once(self):
         self.assertEqual(self.places(headers.check, {"core/a.h": "int f();\n"}), ["core/a.h:1"])
+
+    def test_a_source_of_a_library_includes_its_own_header_first(self):
+        own = '#include "core/a.h"\n'
+        files = {"core/a.h": "#pragma once\n", "core/b.h": "#pragma once\n", "apps/b.h": "#pragma once\n",
+                 "core/a.cpp": "// Why.\n\n" + own, "core/b.cpp": "#include <vector>\n" + own,
+                 "apps/b.cpp": own, "core/c.cpp": own}
+        self.assertEqual(self.places(headers.check, files), ["core/b.cpp:1"])
 
     def test_a_type_has_one_definition(self):
         files = {"core/a.h": "#pragma once\nclass Twice;\nstruct Once {\n};\n",

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace stipple {
+
+// The command line as the subcommands see it. CLI11 stays inside command_line.cpp: it costs each
+// source that includes it several seconds to compile.
+
+/// The problem of a value, or an empty text.
+using ValueCheck = std::function<std::string(const std::string&)>;
+
+/// A command line that cannot be meant: exit code 2. Thrown by callbacks and by options that take
+/// their value apart themselves.
+class UsageError : public std::runtime_error {
+  public:
+    UsageError(std::string option, const std::string& problem)
+        : std::runtime_error(problem), option_(std::move(option)) {}
+    /// The option that is wrong, or empty: one is missing.
+    [[nodiscard]] const std::string& option() const { return option_; }
+
+  private:
+    std::string option_;
+};
+
+/// An option or a positional argument while it is declared.
+class CommandOption {
+  public:
+    explicit CommandOption(CLI::Option& option) : option_(&option) {}
+
+    CommandOption& type_name(const std::string& name);
+    CommandOption& required();
+    CommandOption& check(const ValueCheck& check);
+    CommandOption& one_of(const std::vector<std::string>& values);
+    /// The heading of the help under which it stands.
+    CommandOption& group(const std::string& heading);
+    CommandOption& needs(const CommandOption& other);
+    CommandOption& excludes(const CommandOption& other);
+
+  private:
+    CLI::Option* option_;
+};
+
+/// A subcommand. Copies stand for the same one. What options write to must outlive the parsing.
+class Command {
+  public:
+    explicit Command(CLI::App& app) : app_(&app) {}
+
+    /// A subcommand of this one, which then asks for one of them.
+    [[nodiscard]] Command add_command(const std::string& name, const std::string& text);
+    /// Text below the options.
+    void footer(const std::string& text);
+    /// Runs once the command line is taken apart, if it names this subcommand.
+    void callback(std::function<void()> action);
+
+    /// `names` as "-o,--output", without a dash a positional argument. Values are texts, paths and
+    /// numbers: those that command_line.cpp lists.
+    template <typename Value>
+    CommandOption add_option(const std::string& names, Value& value, const std::string& text);
+    /// An option that takes its value apart itself.
+    CommandOption add_parsed(const std::string& names, std::function<void(std::string)> take,
+                             const std::string& text);
+    /// An option that may be given several times, with one value each.
+    CommandOption add_list(const std::string& names, std::vector<std::string>& values,
+                           const std::string& text);
+    /// An option that is a name of a value.
+    template <typename Value>
+    CommandOption add_choice(const std::string& names, Value& value,
+                             std::vector<std::pair<std::string, Value>> choices,
+                             const std::string& text) {
+        std::vector<std::string> known;
+        for (const auto& choice : choices) known.push_back(choice.first);
+        const auto take = [&value, choices = std::move(choices)](const std::string& name) {
+            for (const auto& choice : choices)
+                if (choice.first == name) value = choice.second;
+        };
+        return add_parsed(names, take, text).one_of(known);
+    }
+    CommandOption add_flag(const std::string& names, bool& value, const std::string& text);
+    /// A flag that does something.
+    CommandOption add_flag(const std::string& names, std::function<void()> act,
+                           const std::string& text);
+    /// A flag that may have a value, --flag=VALUE; "true" without.
+    CommandOption add_flag(const std::string& names, std::string& value, const std::string& text);
+
+    /// An option that was added before.
+    [[nodiscard]] CommandOption option(const std::string& name);
+    /// For callbacks. \throws UsageError naming the first of these options that was given, although
+    /// it does nothing here; `why` says so and what to do.
+    void refuse(const std::vector<std::string>& names, const std::string& why) const;
+
+    /// This one, if it has no subcommands, else those below it that have none.
+    [[nodiscard]] std::vector<Command> leaves();
+
+  private:
+    CLI::App* app_;
+};
+
+/// The whole command line of a program.
+class CommandLine {
+  public:
+    CommandLine(const std::string& program, const std::string& text, const std::string& version);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    [[nodiscard]] Command root() { return Command(*app_); }
+    enum class Parsed { kAction, kHelp, kWrong };
+    /// Takes the command line apart and runs the callbacks of the subcommand that it names. Prints
+    /// help and version where they are asked for, and what is wrong where something is.
+    [[nodiscard]] Parsed parse(int argc, char** argv);
+
+  private:
+    std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace stipple
