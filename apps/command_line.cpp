@@ -43,6 +43,11 @@ CommandOption& CommandOption::check(const ValueCheck& check) {
     return *this;
 }
 
+CommandOption& CommandOption::split_at_commas() {
+    option_->delimiter(',');
+    return *this;
+}
+
 CommandOption& CommandOption::one_of(const std::vector<std::string>& values) {
     option_->check(CLI::IsMember(values));
     return *this;
@@ -136,7 +141,7 @@ std::vector<Command> Command::leaves() {
 CommandLine::CommandLine(const std::string& program, const std::string& text,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(text, program)) {
-    app_->set_version_flag("--version", program + ' ' + version);
+    if (!version.empty()) app_->set_version_flag("--version", program + ' ' + version);
 }
 
 CommandLine::~CommandLine() = default;

@@ -41,6 +41,8 @@ class CommandOption {
     CommandOption& type_name(const std::string& name);
     CommandOption& required();
     CommandOption& check(const ValueCheck& check);
+    /// Of a list: one value may hold several, "a,b".
+    CommandOption& split_at_commas();
     CommandOption& one_of(const std::vector<std::string>& values);
     /// The heading of the help under which it stands.
     CommandOption& group(const std::string& heading);
@@ -109,7 +111,9 @@ class Command {
 /// The whole command line of a program.
 class CommandLine {
   public:
-    CommandLine(const std::string& program, const std::string& text, const std::string& version);
+    /// Without a version there is no --version.
+    CommandLine(const std::string& program, const std::string& text,
+                const std::string& version = {});
     ~CommandLine();
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;

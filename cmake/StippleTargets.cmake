@@ -7,13 +7,28 @@ if(STIPPLE_FUZZ)
     add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...])
-# One library per module, built from the folder of the same name. The build proves that a header
-# compiles alone where a source of its name includes it first (tests/checks/headers.py sees to that);
-# CMAKE_VERIFY_INTERFACE_HEADER_SETS compiles each of the others alone.
+# What nearly every source includes, read once. Presets that check includes do without: dev and tidy.
+add_compile_options(-pthread)  # as some packages ask for; all that shares a precompiled header must agree
+find_package(fmt REQUIRED)
+add_library(stipple_precompiled OBJECT ${CMAKE_SOURCE_DIR}/cmake/precompiled.cpp)
+target_link_libraries(stipple_precompiled PRIVATE fmt::fmt)
+set(stipple_precompiled_headers
+    <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <memory> <optional> <span> <string> <vector>)
+target_precompile_headers(stipple_precompiled PRIVATE ${stipple_precompiled_headers})
+
+# stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...] [OPTIONS flag ...])
+# One library per module, built from the folder of the same name. A header of whose name there is a
+# source is proved to compile alone by that source, which includes it first (tests/checks/headers.py),
+# where nothing is precompiled; CMAKE_VERIFY_INTERFACE_HEADER_SETS compiles each of the others alone.
 function(stipple_module name)
-    cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
     add_library(stipple_${name} STATIC ${arg_SOURCES})
+    if(arg_OPTIONS)  # other options need a precompiled header of their own
+        target_compile_options(stipple_${name} PRIVATE ${arg_OPTIONS})
+        target_precompile_headers(stipple_${name} PRIVATE ${stipple_precompiled_headers})
+    else()
+        target_precompile_headers(stipple_${name} REUSE_FROM stipple_precompiled)
+    endif()
     list(TRANSFORM arg_SOURCES REPLACE "[.]cpp$" ".h" OUTPUT_VARIABLE proved)
     set(alone ${arg_HEADERS})
     list(REMOVE_ITEM alone ${proved})
@@ -22,7 +37,7 @@ function(stipple_module name)
         FILE_SET headers_without_source TYPE HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR} FILES ${alone})
     set_target_properties(stipple_${name} PROPERTIES
         INTERFACE_HEADER_SETS_TO_VERIFY headers_without_source)
-    target_link_libraries(stipple_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+    target_link_libraries(stipple_${name} PUBLIC ${arg_PUBLIC} PRIVATE fmt::fmt ${arg_PRIVATE})
 endfunction()
 
 # stipple_verify_headers(FOLDER ... LIBS lib ...): where headers are compiled one at a time, those of

@@ -6,13 +6,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <map>
 #include <optional>
 
+#include "apps/command_line.h"
 #include "apps/name_check.h"
+#include "apps/number_check.h"
 #include "core/npy_writer.h"
 #include "decoder/decode_options.h"
 #include "scenes/scene.h"
@@ -168,22 +169,26 @@ int run(int argc, char** argv) {
     TableOptions options;
     for (const NamedDecodeMethod& known : decode_methods())
         options.methods.emplace_back(known.name);
-    CLI::App app("Speed, memory and quality of the decoding methods, as a table");
-    app.add_option("--clips", options.clips, "clips of the footage folder, or scenes")
-        ->delimiter(',');
-    auto* methods = app.add_option("--methods", options.methods, "of `stipple decode` (all)")
-                        ->delimiter(',')
-                        ->check(name_check(decode_method_from_name));
-    app.add_option("--set", options.settings, "METHOD.KEY=VALUE")->allow_extra_args(false);
-    app.add_option("--schedule", options.schedule, "of config/schedules (random)");
-    app.add_option("--size", options.side_px, "side of the crop, pixels (96)")
-        ->check(CLI::Range(8, 4096));
-    app.add_option("--slots", options.slots, "first slots of the clip (24)")
-        ->check(CLI::Range(1, 100000));
-    app.add_flag("--scaling", options.scaling,
-                 "time for a voxel of four sizes instead; all methods but portz2013");
-    CLI11_PARSE(app, argc, argv);
-    if (options.scaling && methods->count() == 0)
+    const auto all_methods = options.methods;
+    CommandLine line("bench_decode",
+                     "Speed, memory and quality of the decoding methods, as a table");
+    Command command = line.root();
+    command.add_list("--clips", options.clips, "clips of the footage folder, or scenes")
+        .split_at_commas();
+    command.add_list("--methods", options.methods, "of `stipple decode` (all)")
+        .split_at_commas()
+        .check(name_check(decode_method_from_name));
+    command.add_list("--set", options.settings, "METHOD.KEY=VALUE");
+    command.add_option("--schedule", options.schedule, "of config/schedules (random)");
+    command.add_option("--size", options.side_px, "side of the crop, pixels (96)")
+        .check(whole_check(8, 4096));
+    command.add_option("--slots", options.slots, "first slots of the clip (24)")
+        .check(whole_check(1, 100000));
+    command.add_flag("--scaling", options.scaling,
+                     "time for a voxel of four sizes instead; all methods but portz2013");
+    if (const auto parsed = line.parse(argc, argv); parsed != CommandLine::Parsed::kAction)
+        return parsed == CommandLine::Parsed::kHelp ? 0 : 2;
+    if (options.scaling && options.methods == all_methods)
         std::erase(options.methods, std::string("portz2013"));
     options.scaling ? print_scaling(options) : print_table(options);
     return 0;

@@ -4,12 +4,13 @@
 // into it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "apps/command_line.h"
+#include "apps/number_check.h"
 #include "bench/sci/sci_trial.h"
 #include "core/config.h"
 #include "core/error.h"
@@ -109,20 +110,22 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
     stipple::Arguments arguments;
-    CLI::App app("Video-SCI benchmark; docs/sci_benchmark.md");
-    app.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of pictures");
-    app.add_option("--masks", arguments.masks, ".npy of 8 masks of 0 and 1 (random ones)");
-    app.add_option("--clips", arguments.clips, "names in FOLDER (the six)")->delimiter(',');
-    app.add_option("--method", arguments.methods, "methods (fast)")->delimiter(',');
-    app.add_option("--set", arguments.settings, "KEY=VALUE, an option of the method")
-        ->allow_extra_args(false);
-    app.add_option("--electrons", arguments.electrons_per_unit, "of light 1.0 (1e6)")
-        ->check(CLI::Range(1.0, 1.2e6));
-    app.add_option("--slots", arguments.slots, "frames of a stand-in (32)")
-        ->check(CLI::Range(8, 1000));
-    app.add_option("--side", arguments.side, "pixels of a stand-in (256)")
-        ->check(CLI::Range(8, 1024));
-    CLI11_PARSE(app, argc, argv);
+    stipple::CommandLine line("bench_sci", "Video-SCI benchmark; docs/sci_benchmark.md");
+    stipple::Command command = line.root();
+    command.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of pictures");
+    command.add_option("--masks", arguments.masks, ".npy of 8 masks of 0 and 1 (random ones)");
+    command.add_list("--clips", arguments.clips, "names in FOLDER (the six)").split_at_commas();
+    command.add_list("--method", arguments.methods, "methods (fast)").split_at_commas();
+    command.add_list("--set", arguments.settings, "KEY=VALUE, an option of the method");
+    command.add_option("--electrons", arguments.electrons_per_unit, "of light 1.0 (1e6)")
+        .check(stipple::number_check(1, 1.2e6));
+    command.add_option("--slots", arguments.slots, "frames of a stand-in (32)")
+        .check(stipple::whole_check(8, 1000));
+    command.add_option("--side", arguments.side, "pixels of a stand-in (256)")
+        .check(stipple::whole_check(8, 1024));
+    using Parsed = stipple::CommandLine::Parsed;
+    if (const Parsed parsed = line.parse(argc, argv); parsed != Parsed::kAction)
+        return parsed == Parsed::kHelp ? 0 : 2;
     try {
         stipple::run(arguments);
     } catch (const std::exception& e) {

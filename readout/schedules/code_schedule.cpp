@@ -114,8 +114,8 @@ std::string code_of(const ExposureSchedule& schedule, int row, int col, int peri
     return code;
 }
 
-/// A TOML string.
-std::string quoted(std::string_view text) {
+/// `text` as a TOML string.
+std::string toml_string(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\')
@@ -166,7 +166,7 @@ std::string code_text(const ExposureSchedule& schedule, const std::string& name)
         "# A string per pixel, row by row, a character per slot: . closed, A begins an exposure, "
         "a\n"
         "# goes on with it; B and b in the pixel's second charge store.\ncode = [\n",
-        quoted(name), rows, cols, slots);
+        toml_string(name), rows, cols, slots);
     for (int row = 0; row < rows; ++row)
         for (int col = 0; col < cols; ++col) {
             const bool ends_line = !row_per_line || col + 1 == cols;

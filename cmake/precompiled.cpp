@@ -1,0 +1,1 @@
+// Nothing: the target that other targets take their precompiled header from needs a source.
