@@ -9,8 +9,8 @@ endif()
 
 # What nearly every source includes, read once. Presets that check includes do without: dev and tidy.
 add_compile_options(-pthread)  # as some packages ask for; all that shares a precompiled header must agree
-find_package(fmt REQUIRED)
-add_library(stipple_precompiled OBJECT ${CMAKE_SOURCE_DIR}/cmake/precompiled.cpp)
+file(TOUCH ${CMAKE_BINARY_DIR}/precompiled.cpp)
+add_library(stipple_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
 target_link_libraries(stipple_precompiled PRIVATE fmt::fmt)
 set(stipple_precompiled_headers
     <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <memory> <optional> <span> <string> <vector>)

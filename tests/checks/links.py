@@ -7,7 +7,7 @@ import re
 from tree import report
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-MENTION = re.compile(r"(?<![\w/.-])((?:docs/\w+\.md)|(?:scripts/[\w-]+(?:\.txt)?))(?![\w/*])")
+MENTION = re.compile(r"(?<![\w/.-])((?:docs/\w+\.md)|(?:scripts/[\w-]+(?:\.txt|\.py)?))(?![\w/*])")
 
 
 def check(tree):

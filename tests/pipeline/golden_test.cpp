@@ -10,6 +10,7 @@
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/fnv1a.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
@@ -40,7 +41,8 @@ std::uint64_t hash_of(std::span<const float> values) {
 void expect_golden(const std::string& name, const std::filesystem::path& stream,
                    DecodeMethod method) {
     const FluxVideo decoded = read_recording(stream, method);
-    const std::string golden_file = STIPPLE_SOURCE_DIR "/tests/golden/decoder/" + name + ".fnv1a";
+    const std::string golden_file =
+        (source_folder() / "tests/golden/decoder" / (name + ".fnv1a")).string();
     if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
         std::ofstream(golden_file) << std::hex << hash_of(decoded.data()) << '\n';
     std::uint64_t golden = 0;

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
@@ -36,8 +37,8 @@ FluxVideo scene(FrameShape shape) {
 
 std::vector<std::string> names() {
     std::vector<std::string> names;
-    for (const auto& file : std::filesystem::directory_iterator(
-             std::filesystem::path(STIPPLE_SOURCE_DIR) / "config/schedules"))
+    for (const auto& file :
+         std::filesystem::directory_iterator(source_folder() / "config/schedules"))
         names.push_back(file.path().stem().string());
     std::ranges::sort(names);
     return names;

@@ -19,6 +19,7 @@
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/fnv1a.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
@@ -196,7 +197,7 @@ TEST(CodedSensorTest, KeepsTheRecordedBits) {
     Fnv1a hash;
     for (const auto& slot : expose_all(video, schedule))
         for (const std::uint16_t dn : slot) hash.add(dn, 2);
-    const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "tests/golden/readout";
+    const auto folder = source_folder() / "tests/golden/readout";
     std::uint64_t golden = 0;
     std::ifstream(folder / "coded_sensor_dn.fnv1a") >> std::hex >> golden;
     EXPECT_EQ(hash.hash(), golden) << std::hex << hash.hash();

@@ -13,6 +13,7 @@
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/random_codes.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
@@ -22,7 +23,7 @@ constexpr std::uint64_t kSeed = 5;
 
 NamedSchedule read(const std::string& name, const std::vector<std::string>& overrides = {},
                    FrameShape shape = kShape) {
-    const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "config/schedules";
+    const auto folder = source_folder() / "config/schedules";
     Config config(folder / (name + ".toml"), overrides);
     NamedSchedule schedule = read_schedule(config, shape, kSeed);
     config.reject_unknown_keys();
@@ -104,7 +105,7 @@ TEST(ScheduleCatalogueTest, ReadsEveryKey) {
 }
 
 TEST(ScheduleCatalogueTest, HardwareTiledSuitsTheSensorUnlessTheFileSaysElse) {
-    const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "config/schedules";
+    const auto folder = source_folder() / "config/schedules";
     const ColumnAddressing sensor{ColumnAddressing::Kind::kGroup, 16, 8, 2};
     const auto made = [&](const std::vector<std::string>& overrides) {
         Config config(folder / "hardware_tiled.toml", overrides);

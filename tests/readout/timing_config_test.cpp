@@ -4,12 +4,13 @@
 #include "readout/readout_timing.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/sensor_timing.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
 
 TEST(TimingConfigTest, ASensorWithoutTheSectionHasNoTiming) {
-    Config config(std::string(STIPPLE_SOURCE_DIR) + "/config/sensors/paper.toml", {});
+    Config config((source_folder() / "config/sensors/paper.toml").string(), {});
     EXPECT_FALSE(read_timing(config, 8).has_value());
 }
 

@@ -6,13 +6,14 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
 
 SensorParams read(const std::vector<std::string>& overrides = {},
                   const std::string& name = "paper") {
-    const auto folder = std::filesystem::path(STIPPLE_SOURCE_DIR) / "config/sensors";
+    const auto folder = source_folder() / "config/sensors";
     const auto file = folder / (name + ".toml");
     Config config(file, overrides);
     const SensorParams params = read_sensor(config);

@@ -6,14 +6,14 @@
 #include "stream/slot_index.h"
 #include "tests/stream/golden_cases.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
 
 /// Lines between "```hex" and "```" in docs/stream_format.md.
 std::vector<std::string> hex_lines() {
-    std::istringstream document(
-        read_text(std::filesystem::path(STIPPLE_SOURCE_DIR) / "docs/stream_format.md"));
+    std::istringstream document(read_text(source_folder() / "docs/stream_format.md"));
     std::vector<std::string> lines;
     std::string line;
     while (std::getline(document, line) && line != "```hex") continue;

@@ -8,14 +8,14 @@
 #include "core/error.h"
 #include "tests/stream/golden_cases.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::filesystem::path kFolder =
-    std::filesystem::path(STIPPLE_SOURCE_DIR) / "tests/golden/stream";
+const std::filesystem::path kFolder = source_folder() / "tests/golden/stream";
 
 bool updating() {
     return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;

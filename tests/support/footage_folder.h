@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/source_tree.h"
+
 namespace stipple {
 
 /// The folder of real footage: $STIPPLE_FOOTAGE, or shared/footage beside the project. It may be
@@ -10,7 +12,7 @@ namespace stipple {
 inline std::filesystem::path footage_folder() {
     const char* folder = std::getenv("STIPPLE_FOOTAGE");
     return folder != nullptr ? std::filesystem::path(folder)
-                             : std::filesystem::path(STIPPLE_SOURCE_DIR) / "../shared/footage";
+                             : source_folder() / "../shared/footage";
 }
 
 }  // namespace stipple

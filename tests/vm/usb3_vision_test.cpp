@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"
 #include "tests/capture/fake_frame.h"
+#include "tests/support/source_tree.h"
 
 namespace stipple {
 namespace {
@@ -235,7 +236,7 @@ TEST_F(Usb3VisionTest, ASecondProgramIsToldThatTheCameraIsTaken) {
 
 TEST_F(Usb3VisionTest, TheProgramRecordsItBitExactly) {
     const auto file = std::filesystem::temp_directory_path() / "usb.strec";
-    const std::string command = std::string(STIPPLE_BINARY_DIR) + "/stipple capture record " +
+    const std::string command = (build_folder() / "stipple").string() + " capture record " +
                                 kAddress + " -o " + file.string() +
                                 " --frames 20 --stall 5000 --force";
     ASSERT_EQ(std::system(command.c_str()), 0);

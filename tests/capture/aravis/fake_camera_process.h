@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.h"
+
 extern char** environ;
 
 namespace stipple {
@@ -23,8 +25,7 @@ class FakeCameraProcess {
     /// `options` as in the head of fake_gige_camera.cpp.
     explicit FakeCameraProcess(std::vector<std::string> options = {},
                                std::string program = "fake_gige_camera")
-        : options_(std::move(options)),
-          program_(std::string(STIPPLE_BINARY_DIR) + "/" + std::move(program)) {
+        : options_(std::move(options)), program_((build_folder() / program).string()) {
         start();
     }
     ~FakeCameraProcess() {
