@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "decoder/collaborative_filter.h"
 #include "decoder/data_prox.h"
+#include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 #include "decoder/stabilised_light.h"
 
@@ -17,7 +18,6 @@ namespace {
 constexpr double kStartShare = 0.15;  // of all work; for the checkpoint
 constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
 constexpr float kMaxSigma = 10;
-constexpr float kOffsetSlots = 32;  // of an exposure whose read noise sets the light offset
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
@@ -30,7 +30,7 @@ class CollaborativeSolver {
         : measurements_(measurements),
           noise_(noise),
           options_(options),
-          offset_(std::clamp(noise.variance(0) / noise.per_light() / kOffsetSlots,
+          offset_(std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
                              options.light_offset, kMaxOffset)),
           last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
                                  options.least_sigma, kMaxSigma)),

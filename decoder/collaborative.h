@@ -10,6 +10,8 @@
 
 namespace stipple {
 
+class SampleNoise;
+
 /// What is different where the planes are a mosaic of colours: two of three voxels are filled by
 /// the filter alone, which takes more iterations and stronger ones at first. In those it looks for
 /// similar blocks nearby rather than in other slots, where a thing at rest is under the same
@@ -38,6 +40,7 @@ struct CollaborativeOptions {
     float least_sigma = 0.01F;
     /// Flux that is added before the square root, at least; more where read noise is larger.
     float light_offset = 0.002F;
+    float offset_slots = 32;  ///< of an exposure whose read noise sets that offset
     /// Share of the samples' residuals that is added to them, and what is kept of that in the next
     /// iteration.
     float feedback = 0.25F;

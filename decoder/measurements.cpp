@@ -8,61 +8,10 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "decoder/pixel_response.h"
 
 namespace stipple {
 namespace {
-
-/// DN of one pixel of the calibration tile to light, which DN say only "at least", and the noise.
-struct PixelLaw {
-    double unit_per_dn;
-    double dark_per_slot;  ///< light that the dark electrons of an open slot look like
-    double saturation_dn;
-    SampleNoise noise;
-    float dark_variance_per_slot;
-};
-
-PixelLaw law_of(const Calibration& whole, const CalibrationPixel& pixel) {
-    Calibration c = whole;
-    c.gain_e_per_dn /= pixel.conversion_gain;
-    c.electrons_per_unit *= pixel.responsivity;
-    // A sample within two standard deviations of the full well may have been clipped by it.
-    const double well_dn =
-        c.black_level_dn + (c.full_well_e - 2 * c.read_noise_e) / c.gain_e_per_dn;
-    const double full_scale_dn = static_cast<double>((1U << c.bit_depth) - 1);
-    const double dark = c.dark_e_per_slot / c.electrons_per_unit;
-    return {.unit_per_dn = c.gain_e_per_dn / c.electrons_per_unit,
-            .dark_per_slot = dark,
-            .saturation_dn = std::min(full_scale_dn, well_dn),
-            .noise = SampleNoise(c),
-            .dark_variance_per_slot = static_cast<float>(dark / c.electrons_per_unit)};
-}
-
-/// The laws of all pixels.
-class Converter {
-  public:
-    explicit Converter(const Calibration& calibration)
-        : tile_(calibration.tile),
-          black_level_dn_(calibration.black_level_dn -
-                          (calibration.rounding == Rounding::kFloor ? 0.5 : 0.0)) {
-        if (tile_.pixels.empty()) tile_ = {1, 1, {CalibrationPixel{}}};
-        for (const CalibrationPixel& pixel : tile_.pixels)
-            laws_.push_back(law_of(calibration, pixel));
-    }
-    [[nodiscard]] const PixelLaw& law(int row, int col) const {
-        return laws_[static_cast<std::size_t>(row % tile_.rows) *
-                         static_cast<std::size_t>(tile_.cols) +
-                     static_cast<std::size_t>(col % tile_.cols)];
-    }
-    [[nodiscard]] float light(const PixelLaw& law, std::uint16_t dn, int open_slots) const {
-        return static_cast<float>((dn - black_level_dn_) * law.unit_per_dn -
-                                  law.dark_per_slot * open_slots);
-    }
-
-  private:
-    CalibrationTile tile_;
-    double black_level_dn_;
-    std::vector<PixelLaw> laws_;
-};
 
 std::size_t index(std::int64_t value) {
     return static_cast<std::size_t>(value);
@@ -74,7 +23,7 @@ class Collector {
         : schedule_(header.schedule),
           array_(header.shape),
           cfa_(header.cfa),
-          converter_(header.calibration),
+          responses_(header.calibration),
           window_(window),
           out_(measurements) {}
 
@@ -108,9 +57,9 @@ class Collector {
         const int first_plane = cfa_ == ColourFilter::kNone ? 0 : colour_plane(cfa_, row, col);
         auto voxel = index(first) * sites + index(first_plane) * window_.shape.pixels() +
                      index(window_row) * index(window_.shape.cols) + index(window_col);
-        const PixelLaw& law = converter_.law(row, col);
+        const PixelResponse& response = responses_.at(row, col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
-            write(voxel, sample.dn[plane], span, law);
+            write(voxel, sample.dn[plane], span, response);
     }
 
     struct Span {
@@ -119,7 +68,8 @@ class Collector {
         std::uint8_t open_state;  ///< kOpen, and the chain
     };
 
-    void write(std::size_t first_voxel, std::uint16_t dn, const Span& span, const PixelLaw& law) {
+    void write(std::size_t first_voxel, std::uint16_t dn, const Span& span,
+               const PixelResponse& response) {
         const auto sites = window_.shape.sites();
         for (int i = 0; i < span.slots; ++i)
             if ((span.open_slots >> static_cast<unsigned>(i) & 1U) != 0)
@@ -127,14 +77,15 @@ class Collector {
         const std::size_t last_voxel = first_voxel + index(span.slots - 1) * sites;
         out_.state[first_voxel] |= Measurements::kFirst;
         out_.state[last_voxel] |= Measurements::kLast;
-        if (dn >= law.saturation_dn) out_.state[last_voxel] |= Measurements::kSaturated;
+        if (response.saturated(dn)) out_.state[last_voxel] |= Measurements::kSaturated;
         const int open_slots = std::popcount(span.open_slots);
-        out_.sum[last_voxel] = converter_.light(law, dn, open_slots);
-        out_.variance[last_voxel] = law.noise.variance(out_.sum[last_voxel]);
+        out_.sum[last_voxel] = response.light(dn, open_slots);
+        out_.variance[last_voxel] = response.noise().variance(out_.sum[last_voxel]);
         if (out_.dark_variance.empty()) return;
         out_.dark_variance[last_voxel] =
-            law.noise.variance(0) + law.dark_variance_per_slot * static_cast<float>(open_slots);
-        out_.variance_per_light[last_voxel] = law.noise.per_light();
+            response.noise().variance(0) +
+            response.dark_variance_per_slot() * static_cast<float>(open_slots);
+        out_.variance_per_light[last_voxel] = response.noise().per_light();
         out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
     }
 
@@ -155,7 +106,7 @@ class Collector {
     const ExposureSchedule& schedule_;
     FrameShape array_;
     ColourFilter cfa_;
-    Converter converter_;
+    PixelResponses responses_;
     VideoWindow window_;
     Measurements& out_;
 };
@@ -196,13 +147,6 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
     parallel_for(0, static_cast<int>(packets.size()),
                  [&](int i) { collector.add(packets[index(i)]); });
     return result;
-}
-
-SampleNoise::SampleNoise(const Calibration& calibration)
-    : per_unit_(static_cast<float>(1 / calibration.electrons_per_unit)) {
-    const double read = calibration.read_noise_e / calibration.electrons_per_unit;
-    const double quantum = calibration.gain_e_per_dn / calibration.electrons_per_unit;
-    constant_ = static_cast<float>(read * read + quantum * quantum / 12);
 }
 
 }  // namespace stipple

@@ -63,35 +63,13 @@ struct Measurements {
 /// colours, else that of the array.
 [[nodiscard]] FrameShape decoded_shape(const StreamHeader& header);
 
-/// Collects the samples of `window` from packets that may hold more, each converted by its pixel of
-/// the calibration tile:
-///
-///     light = ((DN - black level) K^-1 / g - D n) / (r R),
-///
-/// g relative gain, R relative responsivity, D dark electrons a slot, n open slots. Variances are
-/// set as if each sample were its own mean. The samples of a mosaic go to the planes of their
-/// colours. \throws InputError if more than two exposures of a pixel are under way at once.
+/// Collects the samples of `window` from packets that may hold more, each converted by the response
+/// of its pixel (pixel_response.h). Variances are set as if each sample were its own mean. The
+/// samples of a mosaic go to the planes of their colours.
+/// \throws InputError if more than two exposures of a pixel are under way at once.
 /// Precondition: window.shape.planes == decoded_shape(header).planes.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);
-
-/// Noise of a sample in the units of FluxVideo: shot noise, read noise and rounding.
-class SampleNoise {
-  public:
-    explicit SampleNoise(const Calibration& calibration);
-    /// (r X + sigma^2) / r^2 + q^2 / 12 for an exposure that collected the light X: r electrons
-    /// per unit, read noise sigma, one DN q.
-    [[nodiscard]] float variance(float light) const {
-        return constant_ + per_unit_ * (light > 0 ? light : 0);
-    }
-
-    /// What a unit of light adds to the variance: 1 / r.
-    [[nodiscard]] float per_light() const { return per_unit_; }
-
-  private:
-    float per_unit_;
-    float constant_;
-};
 
 }  // namespace stipple

@@ -10,6 +10,8 @@
 
 namespace stipple {
 
+class SampleNoise;
+
 /// What is different where the planes are a mosaic of colours: a third of the samples, so the prior
 /// weighs less, but colours that change from pixel to pixel are hardly true.
 struct MosaicTvOptions {

@@ -12,8 +12,11 @@
 #include "decoder/block_partition.h"
 #include "decoder/collaborative.h"
 #include "decoder/defects.h"
+#include "decoder/frame_exposures.h"
+#include "decoder/frame_interpolation.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
+#include "decoder/pixel_response.h"
 
 namespace stipple {
 namespace {
@@ -168,6 +171,23 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     return video;
 }
 
+/// By the methods that have a prior on the video, `fast` and `best`.
+Block decode_by_prior(Measurements& measurements, const SampleNoise& noise,
+                      const DecodeOptions& options, const Checkpoint& checkpoint) {
+    unobserve_defects(measurements);
+    return options.method == DecodeMethod::kFast
+               ? decode_motion_tv(measurements, noise, options.fast, checkpoint)
+               : decode_collaborative(measurements, noise, options.best, checkpoint);
+}
+
+/// A frame's one exposure has all its read noise, and no other sample says what the filter has
+/// taken.
+DecodeOptions options_of_frames(DecodeOptions options) {
+    options.best.offset_slots = 1;
+    options.best.feedback = 0;
+    return options;
+}
+
 }  // namespace
 
 std::optional<FluxVideo> decode_block(Measurements measurements, const Calibration& calibration,
@@ -176,18 +196,21 @@ std::optional<FluxVideo> decode_block(Measurements measurements, const Calibrati
     switch (options.method) {
         case DecodeMethod::kNaive:
             return nearest_samples(measurements);
-        case DecodeMethod::kFast:
-            unobserve_defects(measurements);
-            return decode_motion_tv(measurements, SampleNoise(calibration), options.fast,
-                                    checkpoint);
         case DecodeMethod::kPortz2013:
             return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
+        case DecodeMethod::kFast:
         case DecodeMethod::kBest:
-            unobserve_defects(measurements);
-            return decode_collaborative(measurements, SampleNoise(calibration), options.best,
-                                        checkpoint);
+            break;
     }
-    return {};
+    const SampleNoise noise(calibration);
+    if (const auto exposures = frame_exposures(measurements)) {
+        Measurements frames = measurements_of_frames(measurements, *exposures, noise);
+        const auto x = decode_by_prior(frames, noise_of_frames(calibration, *exposures),
+                                       options_of_frames(options), checkpoint);
+        if (!x) return {};
+        return interpolate_frames(*x, centre_slots(*exposures), measurements.slots);
+    }
+    return decode_by_prior(measurements, noise, options, checkpoint);
 }
 
 DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,

@@ -6,6 +6,8 @@
 
 namespace stipple {
 
+class SampleNoise;
+
 // The sampling operator A of y = A x + noise: one row per exposure, 1 at each of its open voxels.
 // Rows share no voxel, so A A^T is diagonal and holds the number of open voxels. Arrays are those
 // of Measurements; a row is stored at its last voxel. The same bits for any thread count.

@@ -81,32 +81,14 @@ double standard_errors_between(const ScheduleResidual& better, const ScheduleRes
 }
 
 ResidualMeter::ResidualMeter(const StreamHeader& header, std::span<const SamplePacket> packets)
-    : header_(header), packets_(packets) {
-    const Calibration& c = header.calibration;
-    black_level_dn_ = c.black_level_dn - (c.rounding == Rounding::kFloor ? 0.5 : 0.0);
-    const double full_scale_dn = static_cast<double>((1U << c.bit_depth) - 1);
-    const CalibrationPixel same;
-    for (const CalibrationPixel& pixel :
-         c.tile.pixels.empty() ? std::span(&same, 1) : std::span(c.tile.pixels)) {
-        const double gain = c.gain_e_per_dn / pixel.conversion_gain;
-        const double well_dn = c.black_level_dn + (c.full_well_e - 2 * c.read_noise_e) / gain;
-        const double r = pixel.responsivity;
-        laws_.push_back({gain / r, c.dark_e_per_slot / r, std::min(full_scale_dn, well_dn),
-                         (c.read_noise_e * c.read_noise_e + gain * gain / 12) / (r * r), 1 / r});
-    }
-}
+    : header_(header), packets_(packets), responses_(header.calibration) {}
 
 ResidualMeter::Rate ResidualMeter::rate_of(int row, int col, std::uint16_t dn, int slots) const {
-    const CalibrationTile& tile = header_.calibration.tile;
-    const Law& law =
-        tile.pixels.empty()
-            ? laws_.front()
-            : laws_[index(row % tile.rows) * index(tile.cols) + index(col % tile.cols)];
-    if (dn >= law.saturation_dn) return {.light = kSaturated};
-    const double n = slots;
-    const double e = (dn - black_level_dn_) * law.e_per_dn - law.dark_e_per_slot * n;
-    const double variance = law.constant_variance_e2 + law.variance_per_e * std::max(e, 0.0);
-    return {static_cast<float>(e / n), static_cast<float>(variance / (n * n))};
+    const PixelResponse& response = responses_.at(row, col);
+    if (response.saturated(dn)) return {.light = kSaturated};
+    const float light = response.light(dn, slots);
+    const auto n = static_cast<float>(slots);
+    return {light / n, response.noise().variance(light) / (n * n)};
 }
 
 void ResidualMeter::add_pair(const Rate& a, const Rate& b, std::size_t part,

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "decoder/pixel_response.h"
 #include "decoder/schedule_shift.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
@@ -52,16 +52,8 @@ class ResidualMeter {
     [[nodiscard]] bool fits(const ScheduleShift& shift) const;
 
   private:
-    /// What turns DN into electrons that a pixel of responsivity 1 would have, and their noise.
-    struct Law {
-        double e_per_dn;
-        double dark_e_per_slot;
-        double saturation_dn;
-        double constant_variance_e2;
-        double variance_per_e;
-    };
     struct Rate {
-        float light = 0;     ///< electrons per slot
+        float light = 0;     ///< per slot
         float variance = 0;  ///< of `light`
         std::int64_t slot = -1000;
     };
@@ -74,8 +66,7 @@ class ResidualMeter {
 
     const StreamHeader& header_;
     std::span<const SamplePacket> packets_;
-    std::vector<Law> laws_;
-    double black_level_dn_;
+    PixelResponses responses_;
 };
 
 }  // namespace stipple

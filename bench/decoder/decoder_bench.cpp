@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
+#include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
 #include "scenes/scene.h"
 

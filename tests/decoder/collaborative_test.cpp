@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "decoder/pixel_response.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

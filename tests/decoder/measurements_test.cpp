@@ -57,10 +57,11 @@ TEST(MeasurementsTest, AreSaturatedAtFullScaleAndAtTheFullWell) {
     Calibration calibration;
     EXPECT_TRUE(saturated(calibration, 255));
     EXPECT_FALSE(saturated(calibration, 254));
-    // A well of 1000 e, read noise 10 e: from 980 e on, DN 125 of 2000 / 255 e.
+    // A well of 1000 e, 127.5 DN of 2000 / 255 e; read noise of 10 e and rounding come to 1.31 DN,
+    // and five times that below the well is 120.96.
     calibration.full_well_e = 1000;
-    EXPECT_TRUE(saturated(calibration, 125));
-    EXPECT_FALSE(saturated(calibration, 124));
+    EXPECT_TRUE(saturated(calibration, 121));
+    EXPECT_FALSE(saturated(calibration, 120));
 }
 
 /// Every voxel's state and sum against the list of exposures, in a window that cuts the recording.

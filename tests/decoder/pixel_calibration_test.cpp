@@ -8,6 +8,7 @@
 #include "decoder/measurements.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
+#include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"

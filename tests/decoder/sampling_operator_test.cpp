@@ -1,4 +1,5 @@
 #include "decoder/sampling_operator.h"
+#include "decoder/pixel_response.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "decoder/total_variation.h"
+#include "decoder/pixel_response.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,146 @@
+#include "decoder/frame_exposures.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+namespace stipple {
+namespace {
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+/// Exposures by their last slot, and how many sites have each.
+class ExposureList {
+  public:
+    /// False if it is not the same as one that ends with it.
+    bool add(const FrameExposure& exposure) {
+        Entry& entry = entries_.try_emplace(exposure.last_slot, Entry{exposure, 0}).first->second;
+        ++entry.sites;
+        const FrameExposure& known = entry.exposure;
+        return known.first_slot == exposure.first_slot && known.open_slots == exposure.open_slots &&
+               known.centre_slot == exposure.centre_slot;
+    }
+    /// In order, if each is of half the sites or more: of the others samples are missing.
+    [[nodiscard]] std::vector<FrameExposure> of_most(std::size_t sites) const {
+        std::vector<FrameExposure> result;
+        for (const auto& [last_slot, entry] : entries_) {
+            if (2 * entry.sites < sites) return {};
+            result.push_back(entry.exposure);
+        }
+        return result;
+    }
+
+  private:
+    struct Entry {
+        FrameExposure exposure;
+        std::size_t sites;
+    };
+    std::map<int, Entry> entries_;
+};
+
+enum class Site { kAdded, kWithoutSamples, kContradicts };
+
+/// Adds the exposures of one site to the list.
+Site add_site(const Measurements& m, std::size_t site, ExposureList& list) {
+    Site result = Site::kWithoutSamples;
+    FrameExposure exposure;
+    float sum = 0;
+    for (int slot = 0; slot < m.slots; ++slot) {
+        const std::uint8_t state = m.state[index(slot) * m.shape.sites() + site];
+        if ((state & Measurements::kFirst) != 0) {
+            exposure = {.first_slot = slot};
+            sum = 0;
+        }
+        if ((state & Measurements::kOpen) != 0) {
+            ++exposure.open_slots;
+            sum += static_cast<float>(slot);
+        }
+        if ((state & Measurements::kLast) == 0) continue;
+        exposure.last_slot = slot;
+        exposure.centre_slot = sum / static_cast<float>(exposure.open_slots);
+        if (!list.add(exposure)) return Site::kContradicts;
+        result = Site::kAdded;
+    }
+    return result;
+}
+
+bool overlap(const FrameExposure& a, const FrameExposure& b) {
+    return b.first_slot <= a.last_slot;
+}
+
+}  // namespace
+
+std::optional<std::vector<FrameExposure>> frame_exposures(const Measurements& measurements) {
+    if (measurements.interleaved) return {};
+    ExposureList list;
+    std::size_t sites = 0;
+    for (std::size_t i = 0; i < measurements.shape.sites(); ++i) {
+        const Site site = add_site(measurements, i, list);
+        if (site == Site::kContradicts) return {};
+        if (site == Site::kAdded) ++sites;
+    }
+    std::vector<FrameExposure> exposures = list.of_most(sites);
+    if (exposures.empty() || std::ranges::adjacent_find(exposures, overlap) != exposures.end())
+        return {};
+    const auto span = [](const FrameExposure& e) { return e.last_slot - e.first_slot + 1; };
+    const auto unlike_the_first = [&](const FrameExposure& e) {
+        return span(e) != span(exposures.front()) || e.open_slots != exposures.front().open_slots;
+    };
+    if (std::ranges::any_of(exposures, unlike_the_first)) return {};
+    const bool every_slot = span(exposures.front()) == 1 &&
+                            exposures.back().last_slot - exposures.front().first_slot + 1 ==
+                                static_cast<int>(exposures.size());
+    if (every_slot) return {};
+    return exposures;
+}
+
+Measurements measurements_of_frames(const Measurements& measurements,
+                                    std::span<const FrameExposure> exposures,
+                                    const SampleNoise& noise) {
+    const std::size_t sites = measurements.shape.sites();
+    const std::size_t voxels = exposures.size() * sites;
+    Measurements result{.slots = static_cast<int>(exposures.size()),
+                        .shape = measurements.shape,
+                        .state = std::vector<std::uint8_t>(voxels),
+                        .sum = std::vector<float>(voxels),
+                        .variance = std::vector<float>(voxels),
+                        .mosaic = measurements.mosaic,
+                        .dark_variance = std::vector<float>(voxels),
+                        .variance_per_light = std::vector<float>(voxels)};
+    const bool own_noise = !measurements.dark_variance.empty();
+    for (std::size_t frame = 0; frame < exposures.size(); ++frame) {
+        const auto n = static_cast<float>(exposures[frame].open_slots);
+        const std::size_t from = index(exposures[frame].last_slot) * sites;
+        const std::size_t to = frame * sites;
+        for (std::size_t site = 0; site < sites; ++site) {
+            const std::uint8_t state = measurements.state[from + site];
+            if ((state & Measurements::kLast) == 0) continue;
+            result.state[to + site] =
+                static_cast<std::uint8_t>(Measurements::kOpen | Measurements::kFirst |
+                                          Measurements::kLast | (state & Measurements::kSaturated));
+            result.sum[to + site] = measurements.sum[from + site] / n;
+            result.dark_variance[to + site] =
+                (own_noise ? measurements.dark_variance[from + site] : noise.variance(0)) / (n * n);
+            result.variance_per_light[to + site] =
+                (own_noise ? measurements.variance_per_light[from + site] : noise.per_light()) / n;
+            result.variance[to + site] = result.variance_at(to + site, result.sum[to + site]);
+        }
+    }
+    return result;
+}
+
+std::vector<float> centre_slots(std::span<const FrameExposure> exposures) {
+    std::vector<float> centres;
+    for (const FrameExposure& exposure : exposures) centres.push_back(exposure.centre_slot);
+    return centres;
+}
+
+SampleNoise noise_of_frames(Calibration calibration, std::span<const FrameExposure> exposures) {
+    calibration.electrons_per_unit *= exposures.front().open_slots;
+    return SampleNoise(calibration);
+}
+
+}  // namespace stipple
