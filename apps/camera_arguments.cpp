@@ -13,9 +13,11 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
     command
         .add_option("ADDRESS", arguments.address,
                     "gige:IP, usb:SERIAL, v4l2:/dev/videoN or replay:FILE")
-        .required();
+        .required()
+        .input();
     command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
-        .type_name("FILE");
+        .type_name("FILE")
+        .input();
     command
         .add_list("--set", arguments.settings,
                   "set a feature or control of the camera, over --config")

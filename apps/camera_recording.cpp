@@ -3,7 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,7 +33,11 @@ constexpr milliseconds kPatience{100};
 std::filesystem::path file_for(const std::string& output) {
     std::filesystem::path path(output);
     if (!std::filesystem::is_directory(path)) return path;
-    return path / fmt::format("{:%Y%m%d_%H%M%S}.strec", fmt::gmtime(std::time(nullptr)));
+    // Cameras that a script starts together share the second.
+    const auto now = std::chrono::system_clock::now();
+    const auto ms = std::chrono::duration_cast<milliseconds>(now.time_since_epoch()).count() % 1000;
+    return path / fmt::format("{:%Y%m%d_%H%M%S}_{:03}.strec",
+                              fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms);
 }
 
 SessionRecord session_record(const CameraDescription& camera, const CameraSettings& settings) {

@@ -12,8 +12,7 @@ namespace {
 
 void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
-    if (!arguments.preview.file.empty())
-        check_preview_file(arguments.preview, arguments.output, run.force);
+    if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
     LiveEmulation emulation(arguments, run);
     emulation.run(run);
     emulation.finish();
@@ -29,7 +28,8 @@ void add_capture_live(Command& capture, Action& action) {
     add_camera_arguments(command, options->camera);
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
-        .required();
+        .required()
+        .output();
     add_capture_limits(command, options->limits);
     add_sensor_arguments(command, options->sensor, "--sensor-set");
     add_preview_arguments(command, options->preview);

@@ -15,7 +15,8 @@ void add_capture_record(Command& capture, Action& action) {
         .add_option("-o,--output", options->output,
                     "recording, or a folder for one that is named by the time")
         .type_name("FILE|DIR")
-        .required();
+        .required()
+        .output();
     add_capture_limits(command, options->limits);
     add_session_arguments(command, options->session);
     auto coded_flag = command.add_flag(

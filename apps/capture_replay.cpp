@@ -61,10 +61,13 @@ void replay(const ReplayOptions& options, const RunOptions& run) {
 void add_capture_replay(Command& capture, Action& action) {
     Command command = capture.add_command("replay", "A recording as footage");
     const auto options = std::make_shared<ReplayOptions>();
-    command.add_option("RECORDING", options->recording, "file of `capture record`").required();
+    command.add_option("RECORDING", options->recording, "file of `capture record`")
+        .required()
+        .input();
     command.add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")
         .type_name("OUT")
-        .required();
+        .required()
+        .output();
     command.add_flag("--skip-gaps", options->skip_gaps,
                      "leave missing frames out; else the frame before stands in");
     command.add_flag("--keep-incomplete", options->keep_incomplete,

@@ -54,7 +54,8 @@ void add_source_arguments(Command& command, ServedSourceChoice& source) {
     command
         .add_option("SOURCE", source.path,
                     "footage, or in mode frames a recording of `capture record`")
-        .required();
+        .required()
+        .input();
     command.add_option("--mode", source.mode, "frames as they are, or the samples of a sensor")
         .one_of({"frames", "coded"})
         .type_name("frames|coded");

@@ -72,7 +72,8 @@ void add_characterize(Command& app, Action& action) {
     Command command = app.add_command("characterize", "EMVA 1288 figures of a sensor or camera");
     const auto options = std::make_shared<CharacterizeOptions>();
     const auto sensor = command.add_option("--sensor", options->sensor.sensor, "sensor (paper)")
-                            .type_name("NAME|FILE");
+                            .type_name("NAME|FILE")
+                            .input();
     const auto set =
         command.add_list("--set", options->sensor.settings, "change a key of the sensor")
             .type_name("KEY=VALUE");
@@ -83,9 +84,11 @@ void add_characterize(Command& app, Action& action) {
         .type_name("FILE")
         .excludes(sensor)
         .excludes(set)
-        .excludes(seed);
+        .excludes(seed)
+        .input();
     command.add_option("-o,--output", options->output, "folder for images, descriptor and charts")
-        .type_name("DIR");
+        .type_name("DIR")
+        .output();
     command.footer(
         "Examples:\n"
         "  stipple characterize --sensor grasshopper -o series\n"

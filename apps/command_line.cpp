@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <system_error>
 
 namespace stipple {
 namespace {
@@ -24,6 +26,43 @@ const char* unknown_subcommand(CLI::App& app, std::span<char* const> words) {
         command = *chosen;
     }
     return nullptr;
+}
+
+namespace fs = std::filesystem;
+
+/// What the options given name, by the words of the command line.
+std::vector<std::pair<std::string, fs::path>> named_files(
+    const std::vector<CLI::Option*>& options) {
+    std::vector<std::pair<std::string, fs::path>> files;
+    for (const CLI::Option* option : options)
+        for (const std::string& name : option->results())
+            if (name != "-" && !name.empty()) files.emplace_back(option->get_name(), name);
+    return files;
+}
+
+/// The file or folder that an input stands for: of a pattern the folder.
+fs::path input_path(const fs::path& named) {
+    constexpr std::string_view kReplay = "replay:";
+    const std::string name = named.string();
+    if (name.starts_with(kReplay)) return name.substr(kReplay.size());
+    if (name.find('%') != std::string::npos && !fs::exists(named))
+        return named.has_parent_path() ? named.parent_path() : ".";
+    return named;
+}
+
+/// Whether two names lead to the same file or folder, or will. Devices and pipes may be shared.
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const auto kind = fs::status(a, error).type();
+    if (kind != fs::file_type::not_found && kind != fs::file_type::regular &&
+        kind != fs::file_type::directory)
+        return false;
+    if (fs::equivalent(a, b, error)) return true;
+    const auto place = [&](const fs::path& path) {
+        const fs::path whole = fs::absolute(path, error).lexically_normal();
+        return fs::weakly_canonical(whole.has_filename() ? whole : whole.parent_path(), error);
+    };
+    return place(a) == place(b);
 }
 
 }  // namespace
@@ -68,9 +107,19 @@ CommandOption& CommandOption::excludes(const CommandOption& other) {
     return *this;
 }
 
+CommandOption& CommandOption::input() {
+    files_->inputs.push_back(option_);
+    return *this;
+}
+
+CommandOption& CommandOption::output() {
+    files_->outputs.push_back(option_);
+    return *this;
+}
+
 Command Command::add_command(const std::string& name, const std::string& text) {
     app_->require_subcommand(1);
-    return Command(*app_->add_subcommand(name, text));
+    return {*app_->add_subcommand(name, text), *files_};
 }
 
 void Command::footer(const std::string& text) {
@@ -83,7 +132,7 @@ void Command::callback(std::function<void()> action) {
 
 template <typename Value>
 CommandOption Command::add_option(const std::string& names, Value& value, const std::string& text) {
-    return CommandOption(*app_->add_option(names, value, text));
+    return handle(app_->add_option(names, value, text));
 }
 using Text = const std::string&;
 template CommandOption Command::add_option(Text, std::string&, Text);
@@ -98,30 +147,31 @@ template CommandOption Command::add_option(Text, std::optional<std::uint64_t>&, 
 
 CommandOption Command::add_parsed(const std::string& names, std::function<void(std::string)> take,
                                   const std::string& text) {
-    return CommandOption(*app_->add_option_function<std::string>(names, take, text));
+    const auto call = [take = std::move(take)](const std::string& value) { take(value); };
+    return handle(app_->add_option_function<std::string>(names, call, text));
 }
 
 CommandOption Command::add_list(const std::string& names, std::vector<std::string>& values,
                                 const std::string& text) {
-    return CommandOption(*app_->add_option(names, values, text)->allow_extra_args(false));
+    return handle(app_->add_option(names, values, text)->allow_extra_args(false));
 }
 
 CommandOption Command::add_flag(const std::string& names, bool& value, const std::string& text) {
-    return CommandOption(*app_->add_flag(names, value, text));
+    return handle(app_->add_flag(names, value, text));
 }
 
 CommandOption Command::add_flag(const std::string& names, std::string& value,
                                 const std::string& text) {
-    return CommandOption(*app_->add_flag(names, value, text));
+    return handle(app_->add_flag(names, value, text));
 }
 
 CommandOption Command::add_flag(const std::string& names, std::function<void()> act,
                                 const std::string& text) {
-    return CommandOption(*app_->add_flag_callback(names, std::move(act), text));
+    return handle(app_->add_flag_callback(names, std::move(act), text));
 }
 
 CommandOption Command::option(const std::string& name) {
-    return CommandOption(*app_->get_option(name));
+    return handle(app_->get_option(name));
 }
 
 void Command::refuse(const std::vector<std::string>& names, const std::string& why) const {
@@ -134,7 +184,7 @@ std::vector<Command> Command::leaves() {
     if (below.empty()) return {*this};
     std::vector<Command> found;
     for (CLI::App* command : below)
-        for (const Command& leaf : Command(*command).leaves()) found.push_back(leaf);
+        for (const Command& leaf : Command(*command, *files_).leaves()) found.push_back(leaf);
     return found;
 }
 
@@ -146,6 +196,26 @@ CommandLine::CommandLine(const std::string& program, const std::string& text,
 
 CommandLine::~CommandLine() = default;
 
+void CommandLine::check_files() const {
+    const auto inputs = named_files(files_.inputs);
+    const auto outputs = named_files(files_.outputs);
+    for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+        for (const auto& [option, input] : inputs)
+            // What is no file is the name of a sensor or schedule.
+            if (std::error_code error; fs::exists(input_path(input), error) &&
+                                       same_file(output->second, input_path(input)))
+                throw UsageError(output->first,
+                                 fmt::format("{} is what {} reads; give the output another name",
+                                             output->second.string(), option));
+        for (auto other = outputs.begin(); other != output; ++other)
+            if (same_file(output->second, other->second))
+                throw UsageError(
+                    output->first,
+                    fmt::format("{} is the output of {} too; give one of them another name",
+                                output->second.string(), other->first));
+    }
+}
+
 CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
     if (const char* word = unknown_subcommand(*app_, {argv + 1, argv + argc})) {
         fmt::print(stderr, "stipple: there is no subcommand \"{}\"; --help lists them\n", word);
@@ -154,6 +224,7 @@ CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
     try {
         try {
             app_->parse(argc, argv);
+            check_files();
             return Parsed::kAction;
         } catch (const UsageError& e) {
             throw CLI::ValidationError(e.option(), e.what());

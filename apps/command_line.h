@@ -33,10 +33,16 @@ class UsageError : public std::runtime_error {
     std::string option_;
 };
 
+/// The options of a command line that name files.
+struct FileOptions {
+    std::vector<CLI::Option*> inputs;
+    std::vector<CLI::Option*> outputs;
+};
+
 /// An option or a positional argument while it is declared.
 class CommandOption {
   public:
-    explicit CommandOption(CLI::Option& option) : option_(&option) {}
+    CommandOption(CLI::Option& option, FileOptions& files) : option_(&option), files_(&files) {}
 
     CommandOption& type_name(const std::string& name);
     CommandOption& required();
@@ -48,15 +54,20 @@ class CommandOption {
     CommandOption& group(const std::string& heading);
     CommandOption& needs(const CommandOption& other);
     CommandOption& excludes(const CommandOption& other);
+    /// It names what is read: a file, a folder, a pattern or "replay:FILE".
+    CommandOption& input();
+    /// It names what is written. Parsing refuses an output that is an input or another output.
+    CommandOption& output();
 
   private:
     CLI::Option* option_;
+    FileOptions* files_;
 };
 
 /// A subcommand. Copies stand for the same one. What options write to must outlive the parsing.
 class Command {
   public:
-    explicit Command(CLI::App& app) : app_(&app) {}
+    Command(CLI::App& app, FileOptions& files) : app_(&app), files_(&files) {}
 
     /// A subcommand of this one, which then asks for one of them.
     [[nodiscard]] Command add_command(const std::string& name, const std::string& text);
@@ -81,6 +92,7 @@ class Command {
                              std::vector<std::pair<std::string, Value>> choices,
                              const std::string& text) {
         std::vector<std::string> known;
+        known.reserve(choices.size());
         for (const auto& choice : choices) known.push_back(choice.first);
         const auto take = [&value, choices = std::move(choices)](const std::string& name) {
             for (const auto& choice : choices)
@@ -105,7 +117,10 @@ class Command {
     [[nodiscard]] std::vector<Command> leaves();
 
   private:
+    [[nodiscard]] CommandOption handle(CLI::Option* option) { return {*option, *files_}; }
+
     CLI::App* app_;
+    FileOptions* files_;
 };
 
 /// The whole command line of a program.
@@ -118,14 +133,17 @@ class CommandLine {
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    [[nodiscard]] Command root() { return Command(*app_); }
+    [[nodiscard]] Command root() { return {*app_, files_}; }
     enum class Parsed { kAction, kHelp, kWrong };
     /// Takes the command line apart and runs the callbacks of the subcommand that it names. Prints
     /// help and version where they are asked for, and what is wrong where something is.
     [[nodiscard]] Parsed parse(int argc, char** argv);
 
   private:
+    void check_files() const;
+
     std::unique_ptr<CLI::App> app_;
+    FileOptions files_;
 };
 
 }  // namespace stipple

@@ -79,8 +79,8 @@ void compare(const CompareOptions& options, const RunOptions& run) {
 void add_compare(Command& app, Action& action) {
     Command command = app.add_command("compare", "Measure a video against its reference");
     const auto options = std::make_shared<CompareOptions>();
-    command.add_option("RESULT", options->result, "video in linear light").required();
-    command.add_option("REFERENCE", options->reference, "footage").required();
+    command.add_option("RESULT", options->result, "video in linear light").required().input();
+    command.add_option("REFERENCE", options->reference, "footage").required().input();
     command.add_option("--margin", options->quality.margin, "frames left out at each end (0)")
         .check(whole_check(0, 1'000'000))
         .type_name("N");

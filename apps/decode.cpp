@@ -25,25 +25,28 @@ std::string method_help() {
 void add_decode(Command& app, Action& action) {
     Command command = app.add_command("decode", "Sample stream to high-speed video");
     const auto options = std::make_shared<DecodeArguments>();
-    command.add_option("STREAM", options->stream, "sample stream").required();
+    command.add_option("STREAM", options->stream, "sample stream").required().input();
     command
         .add_option("-o,--output", options->output,
                     "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
         .type_name("OUT")
-        .required();
+        .required()
+        .output();
     command.add_option("--method", options->method, method_help())
         .check(name_check(decode_method_from_name))
         .type_name("NAME");
     command
         .add_option("--options", options->options,
                     "options of the method: a file as docs/decoder_options.md says")
-        .type_name("FILE");
+        .type_name("FILE")
+        .input();
     command.add_list("--set", options->settings, "change one option of the method")
         .type_name("KEY=VALUE");
     command
         .add_option("--stages", options->stages,
                     "keep the estimate of each stage as .npy, and a chart of the convergence")
-        .type_name("DIR");
+        .type_name("DIR")
+        .output();
     command.add_flag("--strict", options->strict, "write nothing if the stream is damaged");
     command.add_option("--until", options->until, "stop after the first N frames")
         .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -14,6 +15,7 @@
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "apps/stage_outputs.h"
+#include "apps/standard_error.h"
 #include "apps/stream_follower.h"
 #include "apps/stream_text.h"
 #include "core/config.h"
@@ -47,13 +49,16 @@ std::uint64_t peak_memory_bytes() {
 StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
                          StreamFollower& follower) {
     if (!arguments.follow) return StreamReader(arguments.stream, policy);
-    follower.wait_for_file();
-    try {
-        return StreamReader(arguments.stream, policy,
-                            [&](std::uint64_t bytes) { return follower.more(bytes); });
-    } catch (const InputError&) {
-        throw_if_stopped();  // the rest of the header may still have come
-        throw;
+    for (;;) {
+        const std::filesystem::path file = follower.wait_for_file();
+        try {
+            return StreamReader(file, policy,
+                                [&](std::uint64_t bytes) { return follower.more(bytes); });
+        } catch (const InputError&) {
+            throw_if_stopped();  // the rest of the header may still have come
+            if (std::filesystem::exists(file)) throw;
+            // Its writer has completed it meanwhile, and given it its name.
+        }
     }
 }
 
@@ -86,13 +91,13 @@ std::string_view end_of(const DecodeReport& report, const DecodeArguments& argum
 void warn(std::string_view end, const DecodeReport& report, const DecodeArguments& arguments,
           const StreamFollower& follower) {
     if (end == "timeout")
-        fmt::print(stderr,
-                   "stipple: {}: nothing was appended for {:g} s (--timeout), so it was decoded as "
-                   "if it ended here, after {} slots\n",
-                   arguments.stream, follower.timeout_s(), report.slots);
+        say_error(
+            "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
+            "if it ended here, after {} slots",
+            arguments.stream, follower.timeout_s(), report.slots);
     else if (end == "stream" && arguments.until > 0)
-        fmt::print(stderr, "stipple: {}: ends after {} slots, before --until {}\n",
-                   arguments.stream, report.slots, arguments.until);
+        say_error("{}: ends after {} slots, before --until {}", arguments.stream, report.slots,
+                  arguments.until);
 }
 
 nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
@@ -151,6 +156,9 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamReport found = reader.report();
     if (found.samples == 0)
         say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));
+    if (end == "stream" && !found.complete && undamaged(found))
+        say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
+                  arguments.stream);
     if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
         throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +

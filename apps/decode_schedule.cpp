@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -52,10 +53,10 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
             run.say(fmt::format("{}: the samples follow the schedule ({})", arguments.stream, why));
             break;
         case Verdict::kCannotTell:
-            fmt::print(stderr,
-                       "stipple: {}: cannot tell whether the samples follow the schedule, decoding "
-                       "as the header says ({})\n",
-                       arguments.stream, why);
+            say_error(
+                "{}: cannot tell whether the samples follow the schedule, decoding "
+                "as the header says ({})",
+                arguments.stream, why);
             break;
         case Verdict::kShifted:
             if (arguments.check_schedule != "fix")

@@ -66,7 +66,9 @@ void demo(const DemoOptions& options, const RunOptions& run) {
 void add_demo(Command& app, Action& action) {
     Command command = app.add_command("demo", "Render, emulate, decode and compare a scene");
     const auto options = std::make_shared<DemoOptions>();
-    command.add_option("-o,--output", options->folder, "folder (stipple_demo)").type_name("DIR");
+    command.add_option("-o,--output", options->folder, "folder (stipple_demo)")
+        .type_name("DIR")
+        .output();
     command.add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
         .check(name_check(scene_from_name))
         .type_name("NAME");

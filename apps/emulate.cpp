@@ -70,15 +70,18 @@ void add_emulate(Command& app, Action& action) {
         .add_option(
             "FOOTAGE", options->footage,
             "folder or printf pattern of PNG, TIFF or EXR, video file, .npy, or a recording")
-        .required();
+        .required()
+        .input();
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
-        .required();
+        .required()
+        .output();
     add_sensor_arguments(command, options->sensor);
     add_footage_arguments(command, options->reading);
     add_max_value(command, options->reading.max_value);
     command.add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
-        .type_name("OUT");
+        .type_name("OUT")
+        .output();
     add_waveform_arguments(command, options->waveform);
     command.footer(
         "Examples:\n"

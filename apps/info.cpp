@@ -22,7 +22,9 @@ void info(const std::string& file, const RunOptions& run) {
     if (!reader.header().provenance.empty())
         run.say(fmt::format("provenance\n{}", reader.header().provenance));
     if (!undamaged(reader.report())) throw InputError(file, damage_text(reader.report()));
-    run.say("condition    undamaged");
+    run.say(reader.report().complete
+                ? "condition    undamaged, complete"
+                : "condition    undamaged, without an end marker: cut off, or still being written");
 }
 
 }  // namespace
@@ -30,7 +32,7 @@ void info(const std::string& file, const RunOptions& run) {
 void add_info(Command& app, Action& action) {
     Command command = app.add_command("info", "Say what a sample stream is and holds");
     const auto file = std::make_shared<std::string>();
-    command.add_option("STREAM", *file, "sample stream").required();
+    command.add_option("STREAM", *file, "sample stream").required().input();
     command.footer(
         "Examples:\n"
         "  stipple info clip.stipple\n"

@@ -1,38 +1,84 @@
 #include "apps/interrupt.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <string_view>
+#include <cstdint>
+#include <ctime>
+
+#include "apps/standard_error.h"
+#include "core/pending_output.h"
 
 namespace stipple {
 namespace {
 
-std::atomic<int> received_signal{0};
-static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handler
+constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
+/// `timeout` signals the program and then its group, a terminal that closes the same: signals that
+/// come so soon after the first are the same wish.
+constexpr std::int64_t kSameWishMs = 500;
 
-void remember(int signal) {
-    constexpr std::string_view kText =
-        "\nstipple: stopping when this step is done; a second Ctrl-C stops at once\n";
+std::atomic<int> received_signal{0};
+std::atomic<std::int64_t> received_ms{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // safe in a signal handler
+
+std::int64_t now_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+}
+
+/// Ends the program as the signal does to programs that do not catch it.
+void end_at_once(int signal) {
+    write_error_text("\nstipple: stopped at once\n");
+    visit_partial_outputs([](const char* path) {
+        write_error_text("stipple: what was written so far: ");
+        write_error_text(path);
+        write_error_text("\n");
+    });
+    struct sigaction normal {};
+    normal.sa_handler = SIG_DFL;
+    sigaction(signal, &normal, nullptr);
+    raise(signal);  // delivered when the handler returns
+}
+
+void on_stop_signal(int signal) {
     const int interrupted_errno = errno;
-    received_signal.store(signal);
-    // Whether or not somebody can read it.
-    static_cast<void>(!write(STDERR_FILENO, kText.data(), kText.size()));
+    int none = 0;
+    if (received_signal.compare_exchange_strong(none, signal)) {
+        received_ms = now_ms();
+        write_error_text(
+            "\nstipple: stopping when this step is done; a second Ctrl-C stops at once\n");
+    } else if (now_ms() - received_ms > kSameWishMs) {
+        end_at_once(signal);
+    }
     errno = interrupted_errno;
 }
 
 }  // namespace
 
 void catch_signals() {
-    struct sigaction once {};
-    once.sa_handler = remember;
-    once.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
-    sigaction(SIGINT, &once, nullptr);
-    sigaction(SIGTERM, &once, nullptr);
+    for (const int signal : kStopSignals) {
+        struct sigaction before {};
+        sigaction(signal, nullptr, &before);
+        if (before.sa_handler == SIG_IGN) continue;  // as under nohup
+        struct sigaction caught {};
+        caught.sa_handler = on_stop_signal;
+        for (const int other : kStopSignals) sigaddset(&caught.sa_mask, other);
+        sigaction(signal, &caught, nullptr);  // no SA_RESTART: a read that waits is to notice
+    }
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+}
+
+void occupy_standard_streams() {
+    // Read-only, so that what is written to a closed standard output fails, as it did.
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
+        if (fcntl(descriptor, F_GETFD) < 0)
+            static_cast<void>(open("/dev/null", O_RDONLY));  // takes the lowest number that is free
 }
 
 int stop_signal() noexcept {

@@ -5,10 +5,15 @@ namespace stipple {
 /// Thrown where a run that was asked to stop has nothing worth keeping.
 struct Interrupted {};
 
-/// From here on the first SIGINT or SIGTERM only asks loops to stop, so that they finish their
-/// output as a shorter one; the second ends the program at once. A full disk or a broken pipe
-/// shows as a write error instead of a signal.
+/// From here on the first SIGINT, SIGTERM or SIGHUP only asks loops to stop, so that they finish
+/// their output as a shorter one; reads that wait are interrupted (EINTR). Half a second later a
+/// second one ends the program at once, and says where unfinished outputs lie. A full disk or a
+/// broken pipe shows as a write error instead of a signal.
 void catch_signals();
+
+/// Standard streams that are closed become /dev/null, so that no file that is opened takes their
+/// place, and the messages that are meant for them.
+void occupy_standard_streams();
 
 /// The signal that asked to stop, or 0.
 [[nodiscard]] int stop_signal() noexcept;

@@ -10,6 +10,7 @@
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "apps/sorted_quantile.h"
+#include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
 
@@ -112,7 +113,7 @@ void LiveEmulation::put_in_place() {
         failure_ = e;
     }
     recording_.keep();
-    fmt::print(stderr, "stipple: {}: what was written before is kept\n", arguments_.output);
+    say_error("{}: what was written before is kept", arguments_.output);
 }
 
 void LiveEmulation::finish() {

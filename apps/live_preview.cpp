@@ -14,6 +14,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/sorted_quantile.h"
+#include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/parallel.h"
 
@@ -92,7 +93,7 @@ void LivePreview::show() {
     } catch (const std::exception& e) {
         ++failed_;
         if (std::exchange(failure_, e.what()) == failure_) return;
-        fmt::print(stderr, "stipple: no preview: {}; the recording goes on\n", failure_);
+        say_error("no preview: {}; the recording goes on", failure_);
     }
 }
 
@@ -102,9 +103,9 @@ void LivePreview::finish() {
     wake_.release();
     stop_waiting_for_idle(thread_);
     if (!ended_.try_acquire_for(kPatience))
-        fmt::print(stderr,
-                   "stipple: the recording is complete; its preview ends slowly, as the machine is "
-                   "busy. Ctrl-C twice does not wait\n");
+        say_error(
+            "the recording is complete; its preview ends slowly, as the machine is "
+            "busy. Ctrl-C twice does not wait");
     thread_.join();
     std::sort(delays_ms_.begin(), delays_ms_.end());
 }

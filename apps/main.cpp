@@ -10,6 +10,7 @@
 #include "apps/command_line.h"
 #include "apps/interrupt.h"
 #include "apps/run_options.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -31,8 +32,12 @@ constexpr auto kExamples =
     "(outputs are then complete files of fewer frames).";
 
 int fail(ExitCode code, std::string_view message) {
-    fmt::print(stderr, "stipple: {}\n", message);
+    say_error(message);
     return code;
+}
+
+ExitCode signal_code() {
+    return static_cast<ExitCode>(kSignal + stop_signal());
 }
 
 /// Runs `action` and hands its last words on standard output to the system.
@@ -43,19 +48,21 @@ int run(const Action& action, const RunOptions& options) {
         if (std::fflush(stdout) != 0)
             throw std::system_error(errno, std::generic_category(), "standard output");
     } catch (const InputError& e) {
-        return fail(kInput, e.what());
+        // An input that a signal has cut short is none to complain of.
+        return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
     } catch (const Interrupted&) {
-        return fail(static_cast<ExitCode>(kSignal + stop_signal()), "stopped");
+        return fail(signal_code(), "stopped");
     } catch (const std::bad_alloc&) {
         return fail(kDevice, "not enough memory");
     } catch (const std::exception& e) {
         return fail(kDevice, e.what());
     }
     if (stop_signal() == 0) return kOk;
-    return fail(static_cast<ExitCode>(kSignal + stop_signal()), "stopped; the output is shorter");
+    return fail(signal_code(), "stopped; the output is shorter");
 }
 
 int main(int argc, char** argv) {
+    occupy_standard_streams();
     RunOptions options;
     Action action;
     CommandLine line(

@@ -25,7 +25,8 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
                     "picture of what the decoder makes of the newest slots, replaced again and "
                     "again: .png to look at, .npy linear light")
         .check(check_extension)
-        .type_name("FILE");
+        .type_name("FILE")
+        .output();
     command
         .add_option("--preview-method", arguments.method,
                     "naive: at once, noisier; fast: as it will be decoded, in seconds (naive)")
@@ -41,13 +42,7 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
         .type_name("WxH");
 }
 
-void check_preview_file(const PreviewArguments& arguments, const std::string& output, bool force) {
-    namespace fs = std::filesystem;
-    const auto place = [](const fs::path& file) {
-        return fs::weakly_canonical(fs::absolute(file));
-    };
-    if (place(arguments.file) == place(output))
-        throw InputError(arguments.file, "is the output; give the preview another name");
+void check_preview_file(const PreviewArguments& arguments, bool force) {
     const PendingOutput probe(arguments.file, force);
 }
 

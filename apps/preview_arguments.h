@@ -20,6 +20,6 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments);
 
 /// \throws InputError if `file` cannot become the preview of a recording named `output`: another
 /// file of that name, no folder, or the recording itself.
-void check_preview_file(const PreviewArguments& arguments, const std::string& output, bool force);
+void check_preview_file(const PreviewArguments& arguments, bool force);
 
 }  // namespace stipple

@@ -5,17 +5,17 @@
 #include <unistd.h>
 
 #include <condition_variable>
-#include <cstdio>
 #include <mutex>
 #include <string_view>
 #include <utility>
+
+#include "apps/standard_error.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kBarEvery{100};
 constexpr std::chrono::seconds kLineEvery{5};
-constexpr std::string_view kClearLine = "\r\x1b[K";
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Progress::~Progress() {
     if (!display_.joinable()) return;
     display_.request_stop();
     display_.join();
-    if (terminal_) fmt::print(stderr, "{}", kClearLine);
+    if (terminal_) show_bar("");
 }
 
 double Progress::seconds() const {
@@ -50,8 +50,7 @@ void Progress::show(const std::stop_token& stop) const {
     std::condition_variable_any stopped;
     const auto never = [] { return false; };
     while (stopped.wait_for(lock, stop, interval, never), !stop.stop_requested()) {
-        fmt::print(stderr, "{}{}{}", terminal_ ? kClearLine : "", line(), terminal_ ? "" : "\n");
-        std::fflush(stderr);
+        terminal_ ? show_bar(line()) : write_error_text(line() + '\n');
     }
 }
 

@@ -15,7 +15,8 @@ void RunOptions::say(std::string_view text) const {
 
 void add_run_options(Command& command, RunOptions& run) {
     command.add_option("--json", run.json, "write the figures as JSON; - is standard output")
-        .type_name("FILE");
+        .type_name("FILE")
+        .output();
     command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
         .check(whole_check(0, 1024))
         .type_name("N");

@@ -61,7 +61,9 @@ void add_schedule_check(Command& schedule, Action& action) {
         "check", "Whether a sensor can do what a schedule says; exit code 1 if not");
     const auto options = std::make_shared<CheckOptions>();
     add_schedule_choice(command, options->schedule);
-    command.add_option("--sensor", options->sensor, "sensor (paper)").type_name("NAME|FILE");
+    command.add_option("--sensor", options->sensor, "sensor (paper)")
+        .type_name("NAME|FILE")
+        .input();
     command.footer(
         "Examples:\n"
         "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2\n"

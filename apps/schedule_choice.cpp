@@ -16,7 +16,8 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .add_option("SCHEDULE", choice.schedule,
                     "name of config/schedules, file of that form, or compiled .mem or .hex")
         .type_name("NAME|FILE")
-        .required();
+        .required()
+        .input();
     command.add_list("--set", choice.settings, "change a key of the schedule")
         .type_name("KEY=VALUE");
     command

@@ -51,7 +51,8 @@ void add_schedule_compile(Command& schedule, Action& action) {
     add_schedule_choice(command, options->schedule);
     command.add_option("-o,--output", options->output, "memory image, .mem or .hex")
         .required()
-        .type_name("FILE");
+        .type_name("FILE")
+        .output();
     command.footer(
         "Examples:\n"
         "  stipple schedule compile tiled -o tiled.mem\n"

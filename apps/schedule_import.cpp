@@ -50,10 +50,12 @@ void add_schedule_import(Command& schedule, Action& action) {
         .add_option("VOLUME", options->volume,
                     ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
         .type_name("FILE.npy")
-        .required();
+        .required()
+        .input();
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
-        .required();
+        .required()
+        .output();
     command.add_flag("--lengths", options->lengths,
                      "layers are the lengths of successive exposures in slots, from slot 0 on");
     command

@@ -35,7 +35,8 @@ void add_schedule_make(Command& schedule, Action& action) {
     add_schedule_choice(command, options->schedule);
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
-        .required();
+        .required()
+        .output();
     command.footer(
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"

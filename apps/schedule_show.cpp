@@ -42,7 +42,8 @@ void add_schedule_show(Command& schedule, Action& action) {
     const auto options = std::make_shared<ShowOptions>();
     add_schedule_choice(command, options->schedule);
     command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
-        .type_name("FILE");
+        .type_name("FILE")
+        .output();
     command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
         .check(whole_check(1, 64))
         .type_name("N");

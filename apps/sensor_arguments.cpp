@@ -6,11 +6,12 @@
 namespace stipple {
 
 void add_sensor_arguments(Command& command, SensorChoice& sensor, const char* settings_option) {
-    command.add_option("--sensor", sensor.sensor, "sensor (paper)").type_name("NAME|FILE");
+    command.add_option("--sensor", sensor.sensor, "sensor (paper)").type_name("NAME|FILE").input();
     command
         .add_option("--schedule", sensor.schedule,
                     "who exposes when: docs/schedules.md lists the names (random)")
-        .type_name("NAME|FILE");
+        .type_name("NAME|FILE")
+        .input();
     command
         .add_list(settings_option, sensor.settings,
                   "change a key of the sensor, or with \"schedule.\" before it of the schedule")

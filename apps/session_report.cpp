@@ -1,5 +1,7 @@
 #include "apps/session_report.h"
 
+#include "apps/standard_error.h"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -23,15 +25,15 @@ std::string lost_text(const SessionTotals& totals) {
 }
 
 void say(const Outage& outage) {
-    fmt::print(stderr, "stipple: the camera is gone ({}); opening it anew\n", outage.reason);
+    say_error("the camera is gone ({}); opening it anew", outage.reason);
 }
 
 void say(const Recovery& recovery) {
-    fmt::print(stderr, "stipple: the camera is back after {:.1f} s\n", recovery.gone_s);
+    say_error("the camera is back after {:.1f} s", recovery.gone_s);
 }
 
 void say_warning(const std::string& warning) {
-    if (!warning.empty()) fmt::print(stderr, "stipple: {}\n", warning);
+    if (!warning.empty()) say_error(warning);
 }
 
 void say_warnings(const CameraDescription& camera) {

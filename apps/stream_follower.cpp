@@ -7,6 +7,7 @@
 
 #include "apps/interrupt.h"
 #include "core/error.h"
+#include "core/pending_output.h"
 
 namespace stipple {
 namespace {
@@ -16,8 +17,10 @@ constexpr std::chrono::milliseconds kLookEvery{20};
 
 }  // namespace
 
-void StreamFollower::wait_for_file() {
-    while (!std::filesystem::exists(stream_)) {
+std::filesystem::path StreamFollower::wait_for_file() {
+    for (;;) {
+        if (std::filesystem::exists(stream_)) return stream_;
+        if (const auto partial = partial_of(stream_)) return *partial;
         const bool goes_on = more(0);
         throw_if_stopped();
         if (!goes_on)

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace stipple {
@@ -13,8 +14,9 @@ class StreamFollower {
     StreamFollower(std::string stream, double timeout_s)
         : stream_(std::move(stream)), timeout_(timeout_s) {}
 
-    /// Until there is a file. \throws InputError if none appears, Interrupted.
-    void wait_for_file();
+    /// Until there is a file of that name, or one that a run is going to give that name when it is
+    /// complete. Returns the one to read. \throws InputError if none appears, Interrupted.
+    [[nodiscard]] std::filesystem::path wait_for_file();
     [[nodiscard]] bool more(std::uint64_t bytes);
 
     /// True if the file has ceased to grow without an end marker.

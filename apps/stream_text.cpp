@@ -84,6 +84,7 @@ ordered_json stream_json(const StreamHeader& header, const StreamReport& report)
             {"samples", report.samples},
             {"payload_bits", report.payload_bits},
             {"missing_slots", report.missing_slots},
+            {"complete", report.complete},
             {"tail_bytes", report.tail_bytes},
             {"damage", damage},
             {"unlisted_damage", report.unlisted_damage}};

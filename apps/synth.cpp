@@ -57,7 +57,8 @@ void add_synth(Command& app, Action& action) {
         .required();
     command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
         .type_name("OUT")
-        .required();
+        .required()
+        .output();
     add_scene_arguments(command, options->rendering);
     command.footer(
         "Examples:\n"

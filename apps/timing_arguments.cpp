@@ -9,7 +9,8 @@ void add_waveform_arguments(Command& command, WaveformOptions& options) {
     constexpr int kMostSlots = 1'000'000;
     const auto file =
         command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
-            .type_name("FILE");
+            .type_name("FILE")
+            .output();
     command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
         .check(whole_check(1, kMostSlots))
         .type_name("N")

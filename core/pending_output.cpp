@@ -1,17 +1,50 @@
 #include "core/pending_output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "core/error.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
 namespace {
+
+/// Around the number of the process.
+std::string partial_prefix(const fs::path& final_path) {
+    return '.' + final_path.stem().string() + '.';
+}
+
+std::string partial_suffix(const fs::path& final_path) {
+    return ".partial" + final_path.extension().string();
+}
+
+/// Paths of the partial outputs, for a signal handler, which must not wait for a lock.
+constexpr std::size_t kListedOutputs = 32;
+std::array<std::atomic<const char*>, kListedOutputs> partial_outputs{};
+
+/// The place that `path` took in the list, or kListedOutputs if it is full.
+std::size_t list_partial(const char* path) {
+    for (std::size_t i = 0; i < kListedOutputs; ++i) {
+        const char* none = nullptr;
+        if (partial_outputs[i].compare_exchange_strong(none, path)) return i;
+    }
+    return kListedOutputs;
+}
+
+void unlist_partial(std::size_t place) {
+    if (place < kListedOutputs) partial_outputs[place] = nullptr;
+}
 
 /// The output's path without "." parts and a folder's trailing slash.
 fs::path tidy(const fs::path& path, OutputKind kind) {
@@ -58,11 +91,12 @@ PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind 
         throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
                                                       parent.string()));
     if (fs::exists(fs::symlink_status(final_, error))) check_replaceable();
-    partial_ = parent / fmt::format(".{}.{}.partial{}", final_.stem().string(), getpid(),
-                                    final_.extension().string());
+    partial_ =
+        parent / (partial_prefix(final_) + std::to_string(getpid()) + partial_suffix(final_));
     fs::remove_all(partial_, error);  // left by an earlier process of the same number
     if (kind == OutputKind::kFolder && !fs::create_directory(partial_, error))
         throw DeviceError(final_.string(), "cannot be created: " + error.message());
+    place_in_list_ = list_partial(partial_.c_str());
 }
 
 void PendingOutput::check_replaceable() const {
@@ -91,6 +125,7 @@ void PendingOutput::check_replaceable() const {
 }
 
 PendingOutput::~PendingOutput() {
+    unlist_partial(place_in_list_);
     std::error_code error;
     if (!committed_) fs::remove_all(partial_, error);
 }
@@ -104,14 +139,73 @@ void PendingOutput::remove_replaced_folder() const {
 void PendingOutput::commit() {
     try {
         const auto status = fs::symlink_status(final_);
-        if (fs::exists(status) && !force_)
-            throw DeviceError(final_.string(), "was created by another program meanwhile");
-        if (kind_ == OutputKind::kFolder && fs::is_directory(status)) remove_replaced_folder();
-        fs::rename(partial_, final_);
+        if (kind_ == OutputKind::kFolder && force_ && fs::is_directory(status))
+            remove_replaced_folder();
+        if (force_) {
+            fs::rename(partial_, final_);
+        } else if (!rename_to_free_name(final_)) {
+            keep_under_another_name();
+        }
     } catch (const fs::filesystem_error& e) {
         throw DeviceError(final_.string(), "cannot be put in place: " + e.code().message());
     }
+    set_committed();
+}
+
+bool PendingOutput::rename_to_free_name(const fs::path& name) const {
+    if (renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE) == 0)
+        return true;
+    if (errno == EEXIST) return false;
+    if (errno != EINVAL && errno != ENOSYS)
+        throw fs::filesystem_error("rename", std::error_code(errno, std::generic_category()));
+    // The file system does not know it: look first.
+    if (fs::exists(fs::symlink_status(name))) return false;
+    fs::rename(partial_, name);
+    return true;
+}
+
+void PendingOutput::keep_under_another_name() {
+    for (int number = 2;; ++number) {
+        const fs::path name =
+            final_.parent_path() /
+            fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
+        if (!rename_to_free_name(name)) continue;
+        set_committed();
+        throw DeviceError(final_.string(),
+                          fmt::format("was created by another program meanwhile; what was "
+                                      "written is in {}",
+                                      name.string()));
+    }
+}
+
+void PendingOutput::set_committed() {
     committed_ = true;
+    unlist_partial(std::exchange(place_in_list_, kListedOutputs));
+}
+
+std::optional<fs::path> partial_of(const fs::path& final_path) {
+    const fs::path parent = final_path.has_parent_path() ? final_path.parent_path() : fs::path(".");
+    const std::string prefix = partial_prefix(final_path);
+    const std::string suffix = partial_suffix(final_path);
+    std::error_code error;
+    std::optional<fs::path> newest;
+    for (const auto& entry : fs::directory_iterator(parent, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) ||
+            !name.ends_with(suffix))
+            continue;
+        const std::string_view number = std::string_view(name).substr(
+            prefix.size(), name.size() - prefix.size() - suffix.size());
+        if (!std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; })) continue;
+        if (!newest || entry.last_write_time(error) > fs::last_write_time(*newest, error))
+            newest = entry.path();
+    }
+    return newest;
+}
+
+void visit_partial_outputs(void (*visit)(const char* path)) noexcept {
+    for (const std::atomic<const char*>& path : partial_outputs)
+        if (const char* listed = path.load()) visit(listed);
 }
 
 }  // namespace stipple

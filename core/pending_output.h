@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 
 namespace stipple {
 
@@ -25,12 +27,18 @@ class PendingOutput {
     /// Path to write to: in the same folder, hidden, with the same extension and, so that two
     /// programs never write to the same one, the process number.
     [[nodiscard]] const std::filesystem::path& partial() const { return partial_; }
-    /// Moves the partial output to its final name. \throws DeviceError.
+    /// Moves the partial output to its final name. \throws DeviceError; if another program has made
+    /// a file of that name since, and not `force`, what was written is kept as "name_2.ext" or so
+    /// on, which the message says.
     void commit();
     [[nodiscard]] bool committed() const { return committed_; }
 
   private:
     void check_replaceable() const;
+    /// False if the name is taken.
+    [[nodiscard]] bool rename_to_free_name(const std::filesystem::path& name) const;
+    [[noreturn]] void keep_under_another_name();
+    void set_committed();
     void remove_replaced_folder() const;
 
     std::filesystem::path final_;
@@ -38,6 +46,16 @@ class PendingOutput {
     bool force_;
     OutputKind kind_;
     bool committed_ = false;
+    std::size_t place_in_list_;  ///< of partial outputs
 };
+
+/// The partial output, in its folder, of a program that is writing `final_path`, or that was killed
+/// while it did; the newest of several.
+[[nodiscard]] std::optional<std::filesystem::path> partial_of(
+    const std::filesystem::path& final_path);
+
+/// Calls `visit` with the partial path of each output that is neither committed nor removed; of
+/// more than some dozens with the first ones. Safe in a signal handler.
+void visit_partial_outputs(void (*visit)(const char* path)) noexcept;
 
 }  // namespace stipple

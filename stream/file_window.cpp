@@ -1,6 +1,7 @@
 #include "stream/file_window.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,9 +19,14 @@ constexpr std::size_t kStepBytes = std::size_t{1} << 18U;
 
 }  // namespace
 
-FileWindow::FileWindow(const std::filesystem::path& file)
-    : place_(file.string()), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+FileWindow::FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe)
+    : place_(file.string()),
+      descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
+      waits_(empty_pipe == EmptyPipe::kWait) {
     if (descriptor_ < 0) fail();
+    struct stat status {};
+    is_pipe_ = ::fstat(descriptor_, &status) == 0 && S_ISFIFO(status.st_mode);
+    if (!is_pipe_) ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK);
 }
 
 FileWindow::~FileWindow() {
@@ -32,13 +38,26 @@ std::span<const std::uint8_t> FileWindow::peek(std::size_t bytes) {
         // No more than doubles what is there: a length is only a claim until the bytes come.
         const std::size_t missing = bytes - (end_ - begin_);
         make_room(std::max(kStepBytes, std::min(missing, end_ - begin_)));
-        const auto got = ::read(descriptor_, buffer_.data() + end_, buffer_.size() - end_);
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) fail();
+        const std::size_t got = read_some(buffer_.data() + end_, buffer_.size() - end_);
         if (got == 0) break;
-        end_ += static_cast<std::size_t>(got);
+        end_ += got;
     }
     return std::span(buffer_).subspan(begin_, std::min(bytes, end_ - begin_));
+}
+
+std::size_t FileWindow::read_some(std::uint8_t* to, std::size_t bytes) {
+    // Of a pipe that no program writes to, a read returns 0: at its end, and before its writer
+    // comes. Only poll() tells them apart: POLLHUP is raised once a writer has come and gone.
+    for (bool writer_has_gone = false;;) {
+        const auto got = ::read(descriptor_, to, bytes);
+        if (got > 0) return static_cast<std::size_t>(got);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0 && errno != EAGAIN) fail();
+        if (!is_pipe_ || !waits_ || (got == 0 && writer_has_gone)) return 0;
+        pollfd pipe{.fd = descriptor_, .events = POLLIN, .revents = 0};
+        if (::poll(&pipe, 1, -1) < 0) fail();
+        writer_has_gone = (pipe.revents & POLLHUP) != 0;
+    }
 }
 
 void FileWindow::make_room(std::size_t bytes) {

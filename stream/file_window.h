@@ -15,8 +15,12 @@ namespace stipple {
 /// end and not a SIGBUS.
 class FileWindow {
   public:
-    /// \throws InputError naming the file if it cannot be opened.
-    explicit FileWindow(const std::filesystem::path& file);
+    /// What a read does where a pipe holds nothing at the moment.
+    enum class EmptyPipe { kWait, kReturn };
+
+    /// Does not wait for the writer of a pipe. \throws InputError naming the file if it cannot be
+    /// opened.
+    explicit FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe = EmptyPipe::kWait);
     ~FileWindow();
     FileWindow(const FileWindow&) = delete;
     FileWindow& operator=(const FileWindow&) = delete;
@@ -25,9 +29,10 @@ class FileWindow {
     [[nodiscard]] std::uint64_t offset() const { return offset_; }
     /// Bytes of the file that have been read, those of the window included.
     [[nodiscard]] std::uint64_t bytes_read() const { return offset_ + (end_ - begin_); }
-    /// The next `bytes` bytes, or fewer at the end of the file; there may be more later. They are
-    /// valid until the next call. Memory is taken only for bytes that the file really has.
-    /// \throws InputError if the file cannot be read.
+    /// The next `bytes` bytes, or fewer at the end of the file or of what a pipe holds by now;
+    /// there may be more later. They are valid until the next call. Memory is taken only for bytes
+    /// that the file really has. \throws InputError if the file cannot be read, or if a signal that
+    /// the program handles comes while it waits for a pipe.
     [[nodiscard]] std::span<const std::uint8_t> peek(std::size_t bytes);
     /// Moves on. Precondition: `bytes` bytes have been peeked at.
     void skip(std::size_t bytes);
@@ -41,9 +46,13 @@ class FileWindow {
   private:
     [[noreturn]] void fail() const;
     void make_room(std::size_t bytes);
+    /// 0 at the end.
+    [[nodiscard]] std::size_t read_some(std::uint8_t* to, std::size_t bytes);
 
     std::string place_;
     int descriptor_;
+    bool is_pipe_ = false;
+    bool waits_;
     std::uint64_t offset_ = 0;
     std::vector<std::uint8_t> buffer_;
     std::size_t begin_ = 0;  ///< the window is buffer_[begin_ .. end_)

@@ -62,7 +62,7 @@ struct StreamReader::Impl {
           strict(read_policy == ReadPolicy::kStrict),
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
-          window(file),
+          window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
           header(read_header(window, place, wait)),
           slots(slots_by_index(window)),
           order(header.shape.rows) {}
@@ -266,6 +266,7 @@ void StreamReader::Impl::take_end_marker(std::uint64_t index_at) {
         note(kEndMarkerBytes, "the end marker does not point to an index before it");
     window.skip(kEndMarkerBytes);
     end_offset = window.offset();
+    report.complete = true;
     if (!slots) slots = slots_by_index(window);
 }
 

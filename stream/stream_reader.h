@@ -39,7 +39,9 @@ struct StreamReport {
     /// a crafted file: no measure for memory or time.
     std::int64_t slots = 0;
     std::int64_t missing_slots = 0;  ///< with rows that are missing before the last packet read
-    std::uint64_t tail_bytes = 0;    ///< of a packet that the file ends in the midst of
+    /// The end marker has been read: nothing was cut off, and nobody is writing any more.
+    bool complete = false;
+    std::uint64_t tail_bytes = 0;  ///< of a packet that the file ends in the midst of
     std::vector<StreamDamage> damage;
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };

@@ -85,7 +85,7 @@ class CaptureRecordTest(ProgramTest):
         (self.folder / "clips").mkdir()
         self.succeed("capture", "record", self.address, "-o", "clips", "--frames", 2)
         (clip,) = (self.folder / "clips").iterdir()
-        self.assertRegex(clip.name, r"^\d{8}_\d{6}\.strec$")
+        self.assertRegex(clip.name, r"^\d{8}_\d{6}_\d{3}\.strec$")
 
     def test_ctrl_c_leaves_a_readable_recording(self):
         self.serve()

@@ -1,5 +1,6 @@
 """Ctrl-C leaves a valid, shorter output."""
 
+import os
 import signal
 import subprocess
 import time
@@ -7,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from program import STOPPED, ProgramTest
+from program import INPUT, PROGRAM, STOPPED, ProgramTest
 
 
 def catches_interrupts(process):
@@ -65,6 +66,69 @@ class InterruptsTest(ProgramTest):
                        when=frames)
         self.assertIn(frames(), range(1, 6000))
         self.assertEqual(len(list((self.folder / "out").iterdir())), frames())
+
+    def endless(self, **options):
+        """A run that goes on until it is told to stop, once it listens and has written something."""
+        program = self.start_program("synth", "roll", "-o", "out.npy", "--frames", 1000000, "--size",
+                                     "64x48", **options)
+        self.addCleanup(program.kill)
+        deadline = time.monotonic() + 60
+        while not (catches_interrupts(program) and self.partial_bytes(".npy") > 50000):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        return program
+
+    def test_signals_that_come_together_are_one(self):
+        # `timeout` signals the program, then the group that it is in.
+        program = self.endless()
+        program.send_signal(signal.SIGTERM)
+        program.send_signal(signal.SIGTERM)
+        program.send_signal(signal.SIGINT)
+        message = program.communicate(timeout=60)[1]
+        self.assertIn(program.returncode, (STOPPED, 143), message)
+        self.assertGreater(len(self.array("out.npy")), 0)
+
+    def test_a_terminal_that_closes_leaves_a_shorter_output_too(self):
+        program = self.endless()
+        program.send_signal(signal.SIGHUP)
+        message = program.communicate(timeout=60)[1]
+        self.assertEqual(program.returncode, 129, message)
+        self.assertEqual(self.names(), ["out.npy"])
+
+    def test_a_second_signal_ends_the_run_and_says_where_its_data_are(self):
+        # One frame takes seconds, and only between frames does the run look for a signal.
+        program = self.start_program("synth", "roll", "-o", "out.npy", "--frames", 100, "--size",
+                                     "1600x1200")
+        self.addCleanup(program.kill)
+        deadline = time.monotonic() + 60
+        while not (catches_interrupts(program) and list(self.folder.glob(".out.*"))):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        time.sleep(0.5)  # the first frame has begun
+        program.send_signal(signal.SIGINT)
+        time.sleep(0.7)
+        program.send_signal(signal.SIGINT)
+        message = program.communicate(timeout=60)[1]
+        self.assertEqual(program.returncode, -signal.SIGINT, message)
+        partial = next(self.folder.glob(".out.*.partial.npy")).name
+        self.assertIn(f"what was written so far: {partial}", message.replace("./", ""))
+
+    def test_standard_error_that_cannot_be_written_ends_no_run(self):
+        for screen in ("full", "closed", "unread"):
+            with self.subTest(screen):
+                reader, writer = os.pipe()
+                os.close(reader)
+                closed = {"preexec_fn": lambda: os.close(2)}
+                with open("/dev/full", "w") as full, os.fdopen(writer, "w") as unread:
+                    options = {"full": {"stderr": full}, "unread": {"stderr": unread}, "closed": closed}
+                    done = subprocess.run([PROGRAM, "synth", "roll", "-o", f"{screen}.npy", "--frames",
+                                           "100", "--size", "320x240"], cwd=self.folder, timeout=120,
+                                          check=False, stdout=subprocess.DEVNULL, **options[screen])
+                    self.assertEqual(done.returncode, 0)
+                    self.assertEqual(len(self.array(f"{screen}.npy")), 100)
+                    missing = subprocess.run([PROGRAM, "info", "missing"], cwd=self.folder, timeout=60,
+                                             check=False, **options[screen])
+                    self.assertEqual(missing.returncode, INPUT)
 
     def test_compare_has_nothing_to_leave(self):
         np.lib.format.open_memmap(self.folder / "light.npy", "w+", np.uint8, (1000000, 64, 64))

@@ -3,7 +3,7 @@
 import resource
 import unittest
 
-from program import DEVICE, INPUT, PROGRAM, ProgramTest
+from program import DEVICE, INPUT, PROGRAM, USAGE, ProgramTest
 
 SYNTH = ["synth", "roll", "--frames", "3", "--size", "64x48", "-o"]
 
@@ -29,6 +29,38 @@ class OutputsTest(ProgramTest):
         (self.folder / "figures.json").touch()
         self.fails(INPUT, ["figures.json", "exists already"], "emulate", "light.npy", "-o",
                    "other.stipple", "--json", "figures.json")
+
+    def test_an_output_that_is_an_input_or_another_output_is_refused_even_if_forced(self):
+        self.write_stream("clip.stipple")
+        self.write_flat("light.npy")
+        (self.folder / "linked.npy").symlink_to("light.npy")
+        emulate = ["emulate", "light.npy", "-o"]
+        for words, line in (
+                (["--output", "FOOTAGE"], [*emulate, "light.npy"]),
+                (["--output", "FOOTAGE"], [*emulate, "./linked.npy"]),
+                (["--truth", "FOOTAGE"], [*emulate, "a.stipple", "--truth", "light.npy"]),
+                (["--json", "STREAM"], ["decode", "clip.stipple", "-o", "b.npy", "--json", "clip.stipple"]),
+                (["--json", "RESULT"], ["compare", "light.npy", "linked.npy", "--json", "light.npy"]),
+                (["--output", "ADDRESS"], ["capture", "live", "replay:light.npy", "-o", "light.npy"]),
+                (["--output", "--json"], [*emulate, "a.y", "--json", "a.y"]),
+                (["--vcd", "--output"], [*emulate, "a.x", "--vcd", "./a.x", "--sensor", "lux1310"])):
+            before = (self.folder / "light.npy").read_bytes(), (self.folder / "clip.stipple").read_bytes()
+            self.fails(USAGE, [*words, "another name"], *line, "--force")
+            self.assertEqual(((self.folder / "light.npy").read_bytes(),
+                              (self.folder / "clip.stipple").read_bytes()), before)
+        self.succeed("emulate", "light.npy", "-o", "paper", "--sensor", "paper")  # a name, no file
+
+    def test_an_output_whose_name_was_taken_meanwhile_is_kept_under_another(self):
+        run = self.start_program("synth", "roll", "--frames", 400, "--size", "128x96", "-o", "out.npy")
+        self.addCleanup(run.kill)
+        while run.poll() is None and not list(self.folder.glob(".out.*")):
+            pass
+        (self.folder / "out.npy").write_text("precious")
+        message = run.communicate(timeout=100)[1]
+        self.assertEqual(run.returncode, DEVICE)
+        self.assertIn("out_2.npy", message)
+        self.assertEqual(self.array("out_2.npy").shape, (400, 96, 128, 3))
+        self.assertEqual((self.folder / "out.npy").read_text(), "precious")
 
     def test_a_folder_with_other_things_in_it_is_kept_even_if_forced(self):
         self.succeed(*SYNTH, "out")

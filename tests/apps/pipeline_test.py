@@ -37,7 +37,15 @@ class PipelineTest(ProgramTest):
         self.assertEqual((report["slots"], report["packets"], report["samples"]), (6, 6, 96))
         self.assertEqual(report["damage"], [])
         self.assertIn("light.npy", report["provenance"])
-        self.assertIn("undamaged", self.succeed("info", "a.stipple"))
+        self.assertTrue(report["complete"])
+        self.assertIn("undamaged, complete", self.succeed("info", "a.stipple"))
+        whole = (self.folder / "a.stipple").read_bytes()
+        begin = whole.index(b"\xc5SPK", whole.index(b"\xc5SPK") + 36)  # of the second packet
+        (self.folder / "cut.stipple").write_bytes(whole[:begin])
+        self.assertFalse(self.figures("info", "cut.stipple")["complete"])
+        self.assertIn("without an end marker", self.succeed("info", "cut.stipple"))
+        cut = self.run_program("decode", "cut.stipple", "-o", "cut.npy", "--method", "naive")
+        self.assertIn("no end marker", cut.stderr)
 
     def test_a_mosaic_of_colours_is_decoded_to_rgb(self):
         light = np.zeros((6, 4, 5, 3), np.float32) + [0.25, 0.5, 1]

@@ -1,5 +1,6 @@
 """Frames before the end: --until, and streams that are still being written."""
 
+import os
 import signal
 import struct
 import subprocess
@@ -79,6 +80,38 @@ class FollowTest(ProgramTest):
     def frames(self):
         folder = self.folder / "out"
         return len(list(folder.glob("frame_*.exr"))) if folder.exists() else 0
+
+    def test_finds_what_a_run_is_writing_under_the_name_that_it_is_going_to_have(self):
+        np.lib.format.open_memmap(self.folder / "light.npy", "w+", np.uint8, (100000, 32, 32))
+        writer = self.start_program("emulate", "light.npy", "-o", "live.stipple")
+        self.addCleanup(writer.kill)
+        program = self.follow()
+        while self.frames() < CORE:
+            self.assertIsNone(program.poll())
+            time.sleep(0.05)
+        self.assertFalse(self.live.exists())
+        writer.send_signal(signal.SIGINT)  # it completes a shorter stream
+        writer.communicate(timeout=100)
+        program.send_signal(signal.SIGINT)
+        self.assertEqual(program.wait(timeout=100), STOPPED)
+
+    def test_a_pipe_that_stays_empty_ends_by_the_time_limit_or_a_signal(self):
+        os.mkfifo(self.live)
+        done = self.run_program("decode", "live.stipple", "-o", "out", "--follow", "--timeout", 1)
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        with open(self.live, "r+b", buffering=0) as pipe:  # a writer that goes on to have it open
+            pipe.write(self.content[:20])
+            done = self.run_program("decode", "live.stipple", "-o", "out", "--follow", "--timeout", 1)
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            for line in (["info", "live.stipple"], ["decode", "live.stipple", "-o", "out"],
+                         ["decode", "live.stipple", "-o", "out", "--follow", "--timeout", "600"]):
+                pipe.write(self.content[:20])
+                program = self.start_program(*line, stdout=subprocess.DEVNULL)
+                self.addCleanup(program.kill)
+                time.sleep(1)
+                program.send_signal(signal.SIGTERM)
+                program.communicate(timeout=20)
+                self.assertEqual(program.returncode, 143, line)
 
     def wait_for(self, program, frames):
         deadline = time.monotonic() + 100

@@ -1,0 +1,43 @@
+#include "apps/standard_error.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string>
+
+namespace stipple {
+namespace {
+
+constexpr std::string_view kClearLine = "\r\x1b[K";
+std::atomic<bool> bar_is_shown{false};
+
+}  // namespace
+
+void write_error_text(std::string_view text) noexcept {
+    while (!text.empty()) {
+        const auto written = write(STDERR_FILENO, text.data(), text.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return;
+        text.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+void show_bar(std::string_view line) noexcept {
+    try {
+        write_error_text(std::string(kClearLine).append(line));
+    } catch (...) {  // no memory: no bar
+    }
+    bar_is_shown = !line.empty();
+}
+
+void say_error(std::string_view text) noexcept {
+    try {
+        std::string line(bar_is_shown.exchange(false) ? kClearLine : "");
+        write_error_text(line.append("stipple: ").append(text).append("\n"));
+    } catch (...) {
+        write_error_text(text);
+    }
+}
+
+}  // namespace stipple

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+namespace stipple {
+
+// Standard error may be a full disk, a pipe that nobody reads, or closed: what cannot be shown
+// there is lost, and the run goes on.
+
+/// Writes `text` as it is.
+void write_error_text(std::string_view text) noexcept;
+
+/// Shows `line` in place of the last one, on a terminal; an empty one takes it away.
+void show_bar(std::string_view line) noexcept;
+
+/// A line of its own, "stipple: " before it.
+void say_error(std::string_view text) noexcept;
+
+/// The same, formatted.
+template <typename... Arguments>
+requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments...> format,
+                                                  Arguments&&... arguments) {
+    say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
+}
+
+}  // namespace stipple
