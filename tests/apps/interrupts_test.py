@@ -122,7 +122,7 @@ class InterruptsTest(ProgramTest):
                 with open("/dev/full", "w") as full, os.fdopen(writer, "w") as unread:
                     options = {"full": {"stderr": full}, "unread": {"stderr": unread}, "closed": closed}
                     done = subprocess.run([PROGRAM, "synth", "roll", "-o", f"{screen}.npy", "--frames",
-                                           "100", "--size", "320x240"], cwd=self.folder, timeout=120,
+                                           "100", "--size", "64x48"], cwd=self.folder, timeout=120,
                                           check=False, stdout=subprocess.DEVNULL, **options[screen])
                     self.assertEqual(done.returncode, 0)
                     self.assertEqual(len(self.array(f"{screen}.npy")), 100)
