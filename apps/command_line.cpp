@@ -217,11 +217,10 @@ void CommandLine::check_files() const {
 }
 
 CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
-    if (const char* word = unknown_subcommand(*app_, {argv + 1, argv + argc})) {
-        fmt::print(stderr, "stipple: there is no subcommand \"{}\"; --help lists them\n", word);
-        return Parsed::kWrong;
-    }
     try {
+        if (const char* word = unknown_subcommand(*app_, {argv + 1, argv + argc}))
+            throw CLI::ValidationError(
+                fmt::format("there is no subcommand \"{}\"; --help lists them", word));
         try {
             app_->parse(argc, argv);
             check_files();

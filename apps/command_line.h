@@ -26,7 +26,7 @@ class UsageError : public std::runtime_error {
   public:
     UsageError(std::string option, const std::string& problem)
         : std::runtime_error(problem), option_(std::move(option)) {}
-    /// The option that is wrong, or empty: one is missing.
+    /// The option that is wrong.
     [[nodiscard]] const std::string& option() const { return option_; }
 
   private:

@@ -68,7 +68,7 @@ void catch_signals() {
         struct sigaction caught {};
         caught.sa_handler = on_stop_signal;
         for (const int other : kStopSignals) sigaddset(&caught.sa_mask, other);
-        sigaction(signal, &caught, nullptr);  // no SA_RESTART: a read that waits is to notice
+        sigaction(signal, &caught, nullptr);  // no SA_RESTART: an open() that waits is to notice
     }
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);

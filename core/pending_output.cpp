@@ -62,6 +62,14 @@ fs::path tidy(const fs::path& path, OutputKind kind) {
     return result;
 }
 
+bool all_digits(std::string_view text) {
+    return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
 bool is_frame_name(std::string_view name) {
     constexpr std::string_view kPrefix = "frame_";
     constexpr std::string_view kSuffix = ".exr";
@@ -69,7 +77,7 @@ bool is_frame_name(std::string_view name) {
     if (name.size() < kPrefix.size() + 4 + kSuffix.size()) return false;
     name.remove_prefix(kPrefix.size());
     name.remove_suffix(kSuffix.size());
-    return std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return all_digits(name);
 }
 
 /// An entry of `folder` that is not a frame of ours, or an empty path.
@@ -85,7 +93,7 @@ fs::path foreign_entry(const fs::path& folder) {
 
 PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind)
     : final_(tidy(final_path, kind)), force_(force), kind_(kind) {
-    const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
+    const fs::path parent = folder_of(final_);
     std::error_code error;
     if (!fs::is_directory(parent, error))
         throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
@@ -184,19 +192,18 @@ void PendingOutput::set_committed() {
 }
 
 std::optional<fs::path> partial_of(const fs::path& final_path) {
-    const fs::path parent = final_path.has_parent_path() ? final_path.parent_path() : fs::path(".");
     const std::string prefix = partial_prefix(final_path);
     const std::string suffix = partial_suffix(final_path);
     std::error_code error;
     std::optional<fs::path> newest;
-    for (const auto& entry : fs::directory_iterator(parent, error)) {
+    for (const auto& entry : fs::directory_iterator(folder_of(final_path), error)) {
         const std::string name = entry.path().filename().string();
         if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) ||
             !name.ends_with(suffix))
             continue;
         const std::string_view number = std::string_view(name).substr(
             prefix.size(), name.size() - prefix.size() - suffix.size());
-        if (!std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; })) continue;
+        if (!all_digits(number)) continue;
         if (!newest || entry.last_write_time(error) > fs::last_write_time(*newest, error))
             newest = entry.path();
     }
