@@ -134,8 +134,8 @@ class PreviewTest(LiveTest):
                 self.fails(USAGE, [option[0], "a replay has no camera"], "capture", verb,
                            "replay:light.npy", "-o", "x", *option)
         self.fails(INPUT, ["nowhere"], *live, "nowhere/now.png")
-        self.fails(INPUT, ["clip.npy: is the output"], *live, "./clip.npy")
-        self.fails(INPUT, ["light.npy", "exists already"], *live, "light.npy")
+        self.fails(USAGE, ["clip.npy is the output of --output too"], *live, "./clip.npy")
+        self.fails(USAGE, ["light.npy"], *live, "light.npy")
 
 
 class FullDiskTest(LiveTest):
