@@ -10,6 +10,7 @@
 #include "apps/side_by_side.h"
 #include "core/frame_writer.h"
 #include "core/tone_map.h"
+#include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 
 namespace stipple {

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "decoder/collaborative_filter.h"
 #include "decoder/data_prox.h"
+#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 #include "decoder/stabilised_light.h"

@@ -5,12 +5,12 @@
 #include "core/flux_video.h"
 #include "decoder/block_matching.h"
 #include "decoder/checkpoint.h"
-#include "decoder/measurements.h"
 #include "decoder/motion_tv.h"
 
 namespace stipple {
 
 class SampleNoise;
+struct Measurements;
 
 /// What is different where the planes are a mosaic of colours: two of three voxels are filled by
 /// the filter alone, which takes more iterations and stronger ones at first. In those it looks for

@@ -1,6 +1,7 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over sites are
 // left to the compiler's vectoriser; every target gives the same bits.
 #include "decoder/data_prox.h"
+#include "decoder/measurements.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/data_prox.cpp"

@@ -4,9 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "decoder/measurements.h"
+#include "core/geometry.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// Sites [begin, end) of one plane, in all slots.
 struct SiteRun {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 
 namespace stipple {
 namespace {

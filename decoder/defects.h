@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-#include "decoder/measurements.h"
-
 namespace stipple {
+
+struct Measurements;
 
 /// Takes out the samples of pixels that are stuck, so that a regulariser fills them from around,
 /// and returns how many sites that are. A site of four samples or more is stuck if all but two or

@@ -1,4 +1,5 @@
 #include "decoder/exposure_table.h"
+#include "decoder/measurements.h"
 
 #include <algorithm>
 #include <array>

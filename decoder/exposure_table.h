@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "decoder/measurements.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// One sample of a site and the slots that it collected.
 struct TimedSample {

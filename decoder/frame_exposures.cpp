@@ -1,4 +1,5 @@
 #include "decoder/frame_exposures.h"
+#include "decoder/measurements.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// An exposure that all sites share: a frame of a conventional camera.
 struct FrameExposure {

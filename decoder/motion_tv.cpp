@@ -7,6 +7,7 @@
 
 #include "core/light.h"
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"

@@ -4,13 +4,13 @@
 
 #include "core/flux_video.h"
 #include "decoder/checkpoint.h"
-#include "decoder/measurements.h"
 #include "decoder/motion.h"
 #include "decoder/total_variation.h"
 
 namespace stipple {
 
 class SampleNoise;
+struct Measurements;
 
 /// What is different where the planes are a mosaic of colours: a third of the samples, so the prior
 /// weighs less, but colours that change from pixel to pixel are hardly true.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/unsampled_sites.h"
 
 namespace stipple {

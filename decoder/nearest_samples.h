@@ -1,9 +1,10 @@
 #pragma once
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// The estimate that knows nothing of the scene, and the start of all others: each voxel is the
 /// weighted mean of the light per slot of its own exposure and of the shorter ones around it, or,

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "decoder/exposure_table.h"
+#include "decoder/measurements.h"
 #include "decoder/nearest_samples.h"
 
 namespace stipple {

@@ -7,11 +7,12 @@
 #include "decoder/checkpoint.h"
 #include "decoder/flow_matches.h"
 #include "decoder/match_admm.h"
-#include "decoder/measurements.h"
 #include "decoder/patch_matches.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// The method `portz2013`. What the paper says is as published; of what it does not say, the values
 /// were found as docs/decoder_portz2013.md tells.

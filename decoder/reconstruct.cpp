@@ -14,6 +14,7 @@
 #include "decoder/defects.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/frame_interpolation.h"
+#include "decoder/measurements.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"

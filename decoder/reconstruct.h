@@ -8,11 +8,12 @@
 #include "core/flux_video.h"
 #include "decoder/checkpoint.h"
 #include "decoder/decode_options.h"
-#include "decoder/measurements.h"
 #include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// Takes the frames of a decoded video in slot order; order (plane, row, col), units of
 /// FluxVideo. Returns false to stop decoding.

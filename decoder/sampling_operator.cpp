@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {

@@ -2,11 +2,10 @@
 
 #include <span>
 
-#include "decoder/measurements.h"
-
 namespace stipple {
 
 class SampleNoise;
+struct Measurements;
 
 // The sampling operator A of y = A x + noise: one row per exposure, 1 at each of its open voxels.
 // Rows share no voxel, so A A^T is diagonal and holds the number of open voxels. Arrays are those

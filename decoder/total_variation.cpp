@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "decoder/data_prox.h"
 #include "decoder/gradient_kernels.h"
+#include "decoder/measurements.h"
 #include "decoder/motion_kernels.h"
 #include "decoder/opponent_planes.h"
 

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 #include "decoder/motion.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// Weights are in 1/flux: the price of a difference of 1.0 between neighbours, at pixels whose
 /// primal step is `reference_step` (flux^2). At a step s they are sqrt(reference_step / s) times

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "readout/column_addressing.h"
 #include "readout/hardware_tiled.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
@@ -239,6 +240,10 @@ NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed
         throw InputError(config.place("name"), fmt::format("has {} bytes; at most {} fit a stream",
                                                            result.name.size(), kLongestName));
     return result;
+}
+
+NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed) {
+    return read_schedule(config, shape, seed, ColumnAddressing{});
 }
 
 ExposureSchedule full_schedule(int open_slots, int period_slots) {

@@ -7,10 +7,11 @@
 #include "core/config.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/column_addressing.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
+
+struct ColumnAddressing;
 
 /// A schedule with what a stream header says of it.
 struct NamedSchedule {
@@ -24,7 +25,10 @@ struct NamedSchedule {
 /// Schedules made for the hardware suit `addressing`, the sensor's, where the file says nothing
 /// else. \throws InputError naming file, line and key.
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
-                                          const ColumnAddressing& addressing = {});
+                                          const ColumnAddressing& addressing);
+
+/// For a sensor that skips pixel by pixel, the default of ColumnAddressing.
+[[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed);
 
 /// A seeded tile in which every pixel repeats its own permutation of `exposure_slots` without
 /// gaps, and the number of pixels due per slot is as even as possible over the period.

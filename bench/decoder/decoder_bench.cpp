@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"

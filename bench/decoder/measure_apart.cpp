@@ -10,6 +10,7 @@
 #include "core/config.h"
 #include "core/footage_reader.h"
 #include "core/npy_writer.h"
+#include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
 
