@@ -1,7 +1,7 @@
 // Speed, memory and quality of every decoding method, clip by clip: the figures of
 // docs/decoder_experiments.md. Each method runs in a process of its own, on the same recording
-// (the paper's sensor, seed 1, colour as luminance, light clipped at 2.0). Quality is without the
-// first and last 4 frames.
+// (seed 1, colour as luminance, light clipped at 2.0). Quality is without the first and last 4
+// frames, of light up to what the shortest exposure can hold.
 #include "bench/decoder/decode_table.h"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <sstream>
 
 #include "apps/command_line.h"
 #include "apps/name_check.h"
@@ -28,7 +29,11 @@ struct TableOptions {
                                       "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
     std::vector<std::string> methods;
     std::vector<std::string> settings;  ///< "method.key=value"
-    std::string schedule = "random";
+    std::vector<std::string> schedules = {"random"};
+    std::vector<std::string> sensors = {"paper"};
+    std::vector<std::string> sensor_settings;  ///< "key=value"
+    std::vector<double> lights = {1};          ///< factors of the photons of light 1.0
+    bool frozen = false;
     int side_px = 96;
     int slots = 24;
     bool scaling = false;
@@ -72,11 +77,45 @@ std::optional<FluxVideo> clip_of(const std::string& name, const TableOptions& op
     return cropped(*video, options.side_px, options.slots);
 }
 
-RecordedClip record(const FluxVideo& video, const std::string& schedule,
+/// Every slot becomes the first one.
+void freeze(FluxVideo& video) {
+    for (int slot = 1; slot < video.slots(); ++slot)
+        std::ranges::copy(video.frame(0), video.frame(slot).begin());
+}
+
+/// What a clip is recorded with.
+struct Camera {
+    std::string schedule = "random";
+    std::string sensor_name = "paper";
+    double light = 1;
+    SensorParams sensor = {};
+
+    /// For the table; what is usual is not said.
+    [[nodiscard]] std::string text() const {
+        std::string text;
+        if (schedule != "random") text += " " + schedule;
+        if (sensor_name != "paper") text += " " + sensor_name;
+        if (light != 1) text += fmt::format(" light {}", light);
+        return text;
+    }
+};
+
+std::vector<Camera> cameras_of(const TableOptions& options) {
+    std::vector<Camera> cameras;
+    for (const std::string& schedule : options.schedules)
+        for (const std::string& sensor : options.sensors)
+            for (const double light : options.lights)
+                cameras.push_back(
+                    {schedule, sensor, light, sensor_of(sensor, options.sensor_settings, light)});
+    return cameras;
+}
+
+RecordedClip record(const FluxVideo& video, const Camera& camera,
                     const std::filesystem::path& folder) {
-    const RecordedClip clip{folder / "clip.stipple", folder / "truth.npy"};
+    const RecordedClip clip{folder / "clip.stipple", folder / "truth.npy",
+                            std::min(2.0, clipping_light(camera.sensor))};
     std::filesystem::remove(clip.stream);
-    write_recording(video, schedule, clip.stream);
+    write_recording(video, schedule_of(camera.schedule, video.shape()), camera.sensor, clip.stream);
     NpyWriter truth(clip.truth, clip.truth.string(), video.shape());
     for (int slot = 0; slot < video.slots(); ++slot) truth.write(video.frame(slot));
     truth.finish();
@@ -101,49 +140,65 @@ void print_row(const std::string& clip, const std::string& method, const MethodF
     std::fflush(stdout);
 }
 
-/// All methods on all clips, then the means.
-void print_table(const TableOptions& options) {
+/// The figures of each method, clip by clip.
+using Figures = std::map<std::string, std::vector<MethodFigures>>;
+
+/// All methods on a clip.
+void print_clip(const std::string& name, const FluxVideo& video, const Camera& camera,
+                const TableOptions& options, Figures& all) {
     const TemporaryFolder folder;
-    std::map<std::string, std::vector<MethodFigures>> all;
+    const RecordedClip clip = record(video, camera, folder.path());
+    std::map<std::string, MethodFigures> figures;
+    for (const std::string& method : options.methods) {
+        figures[method] = measure_apart(clip, method, settings_of(method, options));
+        all[method].push_back(figures[method]);
+    }
+    const auto reference = figures.find("portz2013");
+    for (const std::string& method : options.methods)
+        print_row(fmt::format("{} {}x{}x{}{}{}", name, video.shape().rows, video.shape().cols,
+                              video.slots(), options.frozen ? " frozen" : "", camera.text()),
+                  method, figures[method],
+                  reference == figures.end() ? 0 : reference->second.voxels_per_second);
+}
+
+MethodFigures mean_of(const std::vector<MethodFigures>& list) {
+    MethodFigures sum;
+    const auto n = static_cast<double>(list.size());
+    for (const MethodFigures& f : list) {
+        sum.voxels_per_second += f.voxels_per_second / n;
+        sum.psnr_db += f.psnr_db / n;
+        sum.psnr_gamma_db += f.psnr_gamma_db / n;
+        sum.pu21_psnr_db += f.pu21_psnr_db / n;
+        sum.peak_bytes = std::max(sum.peak_bytes, f.peak_bytes);
+    }
+    return sum;
+}
+
+/// All methods on all clips with each camera, then their means.
+void print_table(const TableOptions& options) {
     fmt::print(
         "| clip | method | voxels/s | x portz2013 | PSNR dB | 1/2.2 dB | PU21 dB | MB |\n"
         "|---|---|---|---|---|---|---|---|\n");
+    std::vector<std::pair<std::string, FluxVideo>> videos;
     for (const std::string& name : options.clips) {
-        const auto video = clip_of(name, options);
+        auto video = clip_of(name, options);
         if (!video) {
             fmt::print("| {} | not in the footage folder |\n", name);
             continue;
         }
-        const RecordedClip clip = record(*video, options.schedule, folder.path());
-        std::map<std::string, MethodFigures> figures;
-        for (const std::string& method : options.methods) {
-            figures[method] = measure_apart(clip, method, settings_of(method, options));
-            all[method].push_back(figures[method]);
-        }
-        const auto reference = figures.find("portz2013");
-        for (const std::string& method : options.methods)
-            print_row(fmt::format("{} {}x{}x{}", name, video->shape().rows, video->shape().cols,
-                                  video->slots()),
-                      method, figures[method],
-                      reference == figures.end() ? 0 : reference->second.voxels_per_second);
+        if (options.frozen) freeze(*video);
+        videos.emplace_back(name, std::move(*video));
     }
-    const auto mean = [](const std::vector<MethodFigures>& list) {
-        MethodFigures sum;
-        const auto n = static_cast<double>(list.size());
-        for (const MethodFigures& f : list) {
-            sum.voxels_per_second += f.voxels_per_second / n;
-            sum.psnr_db += f.psnr_db / n;
-            sum.psnr_gamma_db += f.psnr_gamma_db / n;
-            sum.pu21_psnr_db += f.pu21_psnr_db / n;
-            sum.peak_bytes = std::max(sum.peak_bytes, f.peak_bytes);
-        }
-        return sum;
-    };
-    const auto reference = all.find("portz2013");
-    for (const std::string& method : options.methods)
-        if (!all[method].empty())
-            print_row("mean; most MB", method, mean(all[method]),
-                      reference == all.end() ? 0 : mean(reference->second).voxels_per_second);
+    for (const Camera& camera : cameras_of(options)) {
+        Figures all;
+        for (const auto& [name, video] : videos) print_clip(name, video, camera, options, all);
+        const auto reference = all.find("portz2013");
+        for (const std::string& method : options.methods)
+            if (!all[method].empty())
+                print_row(
+                    "mean; most MB" + camera.text(), method, mean_of(all[method]),
+                    reference == all.end() ? 0 : mean_of(reference->second).voxels_per_second);
+    }
 }
 
 /// Time for a voxel of scenes of four sizes.
@@ -154,7 +209,7 @@ void print_scaling(const TableOptions& options) {
         options.slots);
     for (const int side_px : {64, 128, 256, 512}) {
         const FluxVideo video = rendered("pan", side_px, options.slots);
-        const RecordedClip clip = record(video, options.schedule, folder.path());
+        const RecordedClip clip = record(video, cameras_of(options).front(), folder.path());
         for (const std::string& method : options.methods) {
             const MethodFigures f = measure_apart(clip, method, settings_of(method, options));
             fmt::print("| {}x{} | {} | {} | {:.2f} | {:.3f} | {:.0f} |\n", side_px, side_px, method,
@@ -163,6 +218,14 @@ void print_scaling(const TableOptions& options) {
             std::fflush(stdout);
         }
     }
+}
+
+/// Of "1,4,0.1".
+std::vector<double> factors(const std::string& text) {
+    std::vector<double> factors;
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) factors.push_back(std::stod(part));
+    return factors;
 }
 
 int run(int argc, char** argv) {
@@ -179,7 +242,14 @@ int run(int argc, char** argv) {
         .split_at_commas()
         .check(name_check(decode_method_from_name));
     command.add_list("--set", options.settings, "METHOD.KEY=VALUE");
-    command.add_option("--schedule", options.schedule, "of config/schedules (random)");
+    command.add_list("--schedules", options.schedules, "of config/schedules (random)")
+        .split_at_commas();
+    command.add_list("--sensors", options.sensors, "of config/sensors (paper)").split_at_commas();
+    command.add_list("--set-sensor", options.sensor_settings, "KEY=VALUE of all sensors");
+    command.add_parsed(
+        "--lights", [&](const std::string& text) { options.lights = factors(text); },
+        "factors of the photons of light 1.0 (1)");
+    command.add_flag("--frozen", options.frozen, "every slot shows the first one");
     command.add_option("--size", options.side_px, "side of the crop, pixels (96)")
         .check(whole_check(8, 4096));
     command.add_option("--slots", options.slots, "first slots of the clip (24)")
@@ -200,9 +270,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         const std::vector<std::string> arguments(argv + 1, argv + argc);
-        if (arguments.size() >= 4 && arguments[0] == "--child") {
-            stipple::decode_and_print({arguments[1], arguments[2]}, arguments[3],
-                                      {arguments.begin() + 4, arguments.end()});
+        if (arguments.size() >= 5 && arguments[0] == "--child") {
+            stipple::decode_and_print({arguments[1], arguments[2], std::stod(arguments[3])},
+                                      arguments[4], {arguments.begin() + 5, arguments.end()});
             return 0;
         }
         return stipple::run(argc, argv);

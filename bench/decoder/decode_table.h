@@ -22,6 +22,7 @@ struct MethodFigures {
 struct RecordedClip {
     std::filesystem::path stream;
     std::filesystem::path truth;
+    double brightest = 2;  ///< light that both are clipped at before they are compared
 };
 
 /// Decodes in this process with settings as `stipple decode --set`, and prints the figures as one

@@ -17,8 +17,6 @@
 namespace stipple {
 namespace {
 
-constexpr double kBrightest = 2;  // full scale / photons per unit
-
 struct PipeCloser {
     void operator()(std::FILE* pipe) const { pclose(pipe); }
 };
@@ -35,14 +33,14 @@ std::string quoted(const std::string& text) {
 }
 
 /// Without the first and last slots, where less is known.
-VideoQuality quality_of(const std::filesystem::path& decoded, const std::filesystem::path& truth) {
+VideoQuality quality_of(const std::filesystem::path& decoded, const RecordedClip& clip) {
     FootageReader video(decoded);
-    FootageReader reference(truth);
+    FootageReader reference(clip.truth);
     std::vector<float> frame(video.shape().sites());
     std::vector<float> reference_frame(reference.shape().sites());
     QualityMeter meter(
         reference.shape(),
-        {.margin = std::min(4, (reference.slots().value() - 1) / 2), .max_value = kBrightest});
+        {.margin = std::min(4, (reference.slots().value() - 1) / 2), .max_value = clip.brightest});
     while (video.read(frame) && reference.read(reference_frame)) meter.add(frame, reference_frame);
     return meter.quality();
 }
@@ -64,7 +62,7 @@ void decode_and_print(const RecordedClip& clip, const std::string& method,
     video.finish();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const VideoQuality quality = quality_of(output, clip.truth);
+    const VideoQuality quality = quality_of(output, clip);
     fmt::print("figures {} {} {} {} {} {}\n", report.seconds,
                static_cast<double>(report.voxels) / report.seconds, quality.psnr_db,
                quality.psnr_gamma_db, quality.pu21_psnr_db, usage.ru_maxrss * 1024);
@@ -73,9 +71,9 @@ void decode_and_print(const RecordedClip& clip, const std::string& method,
 MethodFigures measure_apart(const RecordedClip& clip, const std::string& method,
                             const std::vector<std::string>& settings) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe");
-    std::string command =
-        fmt::format("{} --child {} {} {}", quoted(program.string()), quoted(clip.stream.string()),
-                    quoted(clip.truth.string()), quoted(method));
+    std::string command = fmt::format("{} --child {} {} {} {}", quoted(program.string()),
+                                      quoted(clip.stream.string()), quoted(clip.truth.string()),
+                                      clip.brightest, quoted(method));
     for (const std::string& setting : settings) command += fmt::format(" {}", quoted(setting));
     const std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
     MethodFigures f;

@@ -10,6 +10,7 @@
 #include "readout/coded_sensor.h"
 #include "readout/schedule_catalogue.h"
 #include "sensor_model/colour_mosaic.h"
+#include "sensor_model/sensor_config.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/footage_folder.h"
@@ -34,11 +35,17 @@ std::optional<FluxVideo> read_clip(const std::string& name, bool luminance) {
     return video;
 }
 
-/// The paper's sensor with a schedule, and the stream that it writes.
+SensorParams with_stores_for(const ExposureSchedule& schedule, SensorParams sensor) {
+    sensor.charge_stores = schedule.charge_stores();
+    return sensor;
+}
+
+/// A sensor with a schedule, and the stream that it writes.
 class Recorder {
   public:
-    Recorder(const NamedSchedule& named, FrameShape shape, ColourFilter cfa)
-        : params_{.charge_stores = named.schedule.charge_stores()},
+    Recorder(const NamedSchedule& named, FrameShape shape, ColourFilter cfa,
+             const SensorParams& sensor = {})
+        : params_(with_stores_for(named.schedule, sensor)),
           header_{.shape = shape,
                   .slot_us = params_.slot_us,
                   .calibration = calibration_of(params_),
@@ -95,6 +102,25 @@ void write_recording(const FluxVideo& video, const NamedSchedule& named, std::ui
                      const std::filesystem::path& file) {
     const Recorder recorder(named, video.shape(), ColourFilter::kNone);
     recorder.write(video.slots(), seed, file, [&](int slot) { return video.frame(slot); });
+}
+
+SensorParams sensor_of(const std::string& name, const std::vector<std::string>& settings,
+                       double light) {
+    Config config(find_config("sensors", name), settings);
+    SensorParams sensor = read_sensor(config);
+    sensor.photons_per_unit *= light;
+    validate(sensor);
+    return sensor;
+}
+
+double clipping_light(const SensorParams& sensor) {
+    return std::min(sensor.full_scale_e, sensor.full_well_e) / sensor.electrons_per_unit();
+}
+
+void write_recording(const FluxVideo& video, const NamedSchedule& named, const SensorParams& sensor,
+                     const std::filesystem::path& file) {
+    const Recorder recorder(named, video.shape(), ColourFilter::kNone, sensor);
+    recorder.write(video.slots(), kSeed, file, [&](int slot) { return video.frame(slot); });
 }
 
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& named,

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/colour_filter.h"
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
 #include "readout/schedule_catalogue.h"
+#include "sensor_model/sensor_params.h"
 
 namespace stipple {
 
@@ -30,6 +32,19 @@ void write_recording(const FluxVideo& video, const std::string& schedule,
 
 void write_recording(const FluxVideo& video, const NamedSchedule& schedule, std::uint64_t seed,
                      const std::filesystem::path& file);
+
+/// The sensor of config/sensors of this name, with "key=value" on top, and the photons of light 1.0
+/// times `light`: the same footage in more or less light.
+[[nodiscard]] SensorParams sensor_of(const std::string& name,
+                                     const std::vector<std::string>& settings = {},
+                                     double light = 1);
+
+/// The light that clips a sample of one slot, by the converter or the full well.
+[[nodiscard]] double clipping_light(const SensorParams& sensor);
+
+/// As above, on any sensor.
+void write_recording(const FluxVideo& video, const NamedSchedule& schedule,
+                     const SensorParams& sensor, const std::filesystem::path& file);
 
 /// The same through a colour filter array, on a video in colour.
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& schedule,
