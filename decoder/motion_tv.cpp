@@ -7,9 +7,11 @@
 
 #include "core/light.h"
 #include "core/parallel.h"
+#include "decoder/box_blur.h"
 #include "decoder/measurements.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"
+#include "decoder/presumed_samples.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {
@@ -17,43 +19,9 @@ namespace {
 
 constexpr float kMinStep = 0.1F;  // of the step at `step_flux`
 constexpr float kMaxStep = 4;
-constexpr int kBlurPixels = 7;  // a box of standard deviation 2
-constexpr int kBlurRadius = kBlurPixels / 2;
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
-}
-
-/// mean[i] of the kBlurPixels arrays that begin at `from(0)`, `from(1)`, ...
-template <typename From>
-void average(std::size_t count, const From& from, float* mean) {
-    std::fill_n(mean, count, 0.0F);
-    for (int k = 0; k < kBlurPixels; ++k) {
-        const float* array = from(k);
-        for (std::size_t i = 0; i < count; ++i) mean[i] += array[i];
-    }
-    for (std::size_t i = 0; i < count; ++i) mean[i] /= kBlurPixels;
-}
-
-/// Each pixel becomes the mean of the box around it; borders are repeated.
-void box_blur(FrameShape shape, std::span<float> frame) {
-    const auto cols = index(shape.cols);
-    std::vector<float> across(frame.size());
-    std::vector<float> row(cols + 2 * kBlurRadius);
-    for (std::size_t first = 0; first < frame.size(); first += cols) {
-        const auto inside = row.begin() + kBlurRadius;
-        std::fill(row.begin(), inside, frame[first]);
-        std::fill(std::copy_n(&frame[first], cols, inside), row.end(), frame[first + cols - 1]);
-        average(
-            cols, [&](int k) { return &row[index(k)]; }, &across[first]);
-    }
-    for (int i = 0; i < shape.rows; ++i)
-        average(
-            cols,
-            [&](int k) {
-                return &across[index(std::clamp(i + k - kBlurRadius, 0, shape.rows - 1)) * cols];
-            },
-            &frame[index(i) * cols]);
 }
 
 /// Light of a frame as one plane.
@@ -153,6 +121,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const MotionTvOptions options = options_for(measurements, all_options);
     WorkCount work(options, checkpoint);
     FluxVideo x = nearest_samples(measurements);
+    const PresumedSamples presumed(measurements, x, noise);
     TotalVariationSolver solver(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {

@@ -35,9 +35,10 @@ struct MotionTvOptions {
     float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
 };
 
-/// Decodes one block: total variation at rest, then rounds of (variances, motion, total variation
-/// along it), each from the estimate of the last. The result may be slightly negative. Nothing if
-/// `checkpoint` has stopped it.
+/// Decodes one block: what the nearest samples say of light that no sample knows is presumed
+/// (presumed_samples.h); then total variation at rest, then rounds of (variances, motion, total
+/// variation along it), each from the estimate of the last. The result may be slightly negative.
+/// Nothing if `checkpoint` has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_motion_tv(
     Measurements& measurements, const SampleNoise& noise, const MotionTvOptions& options,
     const Checkpoint& checkpoint = [](double) { return true; });

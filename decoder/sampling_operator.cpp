@@ -26,8 +26,10 @@ std::size_t chain(std::uint8_t state) {
     return kInterleaved && (state & Measurements::kSecond) != 0 ? 1 : 0;
 }
 
+/// Sums of voxels whose state has a bit of `kept` stay as they are.
 template <bool kInterleaved>
-void sample_all(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
+void sample_all(const Measurements& measurements, std::span<const float> x, std::span<float> sums,
+                std::uint8_t kept) {
     const std::size_t sites = measurements.shape.sites();
     for_each_run(sites, [&](std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;
@@ -38,7 +40,8 @@ void sample_all(const Measurements& measurements, std::span<const float> x, std:
                 float& sum = light[chain<kInterleaved>(state) * count + site - begin];
                 if ((state & Measurements::kFirst) != 0) sum = 0;
                 if ((state & Measurements::kOpen) != 0) sum += x[frame + site];
-                sums[frame + site] = (state & Measurements::kLast) != 0 ? sum : 0;
+                if ((state & kept) == 0)
+                    sums[frame + site] = (state & Measurements::kLast) != 0 ? sum : 0;
             }
     });
 }
@@ -61,12 +64,17 @@ void spread_all(const Measurements& measurements, std::span<const float> sums, s
     });
 }
 
+void sample_but(std::uint8_t kept, const Measurements& measurements, std::span<const float> x,
+                std::span<float> sums) {
+    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
+    measurements.interleaved ? sample_all<true>(measurements, x, sums, kept)
+                             : sample_all<false>(measurements, x, sums, kept);
+}
+
 }  // namespace
 
 void sample(const Measurements& measurements, std::span<const float> x, std::span<float> sums) {
-    assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
-    measurements.interleaved ? sample_all<true>(measurements, x, sums)
-                             : sample_all<false>(measurements, x, sums);
+    sample_but(0, measurements, x, sums);
 }
 
 void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
@@ -77,16 +85,17 @@ void spread(const Measurements& measurements, std::span<const float> sums, std::
 
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,
                        std::span<const float> x) {
-    sample(measurements, x, measurements.variance);
+    sample_but(Measurements::kPresumed, measurements, x, measurements.variance);
     const std::size_t sites = measurements.shape.sites();
     const bool own_noise = !measurements.dark_variance.empty();
     parallel_for(0, measurements.slots, [&](int slot) {
         const auto begin = static_cast<std::size_t>(slot) * sites;
         for (std::size_t i = begin; i < begin + sites; ++i)
-            measurements.variance[i] = (measurements.state[i] & Measurements::kLast) == 0 ? 0
-                                       : own_noise
-                                           ? measurements.variance_at(i, measurements.variance[i])
-                                           : noise.variance(measurements.variance[i]);
+            if ((measurements.state[i] & Measurements::kPresumed) == 0)
+                measurements.variance[i] =
+                    (measurements.state[i] & Measurements::kLast) == 0 ? 0
+                    : own_noise ? measurements.variance_at(i, measurements.variance[i])
+                                : noise.variance(measurements.variance[i]);
     });
 }
 
