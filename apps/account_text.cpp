@@ -54,7 +54,7 @@ bool fits(const ReadoutRate& rate, const ReadoutAccount& account) {
 
 }  // namespace
 
-ordered_json account_json(const ReadoutAccount& account) {
+ordered_json account_json(const ReadoutAccount& account, double light_throughput) {
     const ReadoutCounts& totals = account.totals();
     const double span_s = seconds(account.timing(), static_cast<double>(account.clocks()));
     const double slots_hz = static_cast<double>(account.slots()) / span_s;
@@ -75,7 +75,7 @@ ordered_json account_json(const ReadoutAccount& account) {
             {"adc_utilisation", use.adc},
             {"link_utilisation", use.link},
             {"energy_uj", totals.energy_pj * 1e-6},
-            {"light_throughput", account.schedule().light_throughput()},
+            {"light_throughput", light_throughput},
             {"schedule_memory_bits", schedule_memory_bits(account.schedule())},
             {"code_load_bits_per_second", code_bits_per_second(account, slots_hz)}};
 }

@@ -9,7 +9,9 @@
 namespace stipple {
 
 /// What a recording cost the chip, for programs: the key `readout` of `emulate` in docs/cli.md.
-[[nodiscard]] nlohmann::ordered_json account_json(const ReadoutAccount& account);
+/// `light_throughput` is that of schedule and filters.
+[[nodiscard]] nlohmann::ordered_json account_json(const ReadoutAccount& account,
+                                                  double light_throughput);
 
 /// The same in a few lines for people.
 [[nodiscard]] std::string account_text(const ReadoutAccount& account);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/account_text.h"
+#include "readout/light_account.h"
 
 namespace stipple {
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
@@ -42,6 +43,10 @@ double Recording::saturated_fraction() const {
     return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
 }
 
+double Recording::light_throughput() const {
+    return stipple::light_throughput(setup().schedule.schedule, emulator_.filters(), setup().shape);
+}
+
 nlohmann::ordered_json recording_json(const Recording& recording, double seconds) {
     const ReadoutStats& stats = recording.stats();
     nlohmann::ordered_json json{
@@ -49,12 +54,13 @@ nlohmann::ordered_json recording_json(const Recording& recording, double seconds
         {"samples", recording.samples()},
         {"payload_bits", recording.payload_bits()},
         {"compression_ratio", recording.compression_ratio()},
-        {"light_throughput", recording.setup().schedule.schedule.light_throughput()},
+        {"light_throughput", recording.light_throughput()},
+        {"light_read", recording.light_read()},
         {"saturated_fraction", recording.saturated_fraction()},
         {"slots_per_second", static_cast<double>(stats.slots) / seconds},
         {"samples_per_second", static_cast<double>(stats.samples) / seconds}};
     if (const ReadoutAccount* account = recording.account())
-        json["readout"] = account_json(*account);
+        json["readout"] = account_json(*account, recording.light_throughput());
     return json;
 }
 
@@ -68,10 +74,10 @@ std::string recording_text(const Recording& recording, double seconds) {
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
         "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
-        "light throughput {:.1f} %{}, {:.3g} slots/s",
+        "light throughput {:.1f} %, {:.1f} % read within the clip{}, {:.3g} slots/s",
         stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
         setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
-        100 * setup.schedule.schedule.light_throughput(), any ? saturated : "",
+        100 * recording.light_throughput(), 100 * recording.light_read(), any ? saturated : "",
         static_cast<double>(stats.slots) / seconds);
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));

@@ -38,6 +38,10 @@ class Recording {
     [[nodiscard]] double compression_ratio() const;
     /// Share of the samples at full scale, dropped ones too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
+    /// Part of the light that is collected once the first exposures are over.
+    [[nodiscard]] double light_throughput() const;
+    /// Part of the light since slot 0 that the samples hold, as SlotEmulator.
+    [[nodiscard]] double light_read() const { return emulator_.light_read(); }
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
     [[nodiscard]] const ReadoutAccount* account() const { return emulator_.account(); }

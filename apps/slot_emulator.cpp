@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "readout/light_account.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
@@ -23,7 +24,9 @@ std::string footage_name(const std::string& footage) {
 }
 
 SlotEmulator::SlotEmulator(const SensorSetup& setup)
-    : setup_(setup), sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
+    : setup_(setup),
+      filters_(calibration_of(setup.params).tile),
+      sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
     if (!setup.timing) return;
     const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
     account_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
@@ -40,6 +43,13 @@ std::span<const SamplePacket> SlotEmulator::expose(std::span<const float> frame)
     return account_ ? what_fits(account_->add_next()) : std::span(packets_).first(1);
 }
 
+double SlotEmulator::light_read() const {
+    const double light =
+        light_due_in_clip(setup_.schedule.schedule, filters_, setup_.shape, stats().slots);
+    return (light - dropped_light_) /
+           (static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.pixels()));
+}
+
 std::span<const SamplePacket> SlotEmulator::what_fits(const SlotAccount& slot) {
     SamplePacket& whole = packets_[0];
     if (slot.end_row == whole.rows) {
@@ -47,6 +57,8 @@ std::span<const SamplePacket> SlotEmulator::what_fits(const SlotAccount& slot) {
         return std::span(packets_).first(1);
     }
     packets_[1] = {whole.slot, slot.end_row, whole.rows - slot.end_row, SamplePacket::kDropped, {}};
+    dropped_light_ += light_due(setup_.schedule.schedule, filters_, whole.slot, slot.end_row,
+                                whole.rows, setup_.shape.cols);
     whole.rows = slot.end_row;
     whole.dn.resize(slot.counts.samples);
     return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);

@@ -33,7 +33,13 @@ class SlotEmulator {
     [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
+    /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
+    [[nodiscard]] const CalibrationTile& filters() const { return filters_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    /// Part of the light on the array since slot 0 that the samples hold: less than the light
+    /// throughput by exposures that began before slot 0, those under way, and dropped rows. NaN
+    /// before slot 0.
+    [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] ReadoutAccount* account() { return account_ ? &*account_ : nullptr; }
     [[nodiscard]] const ReadoutAccount* account() const { return account_ ? &*account_ : nullptr; }
@@ -42,9 +48,11 @@ class SlotEmulator {
     [[nodiscard]] std::span<const SamplePacket> what_fits(const SlotAccount& slot);
 
     const SensorSetup& setup_;
+    CalibrationTile filters_;
     CodedSensor sensor_;
     std::optional<ReadoutAccount> account_;
     std::array<SamplePacket, 2> packets_;
+    double dropped_light_ = 0;   ///< as `light_due`
     std::vector<float> mosaic_;  ///< of light in colour behind colour filters
 };
 

@@ -26,6 +26,32 @@ class PipelineTest(ProgramTest):
         self.assertGreater(figures["slots_per_second"], 0)
         self.assertGreater(figures["samples_per_second"], 0)
 
+    def test_light_throughput_counts_filters_and_light_read_the_ends_of_the_clip(self):
+        def light(slots, *arguments, rows=4, cols=6):
+            flat = self.write_flat("light.npy", slots=slots, rows=rows, cols=cols)
+            figures = self.figures("emulate", flat, "-o", "a.stipple", "--force", *arguments)
+            return figures["light_throughput"], figures["light_read"]
+
+        self.assertEqual(light(10, "--schedule", "full4x"), (1, 8 / 10))
+        self.assertEqual(light(10, "--schedule", "full1x"), (1 / 4, 3 / 10))
+        self.assertEqual(light(3, "--schedule", "full4x"), (1, 0))
+        mosaic = np.array([[1, 1 / 2], [1 / 4, 1 / 8]])
+        filters = ["--sensor", "nd_mosaic"]
+        self.assertAlmostEqual(mosaic.mean(), 0.469, places=3)
+        self.assertEqual(light(10, *filters, "--schedule", "nd_mosaic"),
+                         (mosaic.mean(), mosaic.mean() * 8 / 10))
+        # On an array of 3 x 5 the bright filters are more; exposures differ by pixel too.
+        exposures = np.array([[1, 2], [4, 8]]) / 8
+        self.assertEqual(
+            light(16, *filters, "--schedule", "spatially_varying_exposure", "--set",
+                  "schedule.exposure_slots=[1, 2, 4, 8]", rows=3, cols=5),
+            (np.tile(mosaic * exposures, (2, 3))[:3, :5].mean(),) * 2)
+        # Of each length L, (L - 1) / 2 slots are cut off at either end, with the weight L / 15.
+        throughput, read = light(32, rows=64, cols=64)
+        self.assertEqual(throughput, 1)
+        self.assertAlmostEqual(read, 1 - 2 * sum(L * (L - 1) / 2 for L in (1, 2, 4, 8)) / 15 / 32,
+                               delta=0.01)  # 0.0014 times the standard deviation of 4096 pixels
+
     def test_schedule_and_sensor_follow_the_settings(self):
         light = self.write_flat("light.npy", slots=6, rows=4, cols=4)
         figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "bit_depth=12",

@@ -88,6 +88,7 @@ class ReadoutOfARecordingTest(ProgramTest):
         self.assertEqual(readout["clocks"], 20 * 540)
         self.assertEqual(cut["samples"] + readout["dropped_samples"], whole["samples"])
         self.assertEqual(cut["payload_bits"], 12 * cut["samples"])
+        self.assertLess(cut["light_read"], 0.9 * whole["light_read"])
         report = self.figures("info", "clip.stipple")
         self.assertEqual(report["samples"], cut["samples"])
         self.assertEqual((report["slots"], report["missing_slots"], report["damage"]), (20, 0, []))

@@ -1,0 +1,55 @@
+#include "readout/light_account.h"
+
+#include <algorithm>
+
+namespace stipple {
+namespace {
+
+double transmittance(const CalibrationTile& tile, int row, int col) {
+    if (tile.pixels.empty()) return 1;
+    return tile.pixels[static_cast<std::size_t>(row % tile.rows * tile.cols + col % tile.cols)]
+        .responsivity;
+}
+
+}  // namespace
+
+double light_throughput(const ExposureSchedule& schedule, const CalibrationTile& tile,
+                        FrameShape shape) {
+    if (tile.pixels.empty()) return schedule.light_throughput();
+    double light = 0;
+    for (int row = 0; row < shape.rows; ++row)
+        for (int col = 0; col < shape.cols; ++col) {
+            int open = 0;
+            for (const Exposure& exposure :
+                 schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols()))
+                open += exposure.light_slots();
+            light += open * transmittance(tile, row, col);
+        }
+    return light / (schedule.period_slots() * static_cast<double>(shape.pixels()));
+}
+
+double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile, std::int64_t slot,
+                 int first_row, int end_row, int cols) {
+    double light = 0;
+    for (int row = first_row; row < end_row; ++row)
+        visit_due_pixels(schedule, slot, row, cols, [&](int col, const DuePixel& pixel) {
+            light += pixel.light_slots * transmittance(tile, row, col);
+        });
+    return light;
+}
+
+double light_due_in_clip(const ExposureSchedule& schedule, const CalibrationTile& tile,
+                         FrameShape shape, std::int64_t slots) {
+    const std::int64_t period = schedule.period_slots();
+    const std::int64_t steady = std::max(schedule.longest_span_slots(), 1) - 1;
+    double light = 0;
+    for (std::int64_t slot = 0; slot < std::min(slots, steady + period); ++slot) {
+        // From `steady` on, slots of the same phase are alike.
+        const std::int64_t times = slot < steady ? 1 : 1 + (slots - 1 - slot) / period;
+        light +=
+            static_cast<double>(times) * light_due(schedule, tile, slot, 0, shape.rows, shape.cols);
+    }
+    return light;
+}
+
+}  // namespace stipple
