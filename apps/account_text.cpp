@@ -48,6 +48,27 @@ const char* name_of(OverrunPolicy policy) {
     return policy == OverrunPolicy::kDrop ? "drop" : "stretch";
 }
 
+double full_sample_pj(const ReadoutRate& rate, const ReadoutAccount& account) {
+    return rate.full_energy_pj / static_cast<double>(account.shape().sites());
+}
+
+double slot_sample_pj(const ReadoutRate& rate) {
+    return rate.period.energy_pj / static_cast<double>(rate.period.samples);
+}
+
+/// On a chip that is not for sale, with the settling that it takes, a line each; else empty.
+std::string hypothetical_text(const ReadoutRate& rate, const ReadoutAccount& account) {
+    const ReadoutTiming& timing = account.timing();
+    if (timing.hypothetical.empty()) return {};
+    std::string text = fmt::format("hypothetical {}", timing.hypothetical);
+    if (!timing.settle_clocks.empty())
+        text += fmt::format("; rows settle for {} clocks in full, {} in the slowest slot",
+                            rate.full.settle, rate.slowest.settle_clocks);
+    for (auto at = text.find("; "); at != std::string::npos; at = text.find("; "))
+        text.replace(at, 2, ";\n             ");
+    return text + '\n';
+}
+
 bool fits(const ReadoutRate& rate, const ReadoutAccount& account) {
     return rate.slowest.clocks <= account.budget().clocks;
 }
@@ -75,6 +96,7 @@ ordered_json account_json(const ReadoutAccount& account, double light_throughput
             {"adc_utilisation", use.adc},
             {"link_utilisation", use.link},
             {"energy_uj", totals.energy_pj * 1e-6},
+            {"sample_energy_pj", totals.energy_pj / static_cast<double>(totals.samples)},
             {"light_throughput", light_throughput},
             {"schedule_memory_bits", schedule_memory_bits(account.schedule())},
             {"code_load_bits_per_second", code_bits_per_second(account, slots_hz)}};
@@ -108,6 +130,8 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
     const Utilisation use = utilisation(rate, account);
     const auto period = static_cast<double>(account.schedule().period_slots());
     return {
+        {"hypothetical",
+         timing.hypothetical.empty() ? ordered_json(nullptr) : ordered_json(timing.hypothetical)},
         {"rows", account.shape().rows},
         {"cols", account.shape().cols},
         {"full_readout_hz", rate.full_hz},
@@ -117,6 +141,8 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
         {"frame_clocks", rate.full.total},
         {"frame_time_s", seconds(timing, static_cast<double>(rate.full.total))},
         {"row_clocks", rate.full.row},
+        {"full_settle_clocks", rate.full.settle},
+        {"slowest_settle_clocks", rate.slowest.settle_clocks},
         {"even_gain", rate.even_gain},
         {"even_row_clocks", rate.even.row},
         {"slowest_slot_clocks", rate.slowest.clocks},
@@ -134,6 +160,8 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
         {"link_bits_per_second", static_cast<double>(rate.period.bits) / period * rate.coded_hz},
         {"full_energy_uj", rate.full_energy_pj * 1e-6},
         {"slot_energy_uj", rate.period.energy_pj / period * 1e-6},
+        {"full_sample_energy_pj", full_sample_pj(rate, account)},
+        {"slot_sample_energy_pj", slot_sample_pj(rate)},
         {"schedule_memory_bits", schedule_memory_bits(account.schedule())},
         {"code_load_clocks", timing.code_load_clocks},
         {"code_load_bits_per_second", code_bits_per_second(account, rate.coded_hz)}};
@@ -143,18 +171,21 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account) {
     const Utilisation use = utilisation(rate, account);
     const double period = account.schedule().period_slots();
     return fmt::format(
-        "window       {} x {} (width x height)\n"
+        "{}window       {} x {} (width x height)\n"
         "full         {:.5g} readouts/s: {} clocks, {} a row\n"
         "coded        {:.5g} slots/s: {} clocks in the slowest slot, {:.6g} on average\n"
         "gain         {:.3f}, limited by {}; {:.3f} if each row read its mean load evenly\n"
         "in use       rows {:.1f} %, ADCs {:.1f} %, link {:.1f} %\n"
-        "energy       {:.4g} uJ a full readout, {:.4g} uJ a slot (an estimate)\n"
+        "energy       {:.4g} uJ a full readout, {:.4g} pJ a sample; {:.4g} uJ a slot, {:.4g} pJ a "
+        "sample\n"
+        "             (of assumed constants, without static power)\n"
         "code         {} bits of schedule memory, {:.4g} Mbit/s, {} clocks to load\n"
         "slot         {} clocks: the readout {}",
-        account.shape().cols, account.shape().rows, rate.full_hz, rate.full.total, rate.full.row,
-        rate.coded_hz, rate.slowest.clocks, rate.mean_slot_clocks, rate.gain,
-        name_of(rate.slowest.limit), rate.even_gain, 100 * use.rows, 100 * use.adc, 100 * use.link,
-        rate.full_energy_pj * 1e-6, rate.period.energy_pj / period * 1e-6,
+        hypothetical_text(rate, account), account.shape().cols, account.shape().rows, rate.full_hz,
+        rate.full.total, rate.full.row, rate.coded_hz, rate.slowest.clocks, rate.mean_slot_clocks,
+        rate.gain, name_of(rate.slowest.limit), rate.even_gain, 100 * use.rows, 100 * use.adc,
+        100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, account),
+        rate.period.energy_pj / period * 1e-6, slot_sample_pj(rate),
         schedule_memory_bits(account.schedule()),
         1e-6 * code_bits_per_second(account, rate.coded_hz), account.timing().code_load_clocks,
         account.budget().clocks, fits(rate, account) ? "fits" : "does not fit");

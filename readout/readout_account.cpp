@@ -96,6 +96,7 @@ ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedu
       row_loads_(timing_, schedule, shape),
       first_steady_slot_(std::max(schedule.longest_span_slots(), 1) - 1),
       by_phase_(static_cast<std::size_t>(schedule.period_slots())) {
+    timing_.code_load_clocks = code_load_clocks(timing, shape.rows);
     if (budget.policy != OverrunPolicy::kDrop || budget.clocks == 0) return;
     const auto check = [&](std::int64_t clocks, const char* what) {
         if (clocks > budget.clocks)
@@ -103,7 +104,7 @@ ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedu
                                                  "rows does not help; raise slot_us",
                                                  what, clocks, budget.clocks));
     };
-    check(timing.code_load_clocks, "the load of the exposure code");
+    check(timing_.code_load_clocks, "the load of the exposure code");
     check(timing.overhead_clocks + timing.overhead_rows * full_row_clocks(timing, shape.cols),
           "the overhead before the rows");
 }
@@ -135,7 +136,7 @@ void ReadoutAccount::count(const RowTimes& row, ReadoutCounts& counts) const {
     counts.convert_clocks += row.convert_end - row.select;
     counts.link_clocks += row.transfer_end - row.transfer;
     counts.energy_pj += timing_.row_select_pj +
-                        timing_.conversion_pj * static_cast<double>(conversions) +
+                        conversion_energy_pj(timing_) * static_cast<double>(conversions) +
                         timing_.link_bit_pj * static_cast<double>(bits);
 }
 
@@ -159,6 +160,7 @@ SlotAccount ReadoutAccount::account(std::int64_t slot) {
     for (const RowLoad& load : std::span(loads_).subspan(read))
         counts.dropped_samples += wide(shape_.planes) * wide(load.due);
     account.end_row = read < loads_.size() ? std::max(loads_[read].row, 0) : shape_.rows;
+    account.settle_clocks = times.settle;
     counts.readout_clocks = times.end;
     counts.energy_pj += timing_.code_bit_pj * static_cast<double>(shape_.pixels());
     const std::int64_t needed = std::max(times.end, timing_.code_load_clocks);

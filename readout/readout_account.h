@@ -51,6 +51,7 @@ struct ReadoutCounts {
 struct SlotAccount {
     ReadoutCounts counts;
     std::int64_t clocks = 0;  ///< of the slot: the budget, or what readout and code load take
+    int settle_clocks = 0;    ///< that its rows take
     int end_row = 0;          ///< rows from here on are dropped; those of the window: none
     bool overrun = false;     ///< the budget was too short
     ReadoutLimit limit = ReadoutLimit::kLink;
@@ -78,6 +79,7 @@ class ReadoutAccount {
     [[nodiscard]] std::int64_t clocks() const { return clocks_; }
     [[nodiscard]] const ReadoutCounts& totals() const { return totals_; }
 
+    /// With the load of the code of these rows in place of the array's.
     [[nodiscard]] const ReadoutTiming& timing() const { return timing_; }
     [[nodiscard]] const ExposureSchedule& schedule() const { return schedule_; }
     [[nodiscard]] FrameShape shape() const { return shape_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -126,6 +127,14 @@ std::int64_t transfer_clocks(const ReadoutTiming& timing, int channel_columns) n
 
 std::int64_t convert_clocks(const ReadoutTiming& timing, int settle, int conversions) noexcept {
     return std::int64_t{timing.rot_clocks} + settle + std::int64_t{conversions} * timing.adc_clocks;
+}
+
+std::int64_t code_load_clocks(const ReadoutTiming& timing, int rows) noexcept {
+    return (timing.code_load_clocks * rows + timing.rows - 1) / timing.rows;
+}
+
+double conversion_energy_pj(const ReadoutTiming& timing) noexcept {
+    return std::ldexp(timing.conversion_pj, timing.bits_per_sample - kConversionBits);
 }
 
 std::int64_t row_clocks(const ReadoutTiming& timing, std::int64_t convert,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace stipple {
 
 /// Clocks of a readout or a slot are at most that many.
 inline constexpr std::int64_t kMostReadoutClocks = std::int64_t{1} << 40U;
+
+/// Bits of a conversion whose energy is `conversion_pj`.
+inline constexpr int kConversionBits = 10;
 
 /// How the conversion of a row and the transfer of a row to the link share the time.
 enum class RowTimeLaw : std::uint8_t {
@@ -59,13 +63,16 @@ struct ReadoutTiming {
     int dark_rows = 0;        ///< read in full before the first row, no samples
     int overhead_rows = 0;    ///< row times at full width before the rows; they carry nothing
     std::int64_t overhead_clocks = 0;   ///< of each readout, before all rows
-    std::int64_t code_load_clocks = 0;  ///< to load a slot's exposure code, beside the readout
+    std::int64_t code_load_clocks = 0;  ///< to load the array's exposure code, beside the readout
 
     // Energy of one operation.
     double row_select_pj = 0;
-    double conversion_pj = 0;
+    double conversion_pj = 0;  ///< of `kConversionBits`
     double link_bit_pj = 0;
     double code_bit_pj = 0;  ///< a bit of exposure code, one per pixel and slot
+
+    /// How the chip that is sold differs, for people; empty: it does not.
+    std::string hypothetical = {};
 
     [[nodiscard]] int adcs() const { return cols / columns_per_adc; }
     bool operator==(const ReadoutTiming&) const = default;
@@ -91,6 +98,14 @@ void validate(const ReadoutTiming& timing, std::string_view sensor);
 /// ADC.
 [[nodiscard]] std::int64_t convert_clocks(const ReadoutTiming& timing, int settle,
                                           int conversions) noexcept;
+
+/// Clocks to load the exposure code of `rows` rows, one after the other.
+[[nodiscard]] std::int64_t code_load_clocks(const ReadoutTiming& timing, int rows) noexcept;
+
+/// Energy of one conversion: twice as much for each bit, so that the energy of a step of the
+/// converter is constant (Walden, "Analog-to-digital converter survey and analysis", IEEE JSAC
+/// 17(4), 1999).
+[[nodiscard]] double conversion_energy_pj(const ReadoutTiming& timing) noexcept;
 
 /// From one row to the next when all rows are alike.
 [[nodiscard]] std::int64_t row_clocks(const ReadoutTiming& timing, std::int64_t convert,

@@ -35,6 +35,7 @@ class Section {
         return config_.choice(name(key), fallback, choices);
     }
     bool boolean(const char* key, bool fallback) { return config_.boolean(name(key), fallback); }
+    std::string text(const char* key) { return config_.text(name(key), ""); }
     [[nodiscard]] static std::string name(const char* key) { return fmt::format("timing.{}", key); }
 
   private:
@@ -103,6 +104,7 @@ std::optional<ReadoutTiming> read_timing(Config& config, int bits_per_sample) {
     timing.conversion_pj = section.picojoules("conversion_pj");
     timing.link_bit_pj = section.picojoules("link_bit_pj");
     timing.code_bit_pj = section.picojoules("code_bit_pj");
+    timing.hypothetical = section.text("hypothetical");
     if (timing == ReadoutTiming{}) return {};
     for (const auto& [key, missing] : {std::pair{"clock_hz", timing.clock_hz == 0},
                                        {"rows", timing.rows == 0},

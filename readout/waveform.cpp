@@ -169,7 +169,8 @@ std::string Waveform::slot(ReadoutAccount& account, std::int64_t slot, std::int6
 
 std::string Waveform::tail(std::int64_t end) {
     set(end, kSlotStart, 0);
-    return take_until(end + 1) + fmt::format("#{}\n", picoseconds(end, timing_.clock_hz));
+    return take_until(end + 1) + fmt::format("#{}\nb{} {}\n", picoseconds(end, timing_.clock_hz),
+                                             binary(end, 64), code_of(kCycle));
 }
 
 }  // namespace stipple

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "readout/schedule_catalogue.h"
@@ -55,7 +56,8 @@ ReadoutCounts counted_by_ticks(const Case& it, std::int64_t slot) {
     counts.rows = static_cast<std::int64_t>(loads.size());
     counts.readout_clocks = times.end;
     counts.energy_pj =
-        3.0 * static_cast<double>(counts.rows) + 5.0 * static_cast<double>(counts.conversions) +
+        3.0 * static_cast<double>(counts.rows) +
+        5.0 * std::exp2(it.timing.bits_per_sample - 10) * static_cast<double>(counts.conversions) +
         0.5 * static_cast<double>(counts.bits) + 0.25 * static_cast<double>(it.shape.pixels());
     return counts;
 }
@@ -82,8 +84,9 @@ TEST(ReadoutAccountTest, AgreesWithTheReferenceThatCountsClocks) {
             EXPECT_EQ(given.counts.link_clocks, expected.link_clocks);
             EXPECT_NEAR(given.counts.energy_pj, expected.energy_pj, 1e-9);
             EXPECT_FALSE(given.overrun);
-            EXPECT_EQ(given.clocks, std::max({expected.readout_clocks, it.timing.code_load_clocks,
-                                              std::int64_t{1}}));
+            EXPECT_EQ(given.clocks,
+                      std::max({expected.readout_clocks, code_load_clocks(it.timing, it.shape.rows),
+                                std::int64_t{1}}));
             clocks += given.clocks;
             samples += expected.samples;
         }
@@ -140,6 +143,15 @@ TEST(ReadoutAccountTest, AStretchedSlotLastsAsLongAsItsReadout) {
     }
 }
 
+TEST(ReadoutAccountTest, TheCodeOfAWindowLoadsInTheShareOfItsRows) {
+    const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
+    const auto every_slot = full_schedule(1, 1);
+    for (const auto& [rows, clocks] : {std::pair{1024, 100000}, {512, 50000}, {100, 9766}}) {
+        ReadoutAccount account(timing, every_slot, {rows, 16, 1}, {});
+        EXPECT_EQ(account.of(0).clocks, clocks) << "rounded up";
+    }
+}
+
 TEST(ReadoutAccountTest, ASlotLastsAtLeastAsLongAsTheLoadOfItsCode) {
     const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
     const auto every_slot = full_schedule(1, 1);
@@ -167,12 +179,12 @@ TEST(ReadoutAccountTest, WhatDroppingRowsCannotHelpIsRefused) {
     const auto every_slot = full_schedule(1, 1);
     const auto problem = [&](std::int64_t clocks) {
         return message_of<InputError>([&] {
-            ReadoutAccount(timing, every_slot, {8, 320, 1}, {clocks, OverrunPolicy::kDrop});
+            ReadoutAccount(timing, every_slot, {1080, 320, 1}, {clocks, OverrunPolicy::kDrop});
             return 0;
         });
     };
-    expect_parts(problem(2000), {"exposure code", "2228", "slot_us"});
-    expect_parts(problem(3000), {"overhead", "9919", "slot_us"});  // 319 + 40 x 240
+    expect_parts(problem(2000), {"exposure code", "7518", "slot_us"});
+    expect_parts(problem(8000), {"overhead", "9919", "slot_us"});  // 319 + 40 x 240
     EXPECT_THROW(static_cast<void>(slot_clocks(timing, 0.001)), InputError);
     EXPECT_THROW(static_cast<void>(slot_clocks(timing, 1e12)), InputError);
     EXPECT_EQ(slot_clocks(timing, 1000), 74250);

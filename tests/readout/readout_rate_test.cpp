@@ -19,9 +19,9 @@ TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
     EXPECT_DOUBLE_EQ(rate.gain, 1);
     EXPECT_NEAR(rate.full_hz, 1069.6, 0.1);
     // In the other three slots, only the exposure code is loaded.
-    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 2700) / 4.0);
-    EXPECT_NEAR(rate.full_energy_pj, 1024 * (100 + 1280 * (100 + 12 * 10.0)),
-                1);  // config/sensors/lux1310.toml
+    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 8640) / 4.0);
+    EXPECT_NEAR(rate.full_energy_pj, 1024 * (100 + 1280 * (4 * 100 + 12 * 10.0)),
+                1);  // config/sensors/lux1310.toml; 12 bits cost four times as much as 10
 }
 
 // docs/readout_timing.md: per-pixel random codes on a LUX1310 with channels that skip columns take

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "core/error.h"
 #include "readout/readout_timing.h"
 #include "tests/core/temporary_folder.h"
@@ -36,6 +39,25 @@ TEST(TimingConfigTest, KeysArriveWhereTheyBelong) {
     EXPECT_EQ(timing.code_bit_pj, 0.25);
     EXPECT_EQ(timing.bits_per_sample, 12);
     EXPECT_EQ(timing.settle_clocks.size(), 9U);
+}
+
+// Of each sensor: 30 us for 320 rows; 3 fF a row, charged to 1.2 V; 100 pJ for 10 bits.
+TEST(TimingConfigTest, AssumedConstantsFollowTheSizeOfTheChip) {
+    for (const char* name :
+         {"cmv4000", "imx273", "imx296", "lux1310", "lux2100", "plc720", "sp5000", "vita"}) {
+        const ReadoutTiming timing = sensor_timing(name);
+        const double load_s =
+            static_cast<double>(timing.code_load_clocks) / static_cast<double>(timing.clock_hz);
+        EXPECT_NEAR(load_s, timing.rows * 30e-6 / 320, 1 / static_cast<double>(timing.clock_hz))
+            << name;
+        EXPECT_NEAR(timing.code_bit_pj, timing.rows * 3e-3 * 1.2 * 1.2, 0.05) << name;
+        EXPECT_DOUBLE_EQ(conversion_energy_pj(timing),
+                         100 * std::pow(2, timing.bits_per_sample - 10))
+            << name;
+        EXPECT_TRUE(timing.hypothetical.find("exposes all pixels alike") != std::string::npos);
+        EXPECT_EQ(timing.hypothetical.find("whole rows") != std::string::npos,
+                  timing.law == RowTimeLaw::kFullWidth);
+    }
 }
 
 TEST(TimingConfigTest, ImpossibleTimingNamesTheConstraint) {
