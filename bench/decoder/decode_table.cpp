@@ -37,6 +37,7 @@ struct TableOptions {
     int side_px = 96;
     int slots = 24;
     bool scaling = false;
+    bool one_thread = false;
 };
 
 FluxVideo rendered(const std::string& name, int side_px, int slots) {
@@ -150,7 +151,8 @@ void print_clip(const std::string& name, const FluxVideo& video, const Camera& c
     const RecordedClip clip = record(video, camera, folder.path());
     std::map<std::string, MethodFigures> figures;
     for (const std::string& method : options.methods) {
-        figures[method] = measure_apart(clip, method, settings_of(method, options));
+        figures[method] =
+            measure_apart(clip, {method, settings_of(method, options), options.one_thread});
         all[method].push_back(figures[method]);
     }
     const auto reference = figures.find("portz2013");
@@ -211,7 +213,8 @@ void print_scaling(const TableOptions& options) {
         const FluxVideo video = rendered("pan", side_px, options.slots);
         const RecordedClip clip = record(video, cameras_of(options).front(), folder.path());
         for (const std::string& method : options.methods) {
-            const MethodFigures f = measure_apart(clip, method, settings_of(method, options));
+            const MethodFigures f =
+                measure_apart(clip, {method, settings_of(method, options), options.one_thread});
             fmt::print("| {}x{} | {} | {} | {:.2f} | {:.3f} | {:.0f} |\n", side_px, side_px, method,
                        video.voxels(), f.seconds, 1e6 / f.voxels_per_second,
                        static_cast<double>(f.peak_bytes) / 1e6);
@@ -256,6 +259,8 @@ int run(int argc, char** argv) {
         .check(whole_check(1, 100000));
     command.add_flag("--scaling", options.scaling,
                      "time for a voxel of four sizes instead; all methods but portz2013");
+    command.add_flag("--one-thread", options.one_thread,
+                     "one thread, and rates by its processor time, for a machine that is busy");
     if (const auto parsed = line.parse(argc, argv); parsed != CommandLine::Parsed::kAction)
         return parsed == CommandLine::Parsed::kHelp ? 0 : 2;
     if (options.scaling && options.methods == all_methods)
@@ -270,9 +275,10 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         const std::vector<std::string> arguments(argv + 1, argv + argc);
-        if (arguments.size() >= 5 && arguments[0] == "--child") {
-            stipple::decode_and_print({arguments[1], arguments[2], std::stod(arguments[3])},
-                                      arguments[4], {arguments.begin() + 5, arguments.end()});
+        if (arguments.size() >= 6 && arguments[0] == "--child") {
+            stipple::decode_and_print(
+                {arguments[1], arguments[2], std::stod(arguments[3])},
+                {arguments[4], {arguments.begin() + 6, arguments.end()}, arguments[5] == "1"});
             return 0;
         }
         return stipple::run(argc, argv);

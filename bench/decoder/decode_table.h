@@ -25,14 +25,19 @@ struct RecordedClip {
     double brightest = 2;  ///< light that both are clipped at before they are compared
 };
 
-/// Decodes in this process with settings as `stipple decode --set`, and prints the figures as one
-/// line for `measure_apart`.
-void decode_and_print(const RecordedClip& clip, const std::string& method,
-                      const std::vector<std::string>& settings);
+/// What is to be measured.
+struct MethodRun {
+    std::string method;
+    std::vector<std::string> settings = {};  ///< as `stipple decode --set`
+    /// One thread, and its processor time for seconds: other work on the machine does not count.
+    bool one_thread = false;
+};
+
+/// Decodes in this process, and prints the figures as one line for `measure_apart`.
+void decode_and_print(const RecordedClip& clip, const MethodRun& run);
 
 /// Runs this program again with the argument --child to do so, so that each method has a peak of
 /// memory of its own. \throws std::runtime_error if it fails.
-[[nodiscard]] MethodFigures measure_apart(const RecordedClip& clip, const std::string& method,
-                                          const std::vector<std::string>& settings);
+[[nodiscard]] MethodFigures measure_apart(const RecordedClip& clip, const MethodRun& run);
 
 }  // namespace stipple

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/footage_reader.h"
 #include "core/npy_writer.h"
+#include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
@@ -47,41 +50,45 @@ VideoQuality quality_of(const std::filesystem::path& decoded, const RecordedClip
 
 }  // namespace
 
-void decode_and_print(const RecordedClip& clip, const std::string& method,
-                      const std::vector<std::string>& settings) {
+void decode_and_print(const RecordedClip& clip, const MethodRun& run) {
+    std::optional<ThreadLimit> limit;
+    if (run.one_thread) limit.emplace(1);
     StreamReader reader(clip.stream, ReadPolicy::kStrict);
-    Config config(settings);
+    Config config(run.settings);
     const auto output = clip.stream.parent_path() / "decoded.npy";
     NpyWriter video(output, output.string(), decoded_shape(reader.header()));
+    const std::clock_t begin = std::clock();
     const DecodeReport report =
-        decode(reader, read_decode_options(decode_method_from_name(method), config),
+        decode(reader, read_decode_options(decode_method_from_name(run.method), config),
                [&](std::int64_t, std::span<const float> frame) {
                    video.write(frame);
                    return true;
                });
+    const double seconds = run.one_thread
+                               ? static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC
+                               : report.seconds;
     video.finish();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     const VideoQuality quality = quality_of(output, clip);
-    fmt::print("figures {} {} {} {} {} {}\n", report.seconds,
-               static_cast<double>(report.voxels) / report.seconds, quality.psnr_db,
-               quality.psnr_gamma_db, quality.pu21_psnr_db, usage.ru_maxrss * 1024);
+    fmt::print("figures {} {} {} {} {} {}\n", seconds, static_cast<double>(report.voxels) / seconds,
+               quality.psnr_db, quality.psnr_gamma_db, quality.pu21_psnr_db,
+               usage.ru_maxrss * 1024);
 }
 
-MethodFigures measure_apart(const RecordedClip& clip, const std::string& method,
-                            const std::vector<std::string>& settings) {
+MethodFigures measure_apart(const RecordedClip& clip, const MethodRun& run) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe");
-    std::string command = fmt::format("{} --child {} {} {} {}", quoted(program.string()),
+    std::string command = fmt::format("{} --child {} {} {} {} {:d}", quoted(program.string()),
                                       quoted(clip.stream.string()), quoted(clip.truth.string()),
-                                      clip.brightest, quoted(method));
-    for (const std::string& setting : settings) command += fmt::format(" {}", quoted(setting));
+                                      clip.brightest, quoted(run.method), run.one_thread);
+    for (const std::string& setting : run.settings) command += fmt::format(" {}", quoted(setting));
     const std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
     MethodFigures f;
     long long peak = 0;
     if (!pipe || std::fscanf(pipe.get(), "figures %lf %lf %lf %lf %lf %lld", &f.seconds,
                              &f.voxels_per_second, &f.psnr_db, &f.psnr_gamma_db, &f.pu21_psnr_db,
                              &peak) != 6)
-        throw std::runtime_error(fmt::format("method {} has failed", method));
+        throw std::runtime_error(fmt::format("method {} has failed", run.method));
     f.peak_bytes = peak;
     return f;
 }
