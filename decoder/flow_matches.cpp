@@ -7,10 +7,11 @@
 #include <opencv2/core.hpp>
 #include <opencv2/optflow.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "core/light.h"
 #include "core/parallel.h"
-#include "decoder/grey_levels.h"
 #include "decoder/motion.h"
 
 namespace stipple {
@@ -20,9 +21,17 @@ std::size_t count(int n) {
     return static_cast<std::size_t>(n);
 }
 
+/// sqrt(luminance). OpenCV takes 1.0 for level 255 and sets no upper end, so highlights move too.
 cv::Mat flow_image(const FluxVideo& video, int slot) {
-    std::vector<std::uint8_t> levels = grey_levels(video, slot);
-    return cv::Mat(video.shape().rows, video.shape().cols, CV_8U, levels.data()).clone();
+    const FrameShape shape = video.shape();
+    cv::Mat image(shape.rows, shape.cols, CV_32F);
+    const std::span levels(image.ptr<float>(), shape.pixels());
+    if (shape.planes == 3)
+        reduce_to_luminance(video.frame(slot), levels);
+    else
+        std::ranges::copy(video.frame(slot).first(levels.size()), levels.begin());
+    for (float& level : levels) level = std::sqrt(std::max(level, 0.0F));
+    return image;
 }
 
 /// Flow from each slot to the next and to the one before; the ends of the video have one only.

@@ -14,8 +14,8 @@ namespace stipple {
 
 struct Measurements;
 
-/// The method `portz2013`. What the paper says is as published; of what it does not say, the values
-/// were found as docs/decoder_portz2013.md tells.
+/// The method `portz2013`. docs/decoder_portz2013.md says which values are published, how the
+/// others were found, and where the method differs from the paper's.
 struct Portz2013Options {
     struct Stage1 {
         MatchSearch search{.size = {6, 6, 4}, .step_px = 3, .sigma = 0.15F};
@@ -33,7 +33,8 @@ struct Portz2013Options {
     };
     Stage1 stage1;
     Stage2 stage2;
-    float values_per_flux = 3;  ///< unit of x: the published rho are in those of the paper's video
+    /// Y of Eq. 1 for light 1.0, r / s of the paper's sensor: the published rho are in that unit.
+    float values_per_flux = 0.5F;
 };
 
 /// Sites of a tile's core at most: a block of 64 slots then needs some 3 GB.

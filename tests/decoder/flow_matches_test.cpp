@@ -29,8 +29,8 @@ bool always(double) {
     return true;
 }
 
-TEST(FlowMatchesTest, FollowBlocksAlongTheirMotion) {
-    const MatchList list = find_flow_matches(moving_texture(), {.radius_slots = 2}, always);
+void follows_blocks(const FluxVideo& video) {
+    const MatchList list = find_flow_matches(video, {.radius_slots = 2, .sigma = 1}, always);
     EXPECT_EQ(list.size.rows, 4);
     EXPECT_EQ(list.size.slots, 1);
     int groups = 0, matches = 0, right = 0;
@@ -51,6 +51,16 @@ TEST(FlowMatchesTest, FollowBlocksAlongTheirMotion) {
     EXPECT_EQ(groups, 2 * 36);
     EXPECT_GT(matches, 0.95 * 4 * groups);
     EXPECT_GT(right, 0.95 * matches);
+}
+
+TEST(FlowMatchesTest, FollowBlocksAlongTheirMotion) {
+    follows_blocks(moving_texture());
+}
+
+TEST(FlowMatchesTest, FollowHighlightsAboveLight1) {
+    FluxVideo video = moving_texture();
+    for (float& light : video.data()) light = 1 + 3 * light;
+    follows_blocks(video);
 }
 
 TEST(FlowMatchesTest, BlocksCoverTheFrameAndSmallFramesStandStill) {

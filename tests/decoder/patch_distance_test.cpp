@@ -69,6 +69,28 @@ TEST(PatchDistanceTest, OfEqualSamplesTheOneThatCoversMoreIsTheTarget) {
     EXPECT_FLOAT_EQ(d.error, 3 / (1 + 13 / 16.F) * 0.0625F);
 }
 
+TEST(PatchDistanceTest, ALongerSampleCountsByItsShareOfATarget) {
+    // Patch of slots 2 and 3, y = 1 of both; the other pixel has 0.25 of slot 2, and 8 of slots 3
+    // to 10, for which as a target too little is known.
+    const ExposureTable table(
+        hand_made(12, kTwoPixels, {{0, 2, 0b11, 1}, {1, 2, 1, 0.25F}, {1, 3, 0b11111111, 8}}));
+    const SampleDifference d = compare_samples(table, {0, 2}, {1, 2}, 2);
+    const float weight = 2 / (1 + 1 + 1 / 64.F);
+    EXPECT_EQ(d.cover, 2);
+    EXPECT_FLOAT_EQ(d.weight, weight);
+    EXPECT_FLOAT_EQ(d.error, weight * (1 - 1.25F) * (1 - 1.25F));
+}
+
+TEST(PatchDistanceTest, NeedsAnEighthOfThePatch) {
+    const auto distance = [](std::uint64_t open_slots) {
+        const ExposureTable table(
+            hand_made(20, kTwoPixels, {{0, 0, open_slots, 1}, {1, 0, open_slots, 1}}));
+        return patch_distance(table, {1, 1, 16}, {0, 0, 0}, {0, 0, 1}, 1e9F);
+    };
+    EXPECT_EQ(distance(0b1), std::numeric_limits<float>::infinity());
+    EXPECT_EQ(distance(0b11), 0);
+}
+
 TEST(PatchDistanceTest, ComparesNothingWhereSamplesAreMissing) {
     const ExposureTable table(hand_made(8, kTwoPixels, {{0, 2, 0b1111, 5}, {1, 1, 0b11, 1}}));
     EXPECT_EQ(compare(table).weight, 0);

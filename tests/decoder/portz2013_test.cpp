@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "decoder/nearest_samples.h"
+#include "sensor_model/sensor_params.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"
 
@@ -79,6 +80,12 @@ TEST(Portz2013Test, IsMuchBetterThanItsStartAndGivesTheSameBitsWithTwoThreads) {
     EXPECT_LT(stages[2].second, 0.6 * stages[0].second);
     EXPECT_EQ(iterations, 10 + 10);
     EXPECT_TRUE(std::ranges::equal(x.data(), decoded(2, {}).data()));
+}
+
+TEST(Portz2013Test, RhoIsInTheUnitOfEquation1) {
+    const SensorParams paper;
+    EXPECT_FLOAT_EQ(Portz2013Options().values_per_flux,
+                    static_cast<float>(paper.photons_per_unit / paper.full_scale_e));
 }
 
 TEST(Portz2013Test, SaturatedRegionsAreNotDraggedDown) {
