@@ -8,6 +8,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "apps/rate_warning.h"
 #include "apps/session_report.h"
 #include "apps/sorted_quantile.h"
 #include "apps/standard_error.h"
@@ -68,7 +69,6 @@ void LiveEmulation::run(const RunOptions& run) {
     } catch (const DeviceError& e) {
         failure_ = e;
     }
-    seconds_ = progress.seconds();
 }
 
 void LiveEmulation::hold(std::uint64_t slots) {
@@ -93,8 +93,10 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     if (rate_.seconds() >= kRateAfterS) compare_rates();
     to_light_.convert(frame.payload, light_);
     expose(frame.record.host_monotonic_ns);
+    last_done_ns_ = monotonic_ns();
+    if (latencies_us_.empty()) first_done_ns_ = last_done_ns_;
     const auto latency_us =
-        static_cast<double>(monotonic_ns() - frame.record.host_monotonic_ns) * 1e-3;
+        static_cast<double>(last_done_ns_ - frame.record.host_monotonic_ns) * 1e-3;
     latencies_us_.push_back(static_cast<float>(latency_us));
     if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
     ++late_slots_;
@@ -103,7 +105,14 @@ void LiveEmulation::take(const CapturedFrame& frame) {
 }
 
 void LiveEmulation::compare_rates() {
-    if (!std::exchange(rates_compared_, true)) say_warning(rate_warning(rate_.hz(), setup_.params));
+    if (!std::exchange(rates_compared_, true))
+        say_warning(camera_rate_warning(rate_, setup_.params));
+}
+
+std::optional<double> LiveEmulation::slots_per_s() const {
+    const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
+    if (passed_s <= 0) return std::nullopt;  // of a single slot
+    return static_cast<double>(recording_.stats().slots - 1) / passed_s;
 }
 
 void LiveEmulation::put_in_place() {
@@ -133,9 +142,9 @@ void LiveEmulation::finish() {
 }
 
 nlohmann::ordered_json LiveEmulation::json() const {
-    nlohmann::ordered_json json = recording_json(recording_, seconds_);
+    nlohmann::ordered_json json = recording_json(recording_, slots_per_s());
     json["frames"] = latencies_us_.size();
-    json["frames_hz"] = rate_.hz() > 0 ? nlohmann::ordered_json(rate_.hz()) : nullptr;
+    json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
     json["lost"] = lost_json(totals_);
     json["held_slots"] = held_slots_;
@@ -158,7 +167,7 @@ std::string LiveEmulation::text() const {
         "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
         "lost: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
-        recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
+        recording_text(recording_, slots_per_s()), latencies_us_.size(), late_slots_,
         arguments_.late_after_slots, held_slots_, lost_text(totals_),
         sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
         sorted_quantile(latencies_us_, 1) * 1e-3);

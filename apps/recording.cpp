@@ -42,7 +42,8 @@ double Recording::saturated_fraction() const {
     return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
 }
 
-nlohmann::ordered_json recording_json(const Recording& recording, double seconds) {
+nlohmann::ordered_json recording_json(const Recording& recording,
+                                      std::optional<double> slots_per_s) {
     const ReadoutStats& stats = recording.stats();
     nlohmann::ordered_json json{
         {"slots", stats.slots},
@@ -51,14 +52,19 @@ nlohmann::ordered_json recording_json(const Recording& recording, double seconds
         {"compression_ratio", recording.compression_ratio()},
         {"light_throughput", recording.setup().schedule.schedule.light_throughput()},
         {"saturated_fraction", recording.saturated_fraction()},
-        {"slots_per_second", static_cast<double>(stats.slots) / seconds},
-        {"samples_per_second", static_cast<double>(stats.samples) / seconds}};
+        {"slots_per_second", nullptr},
+        {"samples_per_second", nullptr}};
+    if (slots_per_s) {
+        json["slots_per_second"] = *slots_per_s;
+        json["samples_per_second"] =
+            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
+    }
     if (const ReadoutAccount* account = recording.account())
         json["readout"] = account_json(*account);
     return json;
 }
 
-std::string recording_text(const Recording& recording, double seconds) {
+std::string recording_text(const Recording& recording, std::optional<double> slots_per_s) {
     const SensorSetup& setup = recording.setup();
     const ReadoutStats& stats = recording.stats();
     const std::string per_sample =
@@ -68,11 +74,11 @@ std::string recording_text(const Recording& recording, double seconds) {
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
         "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
-        "light throughput {:.1f} %{}, {:.3g} slots/s",
+        "light throughput {:.1f} %{}{}",
         stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
         setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
         100 * setup.schedule.schedule.light_throughput(), any ? saturated : "",
-        static_cast<double>(stats.slots) / seconds);
+        slots_per_s ? fmt::format(", {:.3g} slots/s", *slots_per_s) : "");
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));
     return text;

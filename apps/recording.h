@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -48,10 +49,13 @@ class Recording {
     StreamWriter writer_;
 };
 
-/// What was recorded, for programs: the keys of `emulate` in docs/cli.md.
-[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording, double seconds);
+/// What was recorded, at which speed (nothing: not known), for programs: the keys of `emulate` in
+/// docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording,
+                                                    std::optional<double> slots_per_s);
 
 /// The same in two lines for people.
-[[nodiscard]] std::string recording_text(const Recording& recording, double seconds);
+[[nodiscard]] std::string recording_text(const Recording& recording,
+                                         std::optional<double> slots_per_s);
 
 }  // namespace stipple
