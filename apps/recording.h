@@ -37,7 +37,8 @@ class Recording {
     [[nodiscard]] std::uint64_t payload_bits() const;
     /// Light values per sample, both counted. Infinite before the first sample.
     [[nodiscard]] double compression_ratio() const;
-    /// Share of the samples at full scale, dropped ones too. NaN before the first sample.
+    /// Share of the samples that the full well has clipped or that are at full scale, dropped ones
+    /// too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
