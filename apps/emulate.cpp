@@ -44,7 +44,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     std::optional<FrameWriter> truth;
     if (!options.truth.empty())
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
-    Recording recording(options.output, run.force, setup, footage_name(options.footage));
+    Recording recording(options.output, run.force, setup,
+                        origin_of(options.footage, options.reading));
     Progress progress(run, "emulating", footage.slots());
     auto frame = footage.next();
     for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {

@@ -5,6 +5,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/provenance.h"
 #include "apps/stream_text.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -17,10 +18,15 @@ void info(const std::string& file, const RunOptions& run) {
     JsonFile json(run);
     SamplePacket packet;
     while (reader.next(packet)) throw_if_stopped();
-    json.write(stream_json(reader.header(), reader.report()));
+    auto figures = stream_json(reader.header(), reader.report());
+    const std::string command = command_of(reader.header().provenance);
+    figures["command"] = nullptr;
+    if (!command.empty()) figures["command"] = command;
+    json.write(figures);
     run.say(stream_text(reader.header(), reader.report()));
-    if (!reader.header().provenance.empty())
-        run.say(fmt::format("provenance\n{}", reader.header().provenance));
+    const std::string& provenance = reader.header().provenance;
+    if (!provenance.empty()) run.say(fmt::format("provenance\n{}", provenance));
+    if (!command.empty()) run.say(fmt::format("again        {}", command));
     if (!undamaged(reader.report())) throw InputError(file, damage_text(reader.report()));
     run.say(reader.report().complete
                 ? "condition    undamaged, complete"

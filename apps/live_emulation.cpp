@@ -26,10 +26,14 @@ constexpr std::size_t kMostLateListed = 1000;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// What the stream says of where its light came from: no address, no time.
-std::string source_name(const CameraArguments& arguments, const CameraDescription& camera) {
-    if (!is_replay(arguments)) return camera.model;
-    const auto file = arguments.address.substr(arguments.address.find(':') + 1);
-    return std::filesystem::path(file).filename().string();
+FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
+    FootageOrigin origin{.name = camera.model};
+    if (is_replay(arguments.camera)) {
+        const std::string& address = arguments.camera.address;
+        origin = origin_of(address.substr(address.find(':') + 1), FootageOptions{});
+    }
+    origin.black_level_dn = arguments.black_level_dn;
+    return origin;
 }
 
 }  // namespace
@@ -39,8 +43,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
       camera_(arguments.camera, arguments.session, arguments.queue_frames),
       to_light_(camera_.layout(), arguments.black_level_dn),
       setup_(set_up_sensor(arguments.sensor, to_light_.shape(), to_light_.filter())),
-      recording_(arguments.output, run.force, setup_,
-                 source_name(arguments.camera, camera_.description())),
+      recording_(arguments.output, run.force, setup_, origin_of(arguments, camera_.description())),
       light_(to_light_.shape().sites()) {
     say_warnings(camera_.description());
     say_warning(mosaic_warning(setup_, to_light_.filter()));
@@ -48,7 +51,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
     static_cast<void>(SlotEmulator(setup_).expose(light_));
     if (!arguments.preview.file.empty())
         preview_.emplace(arguments.preview.file,
-                         PreviewDecoder(stream_header_of(setup_, ""), arguments.preview));
+                         PreviewDecoder(stream_header_of(setup_, {}), arguments.preview));
 }
 
 bool LiveEmulation::wants_more(double seconds) const {

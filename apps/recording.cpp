@@ -8,7 +8,7 @@
 
 namespace stipple {
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-                     const std::string& footage)
+                     const FootageOrigin& footage)
     : output_(file, force),
       emulator_(setup),
       writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {}

@@ -18,7 +18,7 @@ class Recording {
     /// `setup` must outlive the recording. \throws InputError, DeviceError as PendingOutput and
     /// StreamWriter.
     Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-              const std::string& footage);
+              const FootageOrigin& footage);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples: those that the readout has time for, if rows are dropped.

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "apps/footage_origin.h"
+#include "apps/sensor_setup.h"
+
+namespace stipple {
+
+/// The text that a stream carries of where it comes from (TOML, docs/stream_format.md): all that
+/// decides its bytes. No time and no folder, so that the same run gives the same bytes.
+[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage);
+
+/// The command that makes the same stream again, in the folder of its footage, where `provenance`
+/// tells of one; else empty. Quoted for a shell: the text may be anybody's.
+[[nodiscard]] std::string command_of(const std::string& provenance);
+
+}  // namespace stipple
