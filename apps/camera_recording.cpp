@@ -10,6 +10,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "capture/frame_rate.h"
@@ -63,6 +64,7 @@ class CameraRecording {
                   output_.final_path().string()),
           queue_(writer_, kQueueBytes) {
         say_warnings(session_.description());
+        say_leftover(output_.final_path());
     }
 
     void run(const RunOptions& run);

@@ -12,6 +12,7 @@
 #include "apps/decode_schedule.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "apps/stage_outputs.h"
@@ -143,6 +144,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
                        {.force = run.force, .live = arguments.follow && !arguments.strict});
+    say_leftover(arguments.output);
     StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
     options.stages = stages.sink();
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);

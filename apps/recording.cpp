@@ -5,13 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/account_text.h"
+#include "apps/leftovers.h"
 
 namespace stipple {
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
                      const FootageOrigin& footage)
     : output_(file, force),
       emulator_(setup),
-      writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {}
+      writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {
+    say_leftover(output_.final_path());
+}
 
 std::span<const SamplePacket> Recording::expose(std::span<const float> frame) {
     const auto packets = emulator_.expose(frame);
