@@ -9,6 +9,7 @@
 #include "apps/provenance.h"
 #include "apps/recording_info.h"
 #include "apps/stream_text.h"
+#include "apps/stretched_slots.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
@@ -23,18 +24,33 @@ std::string condition_of(const StreamReport& report) {
         report.slots - 1);
 }
 
+std::string stretched_text(const StretchedSlots& stretched, const StreamReader& reader) {
+    return fmt::format(
+        "overruns     a slot is nominally {} us; {} of {} slots were stretched{}",
+        reader.header().slot_us, stretched.slots(), reader.report().slots,
+        stretched.mean_us() ? fmt::format(", mean {:.4g} us", *stretched.mean_us()) : "");
+}
+
 void info(const std::string& file, const RunOptions& run) {
     if (is_recording(file)) return recording_info(file, run);
     StreamReader reader(file);
     JsonFile json(run);
     SamplePacket packet;
-    while (reader.next(packet)) throw_if_stopped();
+    StretchedSlots stretched(reader.header());
+    while (reader.next(packet)) {
+        throw_if_stopped();
+        stretched.add(packet);
+    }
     auto figures = stream_json(reader.header(), reader.report());
     const std::string command = command_of(reader.header().provenance);
+    figures["stretched_slots"] = stretched.slots();
+    figures["mean_stretched_us"] = nullptr;
+    if (stretched.mean_us()) figures["mean_stretched_us"] = *stretched.mean_us();
     figures["command"] = nullptr;
     if (!command.empty()) figures["command"] = command;
     json.write(figures);
     run.say(stream_text(reader.header(), reader.report()));
+    if (stretched.slots() > 0) run.say(stretched_text(stretched, reader));
     const std::string& provenance = reader.header().provenance;
     if (!provenance.empty()) run.say(fmt::format("provenance\n{}", provenance));
     if (!command.empty()) run.say(fmt::format("again        {}", command));

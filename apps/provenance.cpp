@@ -167,4 +167,21 @@ std::string command_of(const std::string& provenance) {
     }
 }
 
+std::vector<std::string> timing_settings(const std::string& provenance) {
+    std::vector<std::string> settings;
+    try {
+        const toml::table table = toml::parse(provenance);
+        if (const auto* timing = table["sensor"]["timing"].as_table())
+            for (const auto& [key, node] : *timing) {
+                std::ostringstream setting;
+                setting << "timing." << key.str() << '=';
+                node.visit([&](const auto& value) { setting << value; });
+                settings.push_back(setting.str());
+            }
+    } catch (const toml::parse_error&) {
+        settings.clear();
+    }
+    return settings;
+}
+
 }  // namespace stipple

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/footage_origin.h"
 #include "apps/sensor_setup.h"
@@ -14,5 +15,9 @@ namespace stipple {
 /// The command that makes the same stream again, in the folder of its footage, where `provenance`
 /// tells of one; else empty. Quoted for a shell: the text may be anybody's.
 [[nodiscard]] std::string command_of(const std::string& provenance);
+
+/// The keys of the section [timing] of the sensor that `provenance` tells of, as overrides of a
+/// Config; none if it has none.
+[[nodiscard]] std::vector<std::string> timing_settings(const std::string& provenance);
 
 }  // namespace stipple
