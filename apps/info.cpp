@@ -20,8 +20,8 @@ namespace {
 std::string condition_of(const StreamReport& report) {
     if (report.complete) return "undamaged, complete";
     return fmt::format(
-        "undamaged, without an end marker: cut off, or still being written; whole up to slot {}",
-        report.slots - 1);
+        "undamaged, without an end marker: cut off, or still being written; {} slots are whole",
+        report.slots);
 }
 
 std::string stretched_text(const StretchedSlots& stretched, const StreamReader& reader) {

@@ -39,9 +39,10 @@ Whole whole_of_recording(const fs::path& file) {
 }  // namespace
 
 void say_leftover(const fs::path& output) {
-    const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+    const fs::path name = output.has_filename() ? output : output.parent_path();
+    const fs::path folder = name.has_parent_path() ? name.parent_path() : fs::path(".");
     for (const PartialOutput& partial : partial_outputs(folder)) {
-        if (partial.final_path.filename() != output.filename() || partial.running()) continue;
+        if (partial.final_path.filename() != name.filename() || partial.running()) continue;
         say_error("{}: a run that was killed left {}; `stipple recover {}` says what can be kept",
                   output.string(), partial.path.filename().string(), folder.string());
         return;

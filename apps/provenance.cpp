@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "sensor_model/physical_keys.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 namespace {
@@ -160,8 +161,10 @@ std::string command_of(const std::string& provenance) {
         if (name.empty() || !footage["sha256"] || footage["black_level_dn"] || !table["options"])
             return {};
         if (name.starts_with('-')) name.insert(0, "./");
-        return fmt::format("stipple emulate {} -o again.stipple{}", shell_quoted(name),
-                           options_of(table));
+        std::string command = fmt::format("stipple emulate {} -o again.stipple{}",
+                                          shell_quoted(name), options_of(table));
+        if (!is_plain_text(command, false)) command.clear();
+        return command;
     } catch (const toml::parse_error&) {
         return {};
     }

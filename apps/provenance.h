@@ -13,7 +13,8 @@ namespace stipple {
 [[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage);
 
 /// The command that makes the same stream again, in the folder of its footage, where `provenance`
-/// tells of one; else empty. Quoted for a shell: the text may be anybody's.
+/// tells of one; else empty. Quoted for a shell and without control characters: the text
+/// may be anybody's.
 [[nodiscard]] std::string command_of(const std::string& provenance);
 
 /// The keys of the section [timing] of the sensor that `provenance` tells of, as overrides of a

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "apps/interrupt.h"
@@ -14,6 +17,7 @@
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/joined.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 namespace {
@@ -52,6 +56,11 @@ struct FrameSummary {
         if (listed.size() < kMostGapsListed) listed.push_back({record.id, lost, record.cause});
     }
 };
+
+/// Text of a file that may be anybody's, for a terminal.
+std::string plain(const std::string& text) {
+    return is_plain_text(text, false) ? text : "(not printable)";
+}
 
 std::string_view cause_of(const Gap& gap) {
     // By damage of the file no cause is told.
@@ -96,6 +105,7 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
 }
 
 std::string gaps_text(const FrameSummary& frames) {
+    if (frames.gaps == 0) return "missing      none";
     std::string text =
         fmt::format("missing      {} frames in {} places", frames.missing, frames.gaps);
     for (std::size_t i = 0; i < std::min(frames.listed.size(), kMostGapsShown); ++i)
@@ -108,9 +118,9 @@ std::string gaps_text(const FrameSummary& frames) {
 
 std::string info_text(const RecordingReader& reader, const FrameSummary& frames) {
     const CameraDescription& camera = reader.session().camera;
-    std::string text = fmt::format(
-        "camera       {}", joined(std::vector<std::string>{camera.vendor, camera.model,
-                                                           camera.serial, camera.transport}));
+    std::string text = fmt::format("camera       {}", plain(camera.transport));
+    for (const std::string& fact : {camera.vendor, camera.model, camera.serial})
+        if (!fact.empty()) text += fmt::format(", {}", plain(fact));
     if (frames.first) {
         const FrameLayout& layout = frames.first->layout;
         text += fmt::format("\nframes       {} x {} (width x height) {}, {} of them", layout.width,
@@ -123,15 +133,15 @@ std::string info_text(const RecordingReader& reader, const FrameSummary& frames)
     }
     text.append(1, '\n').append(gaps_text(frames));
     for (const auto& [name, value] : reader.session().settings)
-        text += fmt::format("\nsetting      {} = {}", name, value);
+        text += fmt::format("\nsetting      {} = {}", plain(name), plain(value));
     return text;
 }
 
 std::string condition_text(const RecordingReader& reader) {
-    if (reader.end()) return fmt::format("undamaged, complete ({})", reader.end()->reason);
+    if (reader.end()) return fmt::format("undamaged, complete ({})", plain(reader.end()->reason));
     const RecordingReport& report = reader.report();
     std::string text =
-        fmt::format("cut off, or still being written; whole up to frame {} of it", report.frames);
+        fmt::format("cut off, or still being written; {} frames are whole", report.frames);
     if (report.tail_bytes > 0)
         text += fmt::format(", {} bytes of the next one follow", report.tail_bytes);
     return text;

@@ -1,7 +1,5 @@
 #include "apps/stretched_slots.h"
 
-#include <fmt/format.h>
-
 #include "apps/provenance.h"
 #include "core/config.h"
 #include "core/error.h"

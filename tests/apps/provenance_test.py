@@ -69,6 +69,12 @@ class ProvenanceTest(ProgramTest):
         self.assertEqual(provenance["footage"]["sha256"], hashlib.sha256(every).hexdigest())
         self.assertEqual(provenance["sensor"]["full_well_e"], 900)
 
+    def test_a_command_with_control_characters_is_not_printed(self):
+        self.write_flat("a\tb.npy", slots=6)
+        self.succeed("emulate", "a\tb.npy", "-o", "a.stipple")
+        self.assertIsNone(self.figures("info", "a.stipple")["command"])
+        self.assertNotIn("again  ", self.succeed("info", "a.stipple"))
+
     def test_what_has_no_command_says_none(self):
         self.succeed("demo", "-o", "demo", "--frames", 16, "--size", "16x16")
         clip = next((self.folder / "demo").glob("*.stipple"))
