@@ -27,6 +27,9 @@ const char* name_of(Recoverable kind) {
 }
 
 void list_leftovers(const fs::path& folder, const RunOptions& run) {
+    std::error_code unreadable;
+    static_cast<void>(fs::directory_iterator(folder, unreadable));
+    if (unreadable) throw InputError(folder.string(), "cannot be listed: " + unreadable.message());
     JsonFile json(run);
     auto left = nlohmann::ordered_json::array();
     for (const PartialOutput& partial : partial_outputs(folder)) {
