@@ -54,7 +54,8 @@ void info(const std::string& file, const RunOptions& run) {
     const std::string& provenance = reader.header().provenance;
     if (!provenance.empty()) run.say(fmt::format("provenance\n{}", provenance));
     if (!command.empty()) run.say(fmt::format("again        {}", command));
-    if (!undamaged(reader.report())) throw InputError(file, damage_text(reader.report()));
+    if (!undamaged(reader.report()))
+        throw InputError(file, damage_text(reader.report()) + leftover_text(file));
     run.say(fmt::format("condition    {}{}", condition_of(reader.report()), leftover_text(file)));
 }
 

@@ -41,7 +41,8 @@ class RecoverTest(ProgramTest):
         content = (self.folder / left).read_bytes()
         (self.folder / left).write_bytes(content + PACKET + b"\1")  # a packet that had begun
         done = self.run_program("info", left)
-        self.assertIn("ends within a packet, of which there are 5 bytes", done.stderr)
+        self.assertIn("ends within a packet, of which there are 5 bytes; its run was killed, "
+                      f"`stipple recover {left}` keeps it", done.stderr)
         figures = self.figures("recover", left)
         self.assertEqual((figures["file"], figures["cut_bytes"]), ("clip.stipple", 5))
         self.assertEqual((self.folder / "clip.stipple").read_bytes(), content)
