@@ -10,8 +10,10 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
@@ -62,6 +64,7 @@ class CameraRecording {
                   output_.final_path().string()),
           queue_(writer_, kQueueBytes) {
         say_warnings(session_.description());
+        say_leftover(output_.final_path());
     }
 
     void run(const RunOptions& run);
@@ -98,6 +101,7 @@ class CameraRecording {
     bool at_end_ = false;  ///< of a replay
     std::optional<InputError> bad_file_;
     std::optional<DeviceError> failure_;
+    FrameRate rate_;
     double seconds_ = 0;
 };
 
@@ -108,6 +112,7 @@ bool CameraRecording::wants_more(double seconds) const {
 void CameraRecording::take(CapturedFrame frame) {
     const FrameRecord record = frame.record;
     if (queue_.push(std::move(frame))) {
+        rate_.add(record);
         ++taken_;
         return;
     }
@@ -173,14 +178,14 @@ nlohmann::ordered_json CameraRecording::json() const {
               {"size_mismatches", transport.size_mismatches}}},
             {"payload_bytes", totals.payload_bytes},
             {"seconds", seconds_},
-            {"frames_per_s", static_cast<double>(totals.frames) / seconds_}};
+            {"frames_per_s", rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr}};
 }
 
 std::string CameraRecording::text() const {
     const RecordingEnd totals = writer_.totals();
     std::string text =
-        fmt::format("{}: {} frames, {:.1f} per second, {:.1f} MB", output_.final_path().string(),
-                    totals.frames, static_cast<double>(totals.frames) / seconds_,
+        fmt::format("{}: {} frames{}, {:.1f} MB", output_.final_path().string(), totals.frames,
+                    rate_.hz() ? fmt::format(", {:.1f} per second", *rate_.hz()) : "",
                     static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
     return fmt::format("{}\nlost: {}", text, lost_text(session_.totals()));

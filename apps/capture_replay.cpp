@@ -5,6 +5,7 @@
 #include "apps/capture_commands.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/number_check.h"
 #include "apps/progress.h"
 #include "capture/recording/recording_footage.h"
@@ -41,6 +42,7 @@ void replay(const ReplayOptions& options, const RunOptions& run) {
                                                  .black_level_dn = options.black_level_dn});
     JsonFile json(run);
     FrameWriter writer(options.output, footage.shape(), {.force = run.force});
+    say_leftover(options.output);
     Progress progress(run, "replaying", std::nullopt);
     for (std::vector<float> frame(footage.shape().sites());
          stop_signal() == 0 && footage.read(frame); progress.advance())

@@ -11,7 +11,7 @@ CodedFrames::CodedFrames(const std::string& footage, const FootageOptions& readi
       reading_(reading),
       reader_(footage_, reading_),
       setup_(set_up_sensor(sensor, reader_.shape())),
-      header_(stream_header_of(setup_, footage_name(footage))),
+      header_(stream_header_of(setup_, origin_of(footage, reading))),
       image_(coded_image(header_)),
       light_(setup_.footage.sites()) {
     if (slots_per_s) image_.frames_per_s = *slots_per_s;

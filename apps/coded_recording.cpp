@@ -10,6 +10,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
@@ -45,7 +46,9 @@ class SlotRecorder {
         : header_(header),
           output_(output, force),
           writer_(output_.partial(), header, output_.final_path().string()),
-          order_(header.shape.rows) {}
+          order_(header.shape.rows) {
+        say_leftover(output_.final_path());
+    }
 
     /// \throws DeviceError if the output cannot be written, InputError if slots are no stream.
     void take(const CapturedFrame& frame) {

@@ -12,6 +12,7 @@
 #include "apps/decode_schedule.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "apps/stage_outputs.h"
@@ -100,12 +101,18 @@ void warn(std::string_view end, const DecodeReport& report, const DecodeArgument
                   arguments.until);
 }
 
+/// NaN without a sample.
+double saturated_fraction(const DecodeReport& report) {
+    return static_cast<double>(report.saturated_samples) / static_cast<double>(report.samples);
+}
+
 nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
                                   std::string_view end) {
     return {{"method", method},
             {"seconds", report.seconds},
             {"slots", report.slots},
             {"ended_by", end},
+            {"saturated_fraction", saturated_fraction(report)},
             {"voxels", report.voxels},
             {"voxels_per_second", static_cast<double>(report.voxels) / report.seconds},
             {"peak_memory_bytes", peak_memory_bytes()},
@@ -137,6 +144,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
                        {.force = run.force, .live = arguments.follow && !arguments.strict});
+    say_leftover(arguments.output);
     StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
     options.stages = stages.sink();
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
@@ -150,9 +158,12 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
     json.write(figures);
     warn(end, report, arguments, follower);
-    run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB",
+    run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB{}",
                         arguments.output, report.slots, arguments.method, report.seconds,
-                        figures["voxels_per_second"].get<double>(), peak_memory_bytes() / 1000000));
+                        figures["voxels_per_second"].get<double>(), peak_memory_bytes() / 1000000,
+                        report.samples == 0 ? ""
+                                            : fmt::format(", {:.2f} % of the samples saturated",
+                                                          100 * saturated_fraction(report))));
     StreamReport found = reader.report();
     if (found.samples == 0)
         say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));

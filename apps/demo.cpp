@@ -22,24 +22,43 @@ struct DemoOptions {
     SceneOptions rendering;
 };
 
-/// \throws InputError, DeviceError.
-fs::path made_folder(const fs::path& folder, bool force) {
+/// The folder of a run that may be stopped before there is anything in it.
+class DemoFolder {
+  public:
+    /// \throws InputError, DeviceError.
+    DemoFolder(const fs::path& folder, bool force);
+    ~DemoFolder() {
+        std::error_code error;
+        if (made_) fs::remove(path_, error);  // only if it is empty
+    }
+    DemoFolder(const DemoFolder&) = delete;
+    DemoFolder& operator=(const DemoFolder&) = delete;
+
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+    bool made_ = false;
+};
+
+DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
     std::error_code error;
     if (fs::is_directory(folder, error) && !force)
         throw InputError(folder.string(),
                          "exists already; give another name, or --force to replace what is in it");
     if (fs::exists(folder, error) && !fs::is_directory(folder, error))
         throw InputError(folder.string(), "is not a folder; give another name");
-    if (!fs::is_directory(folder, error) && !fs::create_directory(folder, error))
-        throw DeviceError(folder.string(), "cannot be created: " + error.message());
-    return folder;
+    if (fs::is_directory(folder, error)) return;
+    made_ = fs::create_directory(folder, error);
+    if (!made_) throw DeviceError(folder.string(), "cannot be created: " + error.message());
 }
 
 void demo(const DemoOptions& options, const RunOptions& run) {
     const auto start = std::chrono::steady_clock::now();
     const Scene scene(scene_from_name(options.scene), options.rendering);
     JsonFile json(run);
-    const fs::path folder = made_folder(options.folder, run.force);
+    const DemoFolder made(options.folder, run.force);
+    const fs::path& folder = made.path();
     const FluxVideo truth = render_video(scene, run);
     const auto results = run_trials(truth, folder, run);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

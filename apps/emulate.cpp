@@ -9,6 +9,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/progress.h"
+#include "apps/rate_warning.h"
 #include "apps/read_ahead.h"
 #include "apps/recording.h"
 #include "apps/recording_faults.h"
@@ -36,12 +37,15 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
+    if (const auto hz = footage.film_hz())
+        say_warning(film_rate_warning(options.footage, *hz, setup.params));
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
     if (!options.truth.empty())
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
-    Recording recording(options.output, run.force, setup, footage_name(options.footage));
+    Recording recording(options.output, run.force, setup,
+                        origin_of(options.footage, options.reading));
     Progress progress(run, "emulating", footage.slots());
     auto frame = footage.next();
     for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {
@@ -55,10 +59,14 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (waveform)
         waveform->write(*recording.account(), setup.params.name, 0,
                         std::min<std::int64_t>(options.waveform.slots, progress.done()));
-    if (frame.empty() && footage.recording() != nullptr)
-        say_warning(recording_faults(options.footage, *footage.recording()));
-    json.write(recording_json(recording, progress.seconds()));
-    run.say(fmt::format("{}: {}", options.output, recording_text(recording, progress.seconds())));
+    if (frame.empty() && footage.recording() != nullptr) {
+        const RecordingFootage& frames = *footage.recording();
+        say_warning(recording_faults(options.footage, frames));
+        say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
+    }
+    const double slots_per_s = static_cast<double>(progress.done()) / progress.seconds();
+    json.write(recording_json(recording, slots_per_s));
+    run.say(fmt::format("{}: {}", options.output, recording_text(recording, slots_per_s)));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "apps/rate_warning.h"
 #include "apps/session_report.h"
 #include "apps/sorted_quantile.h"
 #include "apps/standard_error.h"
@@ -25,10 +26,14 @@ constexpr std::size_t kMostLateListed = 1000;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// What the stream says of where its light came from: no address, no time.
-std::string source_name(const CameraArguments& arguments, const CameraDescription& camera) {
-    if (!is_replay(arguments)) return camera.model;
-    const auto file = arguments.address.substr(arguments.address.find(':') + 1);
-    return std::filesystem::path(file).filename().string();
+FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
+    FootageOrigin origin{.name = camera.model};
+    if (is_replay(arguments.camera)) {
+        const std::string& address = arguments.camera.address;
+        origin = origin_of(address.substr(address.find(':') + 1), FootageOptions{});
+    }
+    origin.black_level_dn = arguments.black_level_dn;
+    return origin;
 }
 
 }  // namespace
@@ -38,8 +43,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
       camera_(arguments.camera, arguments.session, arguments.queue_frames),
       to_light_(camera_.layout(), arguments.black_level_dn),
       setup_(set_up_sensor(arguments.sensor, to_light_.shape(), to_light_.filter())),
-      recording_(arguments.output, run.force, setup_,
-                 source_name(arguments.camera, camera_.description())),
+      recording_(arguments.output, run.force, setup_, origin_of(arguments, camera_.description())),
       light_(to_light_.shape().sites()) {
     say_warnings(camera_.description());
     say_warning(mosaic_warning(setup_, to_light_.filter()));
@@ -47,7 +51,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
     static_cast<void>(SlotEmulator(setup_).expose(light_));
     if (!arguments.preview.file.empty())
         preview_.emplace(arguments.preview.file,
-                         PreviewDecoder(stream_header_of(setup_, ""), arguments.preview));
+                         PreviewDecoder(stream_header_of(setup_, {}), arguments.preview));
 }
 
 bool LiveEmulation::wants_more(double seconds) const {
@@ -68,7 +72,6 @@ void LiveEmulation::run(const RunOptions& run) {
     } catch (const DeviceError& e) {
         failure_ = e;
     }
-    seconds_ = progress.seconds();
 }
 
 void LiveEmulation::hold(std::uint64_t slots) {
@@ -93,8 +96,10 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     if (rate_.seconds() >= kRateAfterS) compare_rates();
     to_light_.convert(frame.payload, light_);
     expose(frame.record.host_monotonic_ns);
+    last_done_ns_ = monotonic_ns();
+    if (latencies_us_.empty()) first_done_ns_ = last_done_ns_;
     const auto latency_us =
-        static_cast<double>(monotonic_ns() - frame.record.host_monotonic_ns) * 1e-3;
+        static_cast<double>(last_done_ns_ - frame.record.host_monotonic_ns) * 1e-3;
     latencies_us_.push_back(static_cast<float>(latency_us));
     if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
     ++late_slots_;
@@ -103,7 +108,14 @@ void LiveEmulation::take(const CapturedFrame& frame) {
 }
 
 void LiveEmulation::compare_rates() {
-    if (!std::exchange(rates_compared_, true)) say_warning(rate_warning(rate_.hz(), setup_.params));
+    if (!std::exchange(rates_compared_, true))
+        say_warning(camera_rate_warning(rate_, setup_.params));
+}
+
+std::optional<double> LiveEmulation::slots_per_s() const {
+    const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
+    if (passed_s <= 0) return std::nullopt;  // of a single slot
+    return static_cast<double>(recording_.stats().slots - 1) / passed_s;
 }
 
 void LiveEmulation::put_in_place() {
@@ -133,9 +145,9 @@ void LiveEmulation::finish() {
 }
 
 nlohmann::ordered_json LiveEmulation::json() const {
-    nlohmann::ordered_json json = recording_json(recording_, seconds_);
+    nlohmann::ordered_json json = recording_json(recording_, slots_per_s());
     json["frames"] = latencies_us_.size();
-    json["frames_hz"] = rate_.hz() > 0 ? nlohmann::ordered_json(rate_.hz()) : nullptr;
+    json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
     json["lost"] = lost_json(totals_);
     json["held_slots"] = held_slots_;
@@ -158,7 +170,7 @@ std::string LiveEmulation::text() const {
         "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
         "lost: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
-        recording_text(recording_, seconds_), latencies_us_.size(), late_slots_,
+        recording_text(recording_, slots_per_s()), latencies_us_.size(), late_slots_,
         arguments_.late_after_slots, held_slots_, lost_text(totals_),
         sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
         sorted_quantile(latencies_us_, 1) * 1e-3);

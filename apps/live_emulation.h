@@ -8,7 +8,6 @@
 
 #include "apps/camera_arguments.h"
 #include "apps/capture_limits.h"
-#include "apps/frame_rate.h"
 #include "apps/live_camera.h"
 #include "apps/live_preview.h"
 #include "apps/preview_arguments.h"
@@ -16,6 +15,7 @@
 #include "apps/run_options.h"
 #include "apps/sensor_setup.h"
 #include "capture/frame_light.h"
+#include "capture/frame_rate.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -55,6 +55,7 @@ class LiveEmulation {
     void hold(std::uint64_t slots);
     void expose(std::int64_t arrival_ns);
     void compare_rates();
+    [[nodiscard]] std::optional<double> slots_per_s() const;
     void put_in_place();
 
     struct LateSlot {
@@ -78,7 +79,8 @@ class LiveEmulation {
     FrameRate rate_;
     bool rates_compared_ = false;
     std::optional<DeviceError> failure_;  ///< of the disk
-    double seconds_ = 0;
+    std::int64_t first_done_ns_ = 0;      ///< when the first slot was in the stream
+    std::int64_t last_done_ns_ = 0;
     std::optional<DeviceLost> end_;  ///< of the frames
 };
 

@@ -33,6 +33,11 @@ std::optional<int> ReadAhead::slots() const {
     return footage == nullptr ? std::nullopt : footage->slots();
 }
 
+std::optional<double> ReadAhead::film_hz() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage == nullptr ? std::nullopt : footage->film_hz();
+}
+
 ColourFilter ReadAhead::filter() const {
     return recording() == nullptr ? ColourFilter::kNone : recording()->filter();
 }

@@ -24,6 +24,8 @@ class ReadAhead {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::optional<int> slots() const;
+    /// Frames a second at which a film plays; of a video file only.
+    [[nodiscard]] std::optional<double> film_hz() const;
     /// Whose mosaic the frames are; of a recording only.
     [[nodiscard]] ColourFilter filter() const;
 

@@ -5,14 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/account_text.h"
+#include "apps/leftovers.h"
 #include "readout/light_account.h"
 
 namespace stipple {
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-                     const std::string& footage)
+                     const FootageOrigin& footage)
     : output_(file, force),
       emulator_(setup),
-      writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {}
+      writer_(output_.partial(), stream_header_of(setup, footage), output_.final_path().string()) {
+    say_leftover(output_.final_path());
+}
 
 std::span<const SamplePacket> Recording::expose(std::span<const float> frame) {
     const auto packets = emulator_.expose(frame);
@@ -47,7 +50,8 @@ double Recording::light_throughput() const {
     return stipple::light_throughput(setup().schedule.schedule, emulator_.filters(), setup().shape);
 }
 
-nlohmann::ordered_json recording_json(const Recording& recording, double seconds) {
+nlohmann::ordered_json recording_json(const Recording& recording,
+                                      std::optional<double> slots_per_s) {
     const ReadoutStats& stats = recording.stats();
     nlohmann::ordered_json json{
         {"slots", stats.slots},
@@ -57,14 +61,19 @@ nlohmann::ordered_json recording_json(const Recording& recording, double seconds
         {"light_throughput", recording.light_throughput()},
         {"light_read", recording.light_read()},
         {"saturated_fraction", recording.saturated_fraction()},
-        {"slots_per_second", static_cast<double>(stats.slots) / seconds},
-        {"samples_per_second", static_cast<double>(stats.samples) / seconds}};
+        {"slots_per_second", nullptr},
+        {"samples_per_second", nullptr}};
+    if (slots_per_s) {
+        json["slots_per_second"] = *slots_per_s;
+        json["samples_per_second"] =
+            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
+    }
     if (const ReadoutAccount* account = recording.account())
         json["readout"] = account_json(*account, recording.light_throughput());
     return json;
 }
 
-std::string recording_text(const Recording& recording, double seconds) {
+std::string recording_text(const Recording& recording, std::optional<double> slots_per_s) {
     const SensorSetup& setup = recording.setup();
     const ReadoutStats& stats = recording.stats();
     const std::string per_sample =
@@ -74,11 +83,11 @@ std::string recording_text(const Recording& recording, double seconds) {
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
         "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
-        "light throughput {:.1f} %, {:.1f} % read within the clip{}, {:.3g} slots/s",
+        "light throughput {:.1f} %, {:.1f} % read within the clip{}{}",
         stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
         setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
         100 * recording.light_throughput(), 100 * recording.light_read(), any ? saturated : "",
-        static_cast<double>(stats.slots) / seconds);
+        slots_per_s ? fmt::format(", {:.3g} slots/s", *slots_per_s) : "");
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));
     return text;

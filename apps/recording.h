@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -17,7 +18,7 @@ class Recording {
     /// `setup` must outlive the recording. \throws InputError, DeviceError as PendingOutput and
     /// StreamWriter.
     Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-              const std::string& footage);
+              const FootageOrigin& footage);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples: those that the readout has time for, if rows are dropped.
@@ -36,7 +37,8 @@ class Recording {
     [[nodiscard]] std::uint64_t payload_bits() const;
     /// Light values per sample, both counted. Infinite before the first sample.
     [[nodiscard]] double compression_ratio() const;
-    /// Share of the samples at full scale, dropped ones too. NaN before the first sample.
+    /// Share of the samples that the full well has clipped or that are at full scale, dropped ones
+    /// too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
     /// Part of the light that is collected once the first exposures are over.
     [[nodiscard]] double light_throughput() const;
@@ -52,10 +54,13 @@ class Recording {
     StreamWriter writer_;
 };
 
-/// What was recorded, for programs: the keys of `emulate` in docs/cli.md.
-[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording, double seconds);
+/// What was recorded, at which speed (nothing: not known), for programs: the keys of `emulate` in
+/// docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording,
+                                                    std::optional<double> slots_per_s);
 
 /// The same in two lines for people.
-[[nodiscard]] std::string recording_text(const Recording& recording, double seconds);
+[[nodiscard]] std::string recording_text(const Recording& recording,
+                                         std::optional<double> slots_per_s);
 
 }  // namespace stipple

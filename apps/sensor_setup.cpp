@@ -1,10 +1,8 @@
 #include "apps/sensor_setup.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <filesystem>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -12,7 +10,6 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "readout/program_text.h"
-#include "sensor_model/physical_keys.h"
 #include "sensor_model/sensor_config.h"
 
 namespace stipple {
@@ -26,6 +23,14 @@ std::vector<std::string> settings_of(const SensorChoice& choice, std::string_vie
         if (setting.starts_with(kSchedule) == (section == kSchedule))
             settings.push_back(setting.substr(section.size()));
     return settings;
+}
+
+Config sensor_config(const SensorChoice& choice) {
+    return {find_config("sensors", choice.sensor), settings_of(choice, "")};
+}
+
+Config schedule_config(const SensorChoice& choice) {
+    return {find_config("schedules", choice.schedule), settings_of(choice, "schedule.")};
 }
 
 /// True for a compiled schedule (docs/sequencer_program.md).
@@ -45,41 +50,6 @@ NamedSchedule read_program(const SensorChoice& choice) {
         parse_program({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice.schedule);
     return {
         .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
-}
-
-toml::array toml_array(const std::vector<double>& values) {
-    toml::array array;
-    for (const double value : values) array.push_back(value);
-    return array;
-}
-
-void add_physical_terms(const PhysicalTerms& terms, toml::table& sensor) {
-    for (const PhysicalKey& key : kPhysicalKeys) sensor.insert(key.name, terms.*key.term);
-    sensor.insert("row_noise_e", toml_array(terms.row_noise_e));
-    sensor.insert("device_id", std::int64_t{terms.device_id});
-    sensor.insert("cfa", name_of(terms.cfa));
-    sensor.insert("map_rows", terms.map_rows);
-    sensor.insert("map_cols", terms.map_cols);
-    sensor.insert("transmittance", toml_array(terms.transmittance));
-    sensor.insert("gain_map", toml_array(terms.gain_map));
-}
-
-/// All parameters of the sensor's mode, as in a file of config/sensors.
-toml::table sensor_table(const SensorParams& params) {
-    const bool physical = params.mode == SensorMode::kPhysical;
-    toml::table sensor{{"mode", physical ? "physical" : "paper"},
-                       {"name", params.name},
-                       {"photons_per_unit", params.photons_per_unit},
-                       {"full_scale_e", params.full_scale_e},
-                       {"full_well_e", params.full_well_e},
-                       {"read_noise_e", params.read_noise_e},
-                       {"shot_noise", params.shot_noise},
-                       {"bit_depth", params.bit_depth},
-                       {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
-                       {"slot_us", params.slot_us},
-                       {"charge_stores", params.charge_stores}};
-    if (physical) add_physical_terms(params.physical, sensor);
-    return sensor;
 }
 
 /// The array that footage of this shape falls on.
@@ -102,17 +72,25 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
 
 }  // namespace
 
+std::string timing_keys(const SensorChoice& choice) {
+    return sensor_config(choice).as_toml("timing");
+}
+
+std::string schedule_keys(const SensorChoice& choice) {
+    return is_program(choice.schedule) ? "" : schedule_config(choice).as_toml("");
+}
+
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
                               const ColumnAddressing& addressing) {
     if (is_program(choice.schedule)) return read_program(choice);
-    Config config(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
+    Config config = schedule_config(choice);
     NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing);
     config.reject_unknown_keys();
     return schedule;
 }
 
 SensorDescription read_sensor_file(const SensorChoice& choice) {
-    Config config(find_config("sensors", choice.sensor), settings_of(choice, ""));
+    Config config = sensor_config(choice);
     SensorDescription sensor{.params = read_sensor(config), .timing = {}};
     sensor.timing = read_timing(config, sensor.params.bit_depth);
     config.reject_unknown_keys();
@@ -143,7 +121,8 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, Colour
             .footage = footage,
             .seed = choice.seed,
             .timing = sensor.timing,
-            .overrun = choice.overrun};
+            .overrun = choice.overrun,
+            .choice = choice};
 }
 
 std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
@@ -155,19 +134,6 @@ std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
         "\"physical\" "
         "with cfa={}, such as `ideal`, gives colour",
         name_of(mosaic), setup.params.name, name_of(mosaic));
-}
-
-std::string provenance_of(const SensorSetup& setup, const std::string& footage) {
-    const toml::table sensor = sensor_table(setup.params);
-    const toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
-                           {"footage", footage},
-                           {"schedule", setup.schedule.name},
-                           // TOML integers are signed, seeds are not.
-                           {"seed", std::to_string(setup.seed)},
-                           {"sensor", sensor}};
-    std::ostringstream stream;
-    stream << text << '\n';
-    return stream.str();
 }
 
 }  // namespace stipple

@@ -38,6 +38,7 @@ struct SensorSetup {
     std::uint64_t seed = 1;
     std::optional<ReadoutTiming> timing = {};
     OverrunPolicy overrun = OverrunPolicy::kStretch;
+    SensorChoice choice = {};  ///< that it was made of
 };
 
 /// The chosen sensor. \throws InputError naming file, line and key of what cannot be used.
@@ -47,6 +48,11 @@ struct SensorSetup {
 /// of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
                                             const ColumnAddressing& addressing);
+
+/// The keys of the sensor's section [timing], and of the schedule (none of a compiled one), as they
+/// were chosen: lines of TOML.
+[[nodiscard]] std::string timing_keys(const SensorChoice& choice);
+[[nodiscard]] std::string schedule_keys(const SensorChoice& choice);
 
 /// The parameters of a sensor that has no schedule. \throws InputError naming file, line and key of
 /// what cannot be used; the schedule's settings cannot.
@@ -60,9 +66,5 @@ struct SensorSetup {
 
 /// Says what such a mosaic becomes if the sensor has no colour filter array; else empty.
 [[nodiscard]] std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic);
-
-/// The text that a stream carries of where it comes from (TOML): emulator, `footage`, all sensor
-/// parameters, schedule, seed. No time and no path, so that the same run gives the same bytes.
-[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const std::string& footage);
 
 }  // namespace stipple

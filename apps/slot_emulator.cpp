@@ -1,13 +1,12 @@
 #include "apps/slot_emulator.h"
 
-#include <filesystem>
-
+#include "apps/provenance.h"
 #include "readout/light_account.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
 
-StreamHeader stream_header_of(const SensorSetup& setup, const std::string& footage) {
+StreamHeader stream_header_of(const SensorSetup& setup, const FootageOrigin& footage) {
     return {.shape = setup.shape,
             .slot_us = setup.params.slot_us,
             .calibration = calibration_of(setup.params),
@@ -16,11 +15,6 @@ StreamHeader stream_header_of(const SensorSetup& setup, const std::string& foota
             .schedule_name = setup.schedule.name,
             .provenance = provenance_of(setup, footage),
             .cfa = setup.params.physical.cfa};
-}
-
-std::string footage_name(const std::string& footage) {
-    const std::filesystem::path path(footage);
-    return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
 SlotEmulator::SlotEmulator(const SensorSetup& setup)

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "apps/footage_origin.h"
 #include "apps/sensor_setup.h"
 #include "readout/coded_sensor.h"
 #include "readout/readout_account.h"
@@ -15,11 +15,8 @@
 
 namespace stipple {
 
-/// The header of the stream that this sensor makes of `footage` (its name, for the provenance).
-[[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, const std::string& footage);
-
-/// The name of footage without its folders.
-[[nodiscard]] std::string footage_name(const std::string& footage);
+/// The header of the stream that this sensor makes of `footage`.
+[[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, const FootageOrigin& footage);
 
 /// A sensor that turns light into the packets of a stream, slot by slot.
 class SlotEmulator {

@@ -118,6 +118,11 @@ std::string damage_text(const StreamReport& report) {
     constexpr std::size_t kMostPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
     const std::size_t listed = std::min(report.damage.size(), kMostPlaces);
+    if (report.damage.empty() && report.missing_slots == 0)
+        return fmt::format(
+            "the stream is cut off: {} slots are whole, then it ends within a packet, "
+            "of which there are {} bytes",
+            report.slots, report.tail_bytes);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
     for (const StreamDamage& place : std::span(report.damage).first(listed))

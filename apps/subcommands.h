@@ -12,6 +12,7 @@ void add_emulate(Command& app, Action& action);   ///< footage to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference
 void add_info(Command& app, Action& action);      ///< what a sample stream says and holds
+void add_recover(Command& app, Action& action);   ///< what killed runs have left
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
 /// EMVA 1288 figures of an emulated sensor or of images

@@ -6,6 +6,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/name_check.h"
 #include "apps/progress.h"
 #include "apps/scene_arguments.h"
@@ -27,6 +28,7 @@ void synth(const SynthOptions& options, const RunOptions& run) {
     const FrameShape shape = options.rendering.shape;
     JsonFile json(run);
     FrameWriter writer(options.output, shape, {.force = run.force});
+    say_leftover(options.output);
     std::vector<float> frame(shape.sites());
     Progress progress(run, "rendering", options.rendering.slots);
     for (int slot = 0; slot < options.rendering.slots && stop_signal() == 0; ++slot) {

@@ -26,7 +26,7 @@ FluxVideo render_video(const Scene& scene, const RunOptions& run) {
 RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
                            const std::filesystem::path& file, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor({.schedule = schedule}, light.shape());
-    Recording recording(file, run.force, setup, "embedded scene");
+    Recording recording(file, run.force, setup, {.name = "embedded scene"});
     Progress progress(run, fmt::format("recording ({})", schedule), light.slots());
     for (int slot = 0; slot < light.slots(); ++slot) {
         throw_if_stopped();

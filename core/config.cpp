@@ -280,6 +280,18 @@ std::vector<std::pair<std::string, std::string>> Config::entries() const {
     return entries;
 }
 
+std::string Config::as_toml(std::string_view section) const {
+    const std::string prefix = section.empty() ? "" : fmt::format("{}.", section);
+    std::ostringstream out;
+    for (const auto& [key, entry] : impl_->entries) {
+        if (!key.starts_with(prefix)) continue;
+        out << key.substr(prefix.size()) << " = ";
+        entry.value->visit([&](const auto& value) { out << value; });
+        out << '\n';
+    }
+    return out.str();
+}
+
 void Config::reject_unknown_keys() const {
     const auto& asked = impl_->asked;
     for (const auto& [key, entry] : impl_->entries) {

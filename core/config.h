@@ -50,6 +50,9 @@ class Config {
     /// For settings whose names only a device knows. \throws InputError for a list or a date.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> entries() const;
 
+    /// What was given in `section` (empty: everything), without its name: lines of TOML, by key.
+    [[nodiscard]] std::string as_toml(std::string_view section) const;
+
     /// \throws InputError for a key that was given but never asked for, with the nearest known
     /// key as a suggestion.
     void reject_unknown_keys() const;

@@ -109,6 +109,11 @@ std::optional<int> FootageReader::slots() const {
     return std::nullopt;
 }
 
+std::optional<double> FootageReader::film_hz() const {
+    const auto* video = std::get_if<VideoReader>(&impl_->source);
+    return video == nullptr ? std::nullopt : video->film_hz();
+}
+
 bool FootageReader::read(std::span<float> frame) {
     assert(frame.size() == shape().sites());
     const auto light = impl_->reduces() ? std::span<float>(impl_->colour) : frame;

@@ -39,6 +39,9 @@ class FootageReader {
     /// Number of frames where the source tells; a video file may not.
     [[nodiscard]] std::optional<int> slots() const;
 
+    /// Frames a second at which a video file plays, if it tells.
+    [[nodiscard]] std::optional<double> film_hz() const;
+
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,
     /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,

@@ -1,49 +1,38 @@
 #include "core/pending_output.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "core/partial_output.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Around the number of the process.
-std::string partial_prefix(const fs::path& final_path) {
-    return '.' + final_path.stem().string() + '.';
-}
-
-std::string partial_suffix(const fs::path& final_path) {
-    return ".partial" + final_path.extension().string();
-}
-
 /// Paths of the partial outputs, for a signal handler, which must not wait for a lock.
 constexpr std::size_t kListedOutputs = 32;
-std::array<std::atomic<const char*>, kListedOutputs> partial_outputs{};
+std::array<std::atomic<const char*>, kListedOutputs> listed_paths{};
 
 /// The place that `path` took in the list, or kListedOutputs if it is full.
 std::size_t list_partial(const char* path) {
     for (std::size_t i = 0; i < kListedOutputs; ++i) {
         const char* none = nullptr;
-        if (partial_outputs[i].compare_exchange_strong(none, path)) return i;
+        if (listed_paths[i].compare_exchange_strong(none, path)) return i;
     }
     return kListedOutputs;
 }
 
 void unlist_partial(std::size_t place) {
-    if (place < kListedOutputs) partial_outputs[place] = nullptr;
+    if (place < kListedOutputs) listed_paths[place] = nullptr;
 }
 
 /// The output's path without "." parts and a folder's trailing slash.
@@ -99,8 +88,7 @@ PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind 
         throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
                                                       parent.string()));
     if (fs::exists(fs::symlink_status(final_, error))) check_replaceable();
-    partial_ =
-        parent / (partial_prefix(final_) + std::to_string(getpid()) + partial_suffix(final_));
+    partial_ = partial_path(final_, getpid());
     fs::remove_all(partial_, error);  // left by an earlier process of the same number
     if (kind == OutputKind::kFolder && !fs::create_directory(partial_, error))
         throw DeviceError(final_.string(), "cannot be created: " + error.message());
@@ -151,7 +139,7 @@ void PendingOutput::commit() {
             remove_replaced_folder();
         if (force_) {
             fs::rename(partial_, final_);
-        } else if (!rename_to_free_name(final_)) {
+        } else if (!rename_to_free_name(partial_, final_)) {
             keep_under_another_name();
         }
     } catch (const fs::filesystem_error& e) {
@@ -160,24 +148,12 @@ void PendingOutput::commit() {
     set_committed();
 }
 
-bool PendingOutput::rename_to_free_name(const fs::path& name) const {
-    if (renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE) == 0)
-        return true;
-    if (errno == EEXIST) return false;
-    if (errno != EINVAL && errno != ENOSYS)
-        throw fs::filesystem_error("rename", std::error_code(errno, std::generic_category()));
-    // The file system does not know it: look first.
-    if (fs::exists(fs::symlink_status(name))) return false;
-    fs::rename(partial_, name);
-    return true;
-}
-
 void PendingOutput::keep_under_another_name() {
     for (int number = 2;; ++number) {
         const fs::path name =
             final_.parent_path() /
             fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
-        if (!rename_to_free_name(name)) continue;
+        if (!rename_to_free_name(partial_, name)) continue;
         set_committed();
         throw DeviceError(final_.string(),
                           fmt::format("was created by another program meanwhile; what was "
@@ -191,27 +167,8 @@ void PendingOutput::set_committed() {
     unlist_partial(std::exchange(place_in_list_, kListedOutputs));
 }
 
-std::optional<fs::path> partial_of(const fs::path& final_path) {
-    const std::string prefix = partial_prefix(final_path);
-    const std::string suffix = partial_suffix(final_path);
-    std::error_code error;
-    std::optional<fs::path> newest;
-    for (const auto& entry : fs::directory_iterator(folder_of(final_path), error)) {
-        const std::string name = entry.path().filename().string();
-        if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) ||
-            !name.ends_with(suffix))
-            continue;
-        const std::string_view number = std::string_view(name).substr(
-            prefix.size(), name.size() - prefix.size() - suffix.size());
-        if (!all_digits(number)) continue;
-        if (!newest || entry.last_write_time(error) > fs::last_write_time(*newest, error))
-            newest = entry.path();
-    }
-    return newest;
-}
-
 void visit_partial_outputs(void (*visit)(const char* path)) noexcept {
-    for (const std::atomic<const char*>& path : partial_outputs)
+    for (const std::atomic<const char*>& path : listed_paths)
         if (const char* listed = path.load()) visit(listed);
 }
 

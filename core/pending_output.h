@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 
 namespace stipple {
 
@@ -35,8 +34,6 @@ class PendingOutput {
 
   private:
     void check_replaceable() const;
-    /// False if the name is taken.
-    [[nodiscard]] bool rename_to_free_name(const std::filesystem::path& name) const;
     [[noreturn]] void keep_under_another_name();
     void set_committed();
     void remove_replaced_folder() const;
@@ -48,11 +45,6 @@ class PendingOutput {
     bool committed_ = false;
     std::size_t place_in_list_;  ///< of partial outputs
 };
-
-/// The partial output, in its folder, of a program that is writing `final_path`, or that was killed
-/// while it did; the newest of several.
-[[nodiscard]] std::optional<std::filesystem::path> partial_of(
-    const std::filesystem::path& final_path);
 
 /// Calls `visit` with the partial path of each output that is neither committed nor removed; of
 /// more than some dozens with the first ones. Safe in a signal handler.

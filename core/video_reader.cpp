@@ -24,6 +24,9 @@ constexpr std::array<std::string_view, 16> kExtensions = {
 /// Containers announce a frame count that may be off by some frames (it is often duration x rate).
 constexpr double kLeastFractionOfAnnounced = 0.9;
 
+/// What a container without a rate says is the tick of its time stamps: 90 kHz and the like.
+constexpr double kMostHz = 80'000;
+
 }  // namespace
 
 struct VideoReader::Impl {
@@ -33,6 +36,7 @@ struct VideoReader::Impl {
     FrameShape shape;
     int next_slot = 0;
     double announced_frames = 0;
+    std::optional<double> film_hz;
 
     /// Decodes into `image`.
     void advance() {
@@ -63,6 +67,8 @@ VideoReader::VideoReader(const std::filesystem::path& file) : impl_(std::make_un
                          "cannot be decoded as video; it is damaged, ends too early "
                          "or holds no frames");
     impl_->announced_frames = impl_->capture.get(cv::CAP_PROP_FRAME_COUNT);
+    const double hz = impl_->capture.get(cv::CAP_PROP_FPS);
+    if (hz > 0 && hz < kMostHz) impl_->film_hz = hz;
     impl_->shape = checked_shape(static_cast<std::uint64_t>(impl_->image.rows),
                                  static_cast<std::uint64_t>(impl_->image.cols), 3, impl_->name);
 }
@@ -73,6 +79,10 @@ VideoReader& VideoReader::operator=(VideoReader&&) noexcept = default;
 
 FrameShape VideoReader::shape() const {
     return impl_->shape;
+}
+
+std::optional<double> VideoReader::film_hz() const {
+    return impl_->film_hz;
 }
 
 std::string VideoReader::place() const {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -22,6 +23,8 @@ class VideoReader {
     VideoReader& operator=(VideoReader&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
+    /// Frames a second at which it plays, if it tells.
+    [[nodiscard]] std::optional<double> film_hz() const;
     /// The file and the frame read last, for messages.
     [[nodiscard]] std::string place() const;
 

@@ -18,6 +18,7 @@
 #include "decoder/motion_tv.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"
+#include "decoder/saturated_samples.h"
 
 namespace stipple {
 namespace {
@@ -32,7 +33,7 @@ constexpr std::int64_t kMaxMissingSlots = 100000;
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
-    explicit PacketBuffer(StreamReader& reader) : reader_(reader) {}
+    explicit PacketBuffer(StreamReader& reader) : reader_(reader), counts_(reader.header()) {}
 
     /// Reads on until every packet of slots below `slot` is here, or the stream ends.
     void read_up_to(std::int64_t slot) {
@@ -46,6 +47,7 @@ class PacketBuffer {
                                              "missing, which is no recording to decode",
                                              packet.slot, slots_ - 1, kMaxMissingSlots));
             slots_ = std::max(slots_, packet.slot + 1);
+            counts_.add(packet);
             packets_.push_back(std::move(packet));
         }
         if (ended_) slots_ = std::max(slots_, reader_.slots().value_or(0));
@@ -56,9 +58,12 @@ class PacketBuffer {
     /// Slots that are known to be in the recording; all, once it has been read to its end.
     [[nodiscard]] std::int64_t slots() const { return slots_; }
     [[nodiscard]] std::span<const SamplePacket> packets() const { return packets_; }
+    /// Of all packets so far.
+    [[nodiscard]] const SaturatedSamples& counts() const { return counts_; }
 
   private:
     StreamReader& reader_;
+    SaturatedSamples counts_;
     bool ended_ = false;
     std::int64_t slots_ = 0;
     std::vector<SamplePacket> packets_;
@@ -238,6 +243,8 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
         }
     }
     report.voxels = static_cast<std::uint64_t>(report.slots) * decoded_shape(header).sites();
+    report.samples = buffer.counts().samples();
+    report.saturated_samples = buffer.counts().saturated();
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return report;

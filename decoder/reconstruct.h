@@ -24,9 +24,11 @@ using FrameSink = std::function<bool(std::int64_t slot, std::span<const float> f
 using DecodeMonitor = std::function<bool(double slots)>;
 
 struct DecodeReport {
-    std::int64_t slots = 0;    ///< frames delivered
-    std::uint64_t voxels = 0;  ///< slots x planes x rows x cols
-    double seconds = 0;        ///< wall time, the sink's included
+    std::int64_t slots = 0;               ///< frames delivered
+    std::uint64_t voxels = 0;             ///< slots x planes x rows x cols
+    std::uint64_t samples = 0;            ///< read for them
+    std::uint64_t saturated_samples = 0;  ///< of these, only a lower bound
+    double seconds = 0;                   ///< wall time, the sink's included
 };
 
 /// Decodes a stream from where its reader stands (its beginning), block by block: memory does not

@@ -43,8 +43,9 @@ struct Band {
     std::vector<std::uint16_t> open_slots;  ///< of each due pixel, in physical mode
     std::uint64_t saturated = 0;
     std::vector<std::uint8_t> open;  ///< of one row
-    std::vector<float> light;        ///< of one plane, as the next two
+    std::vector<float> light;        ///< of one plane, as the next three
     std::vector<float> electrons;
+    std::vector<std::uint8_t> clipped;  ///< by the full well
     std::vector<std::uint16_t> plane_dn;
 };
 
@@ -151,10 +152,11 @@ void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& ban
 /// Light to electrons of the due pixels of one plane.
 void CodedSensor::Impl::charge(std::uint32_t plane, Band& band) const {
     const auto slot = static_cast<std::uint32_t>(stats.slots);
+    const Charges charges{band.electrons, band.clipped};
     if (physical)
-        physical->expose({band.pixels, band.light, band.open_slots}, slot, plane, band.electrons);
+        physical->expose({band.pixels, band.light, band.open_slots}, slot, plane, charges);
     else
-        array.expose(band.light, band.pixels, slot, plane, band.electrons);
+        array.expose(band.light, band.pixels, slot, plane, charges);
 }
 
 /// Light to DN of the due pixels of one plane.
@@ -165,8 +167,10 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
     charge(plane, band);
     adc.convert(band.electrons, band.plane_dn);
     const auto planes = static_cast<std::size_t>(shape.planes);
-    for (std::size_t i = 0; i < band.pixels.size(); ++i)
+    for (std::size_t i = 0; i < band.pixels.size(); ++i) {
         band.dn[i * planes + plane] = band.plane_dn[i];
+        if (band.clipped[i] != 0 || band.plane_dn[i] == adc.most_dn()) ++band.saturated;
+    }
 }
 
 void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row, Band& band) {
@@ -184,10 +188,11 @@ void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row,
     band.dn.resize(samples * static_cast<std::size_t>(shape.planes));
     band.light.resize(samples);
     band.electrons.resize(samples);
+    band.clipped.resize(samples);
     band.plane_dn.resize(samples);
+    band.saturated = 0;
     for (int plane = 0; plane < shape.planes; ++plane)
         read(static_cast<std::uint32_t>(plane), band);
-    band.saturated = static_cast<std::uint64_t>(std::ranges::count(band.dn, adc.most_dn()));
 }
 
 CodedSensor::CodedSensor(const SensorParams& params, FrameShape shape,

@@ -16,7 +16,7 @@ namespace stipple {
 struct ReadoutStats {
     std::int64_t slots = 0;
     std::uint64_t samples = 0;
-    std::uint64_t saturated_samples = 0;  ///< DN at full scale
+    std::uint64_t saturated_samples = 0;  ///< clipped by the full well, or at full scale
 };
 
 /// What the stream says of a sensor: Eq. 1 as gain, noise and full well.

@@ -24,10 +24,18 @@ struct UniformReadout {
 /// \throws InputError if the array is smaller.
 [[nodiscard]] UniformReadout full_readout(const ReadoutTiming& timing, FrameShape shape);
 
-/// The same if every row is read but only `share` of its columns, spread evenly over channels and
-/// ADCs: with codes for single pixels that leave no row out, no schedule of as many samples is
-/// read faster. Dark rows and overhead are as in full. Precondition: 0 < share <= 1.
-[[nodiscard]] UniformReadout even_readout(const ReadoutTiming& timing, FrameShape shape,
-                                          double share);
+/// A bound of readouts, in clocks, on the average.
+struct EvenReadout {
+    double row = 0;    ///< from row to row
+    double total = 0;  ///< as of UniformReadout
+};
+
+/// The least that a readout takes if every row is read but only `share` of the columns, as evenly
+/// over rows, channels and ADCs as whole columns allow: no schedule of as many samples that leaves
+/// no row out is read faster on average. Rows may differ by a column, so the row time is that of
+/// the greatest convex function below the times of 1, 2, ... columns. Dark rows and overhead are as
+/// in full. A sensor with a choice of settling times settles for the mean load, and may be faster
+/// where some row has less. Precondition: 0 < share <= 1.
+[[nodiscard]] EvenReadout even_readout(const ReadoutTiming& timing, FrameShape shape, double share);
 
 }  // namespace stipple

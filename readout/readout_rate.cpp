@@ -43,8 +43,8 @@ ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedul
     rate.mean_slot_clocks = clocks / period;
     const double samples_per_slot = static_cast<double>(rate.period.samples) / period;
     rate.even = even_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
-    const auto even_clocks =
-        static_cast<double>(std::max(rate.even.total, account.timing().code_load_clocks));
+    const double even_clocks =
+        std::max(rate.even.total, static_cast<double>(account.timing().code_load_clocks));
     rate.full_hz = per_second(timing, static_cast<double>(rate.full.total));
     rate.coded_hz = per_second(timing, static_cast<double>(rate.slowest.clocks));
     rate.mean_coded_hz = per_second(timing, rate.mean_slot_clocks);

@@ -13,7 +13,7 @@ namespace stipple {
 /// How fast a sensor reads a window in full and by a schedule, each readout right after the last.
 struct ReadoutRate {
     UniformReadout full;
-    UniformReadout even;  ///< the bound: every row reads its mean load, spread evenly
+    EvenReadout even;     ///< the bound: every row reads the mean load, spread evenly
     SlotAccount slowest;  ///< slot of the steady period
     std::int64_t slowest_phase = 0;
     double mean_slot_clocks = 0;

@@ -35,14 +35,14 @@ PhysicalPixels::PhysicalPixels(const SensorParams& params, FrameShape shape, std
       shot_noise_(params.shot_noise),
       seed_(seed) {}
 
-float PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
-                             float row_noise_e) const noexcept {
+Charge PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
+                              float row_noise_e) const noexcept {
     const float read = noise * site.read_noise_e + std::min(count, full_well_e_);
-    return site.gain * (read + (site.offset_e + row_noise_e));
+    return {site.gain * (read + (site.offset_e + row_noise_e)), count > full_well_e_};
 }
 
-float PhysicalPixels::expose_one(const SiteTraits& site, float light, int open_slots,
-                                 const SampleDraws& draws) const noexcept {
+Charge PhysicalPixels::expose_one(const SiteTraits& site, float light, int open_slots,
+                                  const SampleDraws& draws) const noexcept {
     const float mean = mean_of(site, light, open_slots);
     const float count = shot_noise_ ? static_cast<float>(poisson_one(mean, draws.shot)) : mean;
     return charge(count, site, normal_one(draws.read), draws.row_noise_e);
@@ -83,16 +83,17 @@ void PhysicalPixels::add_row_noise(std::span<const std::uint32_t> pixel, std::ui
 }
 
 void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, std::uint32_t plane,
-                            std::span<float> electrons) const noexcept {
+                            const Charges& charges) const noexcept {
     assert(exposed.light.size() == exposed.pixel.size());
     assert(exposed.open_slots.size() == exposed.pixel.size());
-    assert(electrons.size() == exposed.pixel.size());
+    assert(charges.electrons.size() == exposed.pixel.size());
+    assert(charges.clipped.empty() || charges.clipped.size() == exposed.pixel.size());
     const SiteTraits* sites = pattern_.plane(plane);
     const SampleAddress address{.seed = seed_, .slot = slot, .plane = plane};
     std::array<std::uint32_t, kChunk> shot, read, count;
     std::array<float, kChunk> mean, noise, rows{};
-    for (std::size_t begin = 0; begin < electrons.size(); begin += kChunk) {
-        const std::size_t n = std::min(kChunk, electrons.size() - begin);
+    for (std::size_t begin = 0; begin < exposed.pixel.size(); begin += kChunk) {
+        const std::size_t n = std::min(kChunk, exposed.pixel.size() - begin);
         const auto pixel = exposed.pixel.subspan(begin, n);
         for (std::size_t i = 0; i < n; ++i)
             mean[i] =
@@ -104,8 +105,11 @@ void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, st
             poisson(std::span(mean).first(n), std::span(shot).first(n), std::span(count).first(n));
             for (std::size_t i = 0; i < n; ++i) mean[i] = static_cast<float>(count[i]);
         }
-        for (std::size_t i = 0; i < n; ++i)
-            electrons[begin + i] = charge(mean[i], sites[pixel[i]], noise[i], rows[i]);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Charge one = charge(mean[i], sites[pixel[i]], noise[i], rows[i]);
+            charges.electrons[begin + i] = one.electrons;
+            if (!charges.clipped.empty()) charges.clipped[begin + i] = one.clipped ? 1 : 0;
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "sensor_model/charges.h"
 #include "sensor_model/fixed_pattern.h"
 #include "sensor_model/sample_words.h"
 #include "sensor_model/sensor_params.h"
@@ -42,11 +43,11 @@ class PhysicalPixels {
     /// Charge of each pixel. `slot` is the last slot of the exposures. The same bits for any list,
     /// order, and SIMD target. Precondition: plane < planes of the shape.
     void expose(const ExposedPixels& exposed, std::uint32_t slot, std::uint32_t plane,
-                std::span<float> electrons) const noexcept;
+                const Charges& charges) const noexcept;
 
     /// One sample with the given draws: the slow, obvious form.
-    [[nodiscard]] float expose_one(const SiteTraits& site, float light, int open_slots,
-                                   const SampleDraws& draws) const noexcept;
+    [[nodiscard]] Charge expose_one(const SiteTraits& site, float light, int open_slots,
+                                    const SampleDraws& draws) const noexcept;
 
     /// Row noise of a sample in electrons.
     [[nodiscard]] float row_noise_e(std::uint32_t pixel, std::uint32_t slot,
@@ -55,8 +56,8 @@ class PhysicalPixels {
     [[nodiscard]] const FixedPattern& pattern() const { return pattern_; }
 
   private:
-    [[nodiscard]] float charge(float count, const SiteTraits& site, float noise,
-                               float row_noise_e) const noexcept;
+    [[nodiscard]] Charge charge(float count, const SiteTraits& site, float noise,
+                                float row_noise_e) const noexcept;
     void add_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
                        std::uint32_t plane, std::span<float> noise) const noexcept;
 

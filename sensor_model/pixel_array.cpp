@@ -23,48 +23,71 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 
 void expose(const PixelLaw& law, const SampleAddress& address, std::span<const float> light,
-            const std::uint32_t* pixel, float* electrons) {
+            const std::uint32_t* pixel, const Charges& charges) {
     for (std::size_t i = 0; i < light.size(); ++i) {
         const PhiloxCounter block = philox4x32(
             random_address(pixel[i], address.slot, RandomPurpose::kSample, address.plane),
             address.seed);
-        electrons[i] = expose_one(law, light[i], block[0], block[1]);
+        const Charge charge = expose_one(law, light[i], block[0], block[1]);
+        charges.electrons[i] = charge.electrons;
+        if (!charges.clipped.empty()) charges.clipped[i] = charge.clipped ? 1 : 0;
     }
 }
 
 #else
 
+/// The charges of a vector of samples.
+template <class D>
+struct ChargeVector {
+    hn::Vec<D> electrons;
+    hn::Mask<D> clipped;
+};
+
 /// `expose_one` of a vector of samples.
 template <class D, class V = hn::Vec<D>, class VU>
-HWY_INLINE V expose_vector(D d, const PixelLaw& law, const SampleAddress& address, V light,
-                           VU pixel) {
+HWY_INLINE ChargeVector<D> expose_vector(D d, const PixelLaw& law, const SampleAddress& address,
+                                         V light, VU pixel) {
     const hn::RebindToUnsigned<D> du;
     VU shot_word, read_word;
     sample_words(du, pixel, address, shot_word, read_word);
     V charge = hn::Mul(hn::Set(d, law.electrons_per_unit), light);
     if (law.shot_noise) charge = hn::ConvertTo(d, poisson(d, charge, shot_word));
-    charge = hn::Min(charge, hn::Set(d, law.full_well_e));
-    return mul_then_add(normal(d, read_word), hn::Set(d, law.read_noise_e), charge);
+    const V full_well = hn::Set(d, law.full_well_e);
+    const V kept = hn::Min(charge, full_well);
+    return {mul_then_add(normal(d, read_word), hn::Set(d, law.read_noise_e), kept),
+            hn::Gt(charge, full_well)};
+}
+
+template <class D>
+HWY_INLINE void store(D d, const ChargeVector<D>& from, float* electrons, std::uint8_t* clipped) {
+    hn::StoreU(from.electrons, d, electrons);
+    if (clipped == nullptr) return;
+    const hn::RebindToSigned<D> di;
+    const hn::Rebind<std::uint8_t, D> bytes;
+    const auto ones = hn::IfThenElseZero(hn::RebindMask(di, from.clipped), hn::Set(di, 1));
+    hn::StoreU(hn::DemoteTo(bytes, ones), bytes, clipped);
 }
 
 void expose(const PixelLaw& law, const SampleAddress& address, std::span<const float> light,
-            const std::uint32_t* pixel, float* electrons) {
+            const std::uint32_t* pixel, const Charges& charges) {
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     std::size_t i = 0;
+    std::uint8_t* const clipped = charges.clipped.empty() ? nullptr : charges.clipped.data();
     for (; i + hn::Lanes(d) <= light.size(); i += hn::Lanes(d))
-        hn::StoreU(
-            expose_vector(d, law, address, hn::LoadU(d, &light[i]), hn::LoadU(du, pixel + i)), d,
-            electrons + i);
+        store(d, expose_vector(d, law, address, hn::LoadU(d, &light[i]), hn::LoadU(du, pixel + i)),
+              &charges.electrons[i], clipped == nullptr ? nullptr : clipped + i);
     if (i == light.size()) return;
     HWY_ALIGN float last_light[hn::MaxLanes(d)] = {};
     HWY_ALIGN std::uint32_t last_pixel[hn::MaxLanes(d)] = {};
+    std::uint8_t last_clipped[hn::MaxLanes(d)];
     std::copy(light.begin() + static_cast<std::ptrdiff_t>(i), light.end(), last_light);
     std::copy(pixel + i, pixel + light.size(), last_pixel);
-    const auto last =
-        expose_vector(d, law, address, hn::Load(d, last_light), hn::Load(du, last_pixel));
-    hn::Store(last, d, last_light);
-    std::copy(last_light, last_light + (light.size() - i), electrons + i);
+    store(d, expose_vector(d, law, address, hn::Load(d, last_light), hn::Load(du, last_pixel)),
+          last_light, last_clipped);
+    const std::size_t rest = light.size() - i;
+    std::copy_n(last_light, rest, &charges.electrons[i]);
+    if (clipped != nullptr) std::copy_n(last_clipped, rest, clipped + i);
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -88,11 +111,12 @@ PixelLaw checked_law(const SensorParams& params) {
 
 HWY_EXPORT(expose);
 
-float expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
-                 std::uint32_t read_word) noexcept {
+Charge expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
+                  std::uint32_t read_word) noexcept {
     float charge = law.electrons_per_unit * light;
     if (law.shot_noise) charge = static_cast<float>(poisson_one(charge, shot_word));
-    return normal_one(read_word) * law.read_noise_e + std::min(charge, law.full_well_e);
+    return {normal_one(read_word) * law.read_noise_e + std::min(charge, law.full_well_e),
+            charge > law.full_well_e};
 }
 
 PixelArray::PixelArray(const SensorParams& params, std::uint64_t seed)
@@ -100,10 +124,11 @@ PixelArray::PixelArray(const SensorParams& params, std::uint64_t seed)
 
 void PixelArray::expose(std::span<const float> light, std::span<const std::uint32_t> pixel,
                         std::uint32_t slot, std::uint32_t plane,
-                        std::span<float> electrons) const noexcept {
-    assert(light.size() == pixel.size() && light.size() == electrons.size());
+                        const Charges& charges) const noexcept {
+    assert(light.size() == pixel.size() && light.size() == charges.electrons.size());
+    assert(charges.clipped.empty() || charges.clipped.size() == light.size());
     const SampleAddress address{.seed = seed_, .slot = slot, .plane = plane};
-    HWY_DYNAMIC_DISPATCH(expose)(law_, address, light, pixel.data(), electrons.data());
+    HWY_DYNAMIC_DISPATCH(expose)(law_, address, light, pixel.data(), charges);
 }
 
 }  // namespace stipple

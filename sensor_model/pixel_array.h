@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sensor_model/charges.h"
 #include "sensor_model/sample_words.h"
 #include "sensor_model/sensor_params.h"
 
@@ -18,8 +19,8 @@ struct PixelLaw {
 
 /// Charge of one sample with the given random words: the slow, obvious form.
 /// Precondition: light >= 0, not NaN.
-[[nodiscard]] float expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
-                               std::uint32_t read_word) noexcept;
+[[nodiscard]] Charge expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
+                                std::uint32_t read_word) noexcept;
 
 /// Light to charge, the inside of the paper's Eq. 1 for a list of samples:
 ///
@@ -35,11 +36,11 @@ class PixelArray {
     /// \throws InputError as `validate`.
     PixelArray(const SensorParams& params, std::uint64_t seed);
 
-    /// `electrons[i]` of pixel `pixel[i]` (row * cols + col) that has collected `light[i]`, in
-    /// units of flux x slots. `slot` is the last slot of the exposure.
+    /// Charge i is that of pixel `pixel[i]` (row * cols + col) when it has collected `light[i]`,
+    /// in units of flux x slots. `slot` is the last slot of the exposure.
     /// Precondition: equal lengths; light >= 0, not NaN; plane < 2^24.
     void expose(std::span<const float> light, std::span<const std::uint32_t> pixel,
-                std::uint32_t slot, std::uint32_t plane, std::span<float> electrons) const noexcept;
+                std::uint32_t slot, std::uint32_t plane, const Charges& charges) const noexcept;
 
   private:
     PixelLaw law_;

@@ -40,7 +40,7 @@ void light_to_dn(benchmark::State& state) {
     std::vector<std::uint16_t> dn(kSamples);
     std::uint32_t slot = 0;
     for (auto iteration : state) {
-        array.expose(light, pixels, slot++, 0, electrons);
+        array.expose(light, pixels, slot++, 0, {electrons});
         adc.convert(electrons, dn);
         benchmark::DoNotOptimize(dn.data());
     }

@@ -25,7 +25,7 @@ void light_to_electrons(benchmark::State& state, const PhysicalTerms& terms) {
     const std::vector<std::uint16_t> open_slots(kSamples, 1);
     std::uint32_t slot = 0;
     for (auto step : state) {
-        pixels.expose({pixel, light, open_slots}, slot++, 0, electrons);
+        pixels.expose({pixel, light, open_slots}, slot++, 0, {electrons});
         benchmark::DoNotOptimize(electrons.data());
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));

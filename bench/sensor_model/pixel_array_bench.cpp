@@ -62,7 +62,7 @@ void light_to_electrons(benchmark::State& state) {
     std::vector<float> electrons(kSamples);
     std::uint32_t slot = 0;
     for (auto step : state) {
-        array.expose(light, pixels, slot++, 0, electrons);
+        array.expose(light, pixels, slot++, 0, {electrons});
         benchmark::DoNotOptimize(electrons.data());
     }
     count_samples(state);

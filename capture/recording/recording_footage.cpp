@@ -33,6 +33,7 @@ bool RecordingFootage::advance() {
         const bool usable = !options_.drop_incomplete || record.status == FrameStatus::kComplete;
         const std::uint64_t lost = last_id_ ? missing_after(*last_id_, record) : record.lost_before;
         last_id_ = record.id;
+        rate_.add(record);
         const std::uint64_t gap = std::min(lost, kMaxHeld + 1) + (usable ? 0 : 1);
         missing_ += gap;
         to_hold_ += gap;

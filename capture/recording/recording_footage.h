@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capture/frame_light.h"
+#include "capture/frame_rate.h"
 #include "capture/recording/recording_reader.h"
 
 namespace stipple {
@@ -41,6 +42,8 @@ class RecordingFootage {
     [[nodiscard]] std::uint64_t held_slots() const { return held_; }
     /// Frames that are missing, also by damage of the file, or incomplete, so far.
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
+    /// The camera's, by the frames so far.
+    [[nodiscard]] const FrameRate& rate() const { return rate_; }
     /// Whether all frames were read, so that the reader's report is complete.
     [[nodiscard]] bool at_end() const { return !has_coming_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
@@ -60,6 +63,7 @@ class RecordingFootage {
     std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing
     std::uint64_t held_ = 0;
     std::uint64_t missing_ = 0;
+    FrameRate rate_;
 };
 
 }  // namespace stipple

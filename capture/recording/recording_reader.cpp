@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "core/error.h"
@@ -187,7 +188,8 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
 }
 
 bool is_recording(const std::filesystem::path& path) {
-    if (!std::filesystem::is_regular_file(path)) return false;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
     FileWindow file(path);
     const Bytes start = file.peek(kRecordingVersionOffset);
     return std::equal(start.begin(), start.end(), kRecordingMagic.begin(),

@@ -52,6 +52,42 @@ class PipelineTest(ProgramTest):
         self.assertAlmostEqual(read, 1 - 2 * sum(L * (L - 1) / 2 for L in (1, 2, 4, 8)) / 15 / 32,
                                delta=0.01)  # 0.0014 times the standard deviation of 4096 pixels
 
+    def test_samples_that_the_full_well_clips_count_as_saturated(self):
+        light = self.write_flat("light.npy", slots=8, light=0.9)
+        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "full_well_e=500")
+        self.assertEqual(figures["saturated_fraction"], 1)  # 900 e a slot
+        self.assertIn("100.00 % of the samples saturated",
+                      self.succeed("decode", "a.stipple", "-o", "a.npy", "--method", "naive"))
+
+    def test_the_saturated_part_of_a_sensor_whose_well_is_at_full_scale(self):
+        mean, well, read_noise, most_dn = 9950, 10000, 10, 4095  # config/sensors/lux1310.toml
+        self.write_flat("light.npy", slots=32, rows=64, cols=64, light=mean / 4 / 1000)
+        emulated = self.figures("emulate", "light.npy", "-o", "a.stipple", "--sensor", "lux1310",
+                                "--schedule", "full4x")
+
+        def part_from(electrons):
+            """Of Z + V from there on: Z ~ Poisson, cut at the well, V normal."""
+            part = 0
+            for z in range(mean - 1000, mean + 1000):
+                share = math.exp(z * math.log(mean) - mean - math.lgamma(z + 1))
+                above = (electrons - min(z, well)) / read_noise / math.sqrt(2)
+                part += share * (1 if z > well and electrons == full_scale
+                                 else math.erfc(above) / 2)
+            return part
+
+        e_per_dn = well / most_dn
+        full_scale = (most_dn - 0.5) * e_per_dn
+        expected = part_from(full_scale)
+        # What may have been clipped, as docs/decoder.md says: 5 standard deviations below the well.
+        below_dn = 5 * math.hypot(read_noise / e_per_dn, math.sqrt(1 / 12))
+        expected_bounds = part_from((math.ceil(most_dn - below_dn) - 0.5) * e_per_dn)
+        decoded = self.figures("decode", "a.stipple", "-o", "a.npy", "--method", "naive")
+        self.assertEqual(emulated["samples"], 8 * 64 * 64)
+        for found, part in ((emulated, expected), (decoded, expected_bounds)):
+            tolerance = 5 * math.sqrt(part * (1 - part) / emulated["samples"])
+            self.assertAlmostEqual(found["saturated_fraction"], part, delta=tolerance)
+        self.assertGreater(decoded["saturated_fraction"], emulated["saturated_fraction"])
+
     def test_schedule_and_sensor_follow_the_settings(self):
         light = self.write_flat("light.npy", slots=6, rows=4, cols=4)
         figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "bit_depth=12",

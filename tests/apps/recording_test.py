@@ -55,6 +55,50 @@ class RecordingTest(ProgramTest):
         for word in (b'"AcquisitionFrameRate"', b'"kernel"', b'"stipple"', b'"reason": "stopped"'):
             self.assertIn(word, content)
 
+    def test_the_rate_is_that_of_the_periods_between_frames(self):
+        for rate in (50, 400):
+            for frames in (2, 3, 6):
+                done = self.figures("capture", "record", "replay:light.npy", "-o", "clip.strec",
+                                    "--set", f"AcquisitionFrameRate={rate}", "--frames", frames,
+                                    "--force")
+                self.assertAlmostEqual(done["frames_per_s"], rate, places=6)
+
+    def test_a_single_frame_has_no_rate(self):
+        record = ("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST, "--frames", 1,
+                  "--force")
+        self.assertIsNone(self.figures(*record)["frames_per_s"])
+        self.assertIn("1 frames, 0.0 MB", self.succeed(*record))
+        live = ("capture", "live", "replay:light.npy", "-o", "a.stipple", *FAST, "--frames", 1)
+        figures = self.figures(*live)
+        for key in ("slots_per_second", "samples_per_second", "frames_hz"):
+            self.assertIsNone(figures[key], key)
+        self.assertNotIn("slots/s", self.succeed(*live, "--force"))
+
+    def test_the_emulator_says_that_a_recording_has_another_rate_than_slots(self):
+        self.write_flat("film.npy", 12)
+        for rate, slot_us, said in ((50, 5000, True), (50, 20000, False), (200, 5000, False)):
+            self.succeed("capture", "record", "replay:film.npy", "-o", "film.strec", "--set",
+                         f"AcquisitionFrameRate={rate}", "--force")
+            done = self.run_program("emulate", "film.strec", "-o", "a.stipple", "--force", "-q",
+                                    "--set", f"slot_us={slot_us}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            if not said:
+                self.assertEqual(done.stderr, "")
+                continue
+            for part in ("film.strec: the camera sent 50 frames/s", "takes 5000 us (200 a second)",
+                         "slot_us=20000"):
+                self.assertIn(part, done.stderr)
+
+    def test_the_emulator_says_that_a_film_has_another_rate_than_slots(self):
+        self.succeed("synth", "pan", "-o", "film.mp4", "--size", "32x32", "--frames", 4)
+        emulate = ("emulate", "film.mp4", "-o", "a.stipple", "--force", "-q")
+        done = self.run_program(*emulate)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for part in ("film.mp4: plays 30 frames/s", "6.67 times as fast", "slot_us=33333"):
+            self.assertIn(part, done.stderr)
+        self.assertEqual(self.run_program(*emulate, "--set", "slot_us=33333").stderr, "")
+
     def test_a_recording_comes_back_as_the_light_it_was_made_of(self):
         self.record()
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")

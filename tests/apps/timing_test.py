@@ -65,6 +65,22 @@ class TimingTest(ProgramTest):
         self.assertIn(f"{it['slot_sample_energy_pj']:.4g} pJ a sample", text)
         self.assertIn("assumed", text)
 
+    def test_info_says_how_long_stretched_slots_were(self):
+        self.write_flat("light.npy", slots=32, rows=40, cols=30)
+        sensor = ("--sensor", "imx296", "--set", "slot_us=50")
+        emulated = self.figures("emulate", "light.npy", "-o", "a.stipple", *sensor)["readout"]
+        self.assertEqual(emulated["overrun_slots"], 32)
+        info = self.figures("info", "a.stipple")
+        self.assertEqual(info["stretched_slots"], 32)
+        mean_us = emulated["seconds"] / 32 * 1e6
+        self.assertAlmostEqual(info["mean_stretched_us"], mean_us, places=6)
+        self.assertIn(f"a slot is nominally 50 us; 32 of 32 slots were stretched, mean {mean_us:.4g} us",
+                      self.succeed("info", "a.stipple"))
+        self.assertEqual(self.figures("emulate", "light.npy", "-o", "b.stipple", "--sensor",
+                                      "imx296", "--set", "slot_us=5000")["readout"]["overrun_slots"],
+                         0)
+        self.assertNotIn("nominally", self.succeed("info", "b.stipple"))
+
     def test_a_sensor_without_timing_is_refused_with_those_that_have_it(self):
         message = self.fails(INPUT, ["paper", "[timing]"], "timing", "--sensor", "paper")
         for sensor in SENSORS:

@@ -199,5 +199,17 @@ TEST_F(ConfigTest, RefusesAQuotedKeyThatRepeatsADottedOne) {
     expect_parts(parse_error("\"adc.bits\" = 8\n[adc]\nbits = 10\n"), {"adc.bits: is given twice"});
 }
 
+TEST_F(ConfigTest, TellsASectionAsLinesThatMakeItAgain) {
+    const std::vector<std::string> given{"timing.law=sequential", "timing.clock_hz=90_000_000",
+                                         "timing.settle=[19, 2]", "gain=1e-3", "name=\"a \\\"b\""};
+    Config config(given);
+    const std::string lines = config.as_toml("timing");
+    EXPECT_EQ(lines, "clock_hz = 90000000\nlaw = 'sequential'\nsettle = [ 19, 2 ]\n");
+    Config again = parse(config.as_toml(""));
+    EXPECT_EQ(again.as_toml(""), config.as_toml(""));
+    EXPECT_EQ(again.text("name", ""), "a \"b");
+    EXPECT_EQ(again.number("gain", 0, 0, 1), 1e-3);
+}
+
 }  // namespace
 }  // namespace stipple

@@ -75,6 +75,7 @@ TEST_P(VideoFileTest, WritesTheFrameRate) {
     writer.finish();
     cv::VideoCapture capture(file_.string(), cv::CAP_FFMPEG);
     EXPECT_DOUBLE_EQ(capture.get(cv::CAP_PROP_FPS), 12.5);
+    EXPECT_DOUBLE_EQ(FootageReader(file_).film_hz().value(), 12.5);
 }
 
 TEST_P(VideoFileTest, RefusesATruncatedVideoWhateverItsLength) {

@@ -66,7 +66,7 @@ std::uint16_t expose_once(const FluxVideo& video, const TakenExposure& taken, in
     float electrons = 0;
     PixelArray(params, kSeed)
         .expose({&light, 1}, {&pixel, 1}, static_cast<std::uint32_t>(taken.last_slot()),
-                static_cast<std::uint32_t>(plane), {&electrons, 1});
+                static_cast<std::uint32_t>(plane), {.electrons = {&electrons, 1}});
     return ColumnAdc(params).convert_one(electrons);
 }
 
@@ -181,6 +181,30 @@ TEST(CodedSensorTest, CountsSlotsSamplesAndThoseAtFullScale) {
     EXPECT_EQ(sensor.stats().saturated_samples, saturated);
     EXPECT_GT(saturated, 0U);
     EXPECT_LT(saturated, samples);
+}
+
+// Without noise an exposure of n slots of the light x is clipped if n r x exceeds the full well,
+// which here is below full scale.
+TEST(CodedSensorTest, CountsSamplesThatTheFullWellClips) {
+    const SensorParams params{.full_well_e = 1500, .read_noise_e = 0, .shot_noise = false};
+    FluxVideo video(30, {.rows = 40, .cols = 24, .planes = 3});
+    std::ranges::fill(video.data(), 0.5F);
+    const auto schedule = random_schedule(40, 24, kPaperExposureSlots, 1);
+    for (const SensorMode mode : {SensorMode::kPaper, SensorMode::kPhysical}) {
+        SensorParams of_mode = params;
+        of_mode.mode = mode;
+        CodedSensor sensor(of_mode, video.shape(), schedule, kSeed);
+        SamplePacket packet;
+        std::uint64_t clipped = 0;
+        for (int slot = 0; slot < video.slots(); ++slot) {
+            sensor.expose(video.frame(slot), packet);
+            for (int row = 0; row < 40; ++row)
+                visit_due(schedule, slot, row, 24, [&](int, int span_slots) {
+                    if (span_slots * 500 > 1500) clipped += 3;
+                });
+        }
+        EXPECT_EQ(sensor.stats().saturated_samples, clipped);
+    }
 }
 
 TEST(CodedSensorTest, TakesInfiniteLightAsSaturation) {

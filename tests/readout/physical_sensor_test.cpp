@@ -77,7 +77,7 @@ Slots expose_one_by_one(const FluxVideo& video, const ExposureSchedule& schedule
                     float electrons = 0;
                     pixels.expose({{&pixel, 1}, {&light, 1}, {&slots, 1}},
                                   static_cast<std::uint32_t>(taken.last_slot()), plane,
-                                  {&electrons, 1});
+                                  {.electrons = {&electrons, 1}});
                     dn[static_cast<std::size_t>(taken.last_slot())].push_back(
                         adc.convert_one(electrons));
                 }

@@ -65,7 +65,7 @@ std::vector<float> expose(const PhysicalPixels& pixels, const Exposures& exposur
                           std::uint32_t slot = 5, std::uint32_t plane = 1) {
     std::vector<float> electrons(exposures.pixels.size());
     pixels.expose({exposures.pixels, exposures.light, exposures.open_slots}, slot, plane,
-                  electrons);
+                  {electrons});
     return electrons;
 }
 
@@ -74,15 +74,22 @@ TEST(PhysicalPixelsTest, IsTheFormulaWordByWordOnEverySimdTarget) {
     for_each_simd_target([&](const std::string& target) {
         for (const std::size_t count : {0U, 1U, 17U, 256U, 257U, 5001U}) {
             const Exposures exposures = mixed(count, 97);
-            const auto electrons = expose(pixels, exposures);
+            std::vector<std::uint8_t> clipped(count);
+            std::vector<float> electrons(count);
+            pixels.expose({exposures.pixels, exposures.light, exposures.open_slots}, 5, 1,
+                          {electrons, clipped});
+            EXPECT_EQ(electrons, expose(pixels, exposures));
             for (std::size_t i = 0; i < count; ++i) {
                 const std::uint32_t pixel = exposures.pixels[i];
                 const auto block =
                     philox4x32(random_address(pixel, 5, RandomPurpose::kSample, 1), kSeed);
                 const float row = pixels.row_noise_e(pixel, 5, 1);
-                ASSERT_EQ(electrons[i],
-                          pixels.expose_one(pixels.pattern().plane(1)[pixel], exposures.light[i],
-                                            exposures.open_slots[i], {block[0], block[1], row}))
+                const Charge charge =
+                    pixels.expose_one(pixels.pattern().plane(1)[pixel], exposures.light[i],
+                                      exposures.open_slots[i], {block[0], block[1], row});
+                ASSERT_EQ(electrons[i], charge.electrons)
+                    << target << " sample " << i << " of " << count;
+                ASSERT_EQ(clipped[i] != 0, charge.clipped)
                     << target << " sample " << i << " of " << count;
             }
         }
@@ -92,7 +99,7 @@ TEST(PhysicalPixelsTest, IsTheFormulaWordByWordOnEverySimdTarget) {
 TEST(PhysicalPixelsTest, WithoutTermsIsEquationOneBitByBit) {
     const Exposures exposures = mixed(3001, 7);
     std::vector<float> expected(exposures.pixels.size());
-    PixelArray({}, kSeed).expose(exposures.light, exposures.pixels, 5, 1, expected);
+    PixelArray({}, kSeed).expose(exposures.light, exposures.pixels, 5, 1, {expected});
     EXPECT_EQ(expose(PhysicalPixels(physical({}), kShape, kSeed), exposures), expected);
 }
 

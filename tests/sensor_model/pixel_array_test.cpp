@@ -29,7 +29,7 @@ std::vector<std::uint32_t> first_pixels(std::size_t count) {
 std::vector<float> expose(const SensorParams& params, const std::vector<float>& light,
                           const std::vector<std::uint32_t>& pixels, std::uint32_t slot = 5) {
     std::vector<float> electrons(light.size());
-    PixelArray(params, kSeed).expose(light, pixels, slot, 1, electrons);
+    PixelArray(params, kSeed).expose(light, pixels, slot, 1, {electrons});
     return electrons;
 }
 
@@ -71,15 +71,40 @@ TEST(PixelArrayTest, IsEquationOneWordByWordOnEverySimdTarget) {
         for (const std::size_t count : {0U, 1U, 3U, 15U, 16U, 17U, 40U, 5001U}) {
             const auto pixels = first_pixels(count);
             const auto light = light_of_all_sizes(pixels);
-            const auto electrons = expose(params, light, pixels);
+            std::vector<std::uint8_t> clipped(count);
+            std::vector<float> electrons(count);
+            PixelArray(params, kSeed).expose(light, pixels, 5, 1, {electrons, clipped});
+            EXPECT_EQ(electrons, expose(params, light, pixels));
             for (std::size_t i = 0; i < count; ++i) {
                 const auto block =
                     philox4x32(random_address(pixels[i], 5, RandomPurpose::kSample, 1), kSeed);
-                ASSERT_EQ(electrons[i], expose_one(law, light[i], block[0], block[1]))
+                const Charge charge = expose_one(law, light[i], block[0], block[1]);
+                ASSERT_EQ(electrons[i], charge.electrons)
+                    << target << " sample " << i << " of " << count;
+                ASSERT_EQ(clipped[i] != 0, charge.clipped)
                     << target << " sample " << i << " of " << count;
             }
         }
     });
+}
+
+// P(Z > w) of Z ~ Poisson(m), summed from its definition; 5 standard deviations of a share of n
+// samples are allowed.
+TEST(PixelArrayTest, ClipsTheShareThatPoissonPutsAboveTheFullWell) {
+    constexpr std::size_t n = 100000;
+    const auto pixels = first_pixels(n);
+    const SensorParams params{.full_well_e = 400};
+    for (const double mean : {350.0, 390.0, 400.0, 410.0}) {
+        double share = 1;
+        for (int z = 0; z <= 400; ++z)
+            share -= std::exp(z * std::log(mean) - mean - std::lgamma(z + 1.0));
+        const std::vector<float> light(n, static_cast<float>(mean / params.photons_per_unit));
+        std::vector<float> electrons(n);
+        std::vector<std::uint8_t> clipped(n);
+        PixelArray(params, kSeed).expose(light, pixels, 5, 0, {electrons, clipped});
+        const auto found = static_cast<double>(std::ranges::count(clipped, 1)) / n;
+        EXPECT_NEAR(found, share, 5 * std::sqrt(share * (1 - share) / n)) << mean;
+    }
 }
 
 TEST(PixelArrayTest, GivesASampleTheSameChargeInAnyListAndOrder) {
@@ -103,7 +128,7 @@ TEST(PixelArrayTest, DrawsAnewForEverySeedSlotAndPlane) {
     const std::vector<float> light(64, 1.0F);
     const auto draw = [&](std::uint64_t seed, std::uint32_t slot, std::uint32_t plane) {
         std::vector<float> electrons(64);
-        PixelArray({}, seed).expose(light, pixels, slot, plane, electrons);
+        PixelArray({}, seed).expose(light, pixels, slot, plane, {electrons});
         return electrons;
     };
     EXPECT_EQ(draw(1, 2, 0), draw(1, 2, 0));

@@ -1,0 +1,190 @@
+#include "apps/provenance.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+#include <string_view>
+
+#include "sensor_model/physical_keys.h"
+#include "stream/plain_text.h"
+
+namespace stipple {
+namespace {
+
+/// Longer lists of keys are those of schedules that are written out, which the stream holds anyway.
+constexpr std::size_t kMostScheduleKeys = 16384;
+
+toml::array toml_array(const std::vector<double>& values) {
+    toml::array array;
+    for (const double value : values) array.push_back(value);
+    return array;
+}
+
+void add_physical_terms(const PhysicalTerms& terms, toml::table& sensor) {
+    for (const PhysicalKey& key : kPhysicalKeys) sensor.insert(key.name, terms.*key.term);
+    sensor.insert("row_noise_e", toml_array(terms.row_noise_e));
+    sensor.insert("device_id", std::int64_t{terms.device_id});
+    sensor.insert("cfa", name_of(terms.cfa));
+    sensor.insert("map_rows", terms.map_rows);
+    sensor.insert("map_cols", terms.map_cols);
+    sensor.insert("transmittance", toml_array(terms.transmittance));
+    sensor.insert("gain_map", toml_array(terms.gain_map));
+}
+
+/// All parameters of the sensor's mode, as in a file of config/sensors.
+toml::table sensor_table(const SensorParams& params) {
+    const bool physical = params.mode == SensorMode::kPhysical;
+    toml::table sensor{{"mode", physical ? "physical" : "paper"},
+                       {"name", params.name},
+                       {"photons_per_unit", params.photons_per_unit},
+                       {"full_scale_e", params.full_scale_e},
+                       {"full_well_e", params.full_well_e},
+                       {"read_noise_e", params.read_noise_e},
+                       {"shot_noise", params.shot_noise},
+                       {"bit_depth", params.bit_depth},
+                       {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
+                       {"slot_us", params.slot_us},
+                       {"charge_stores", params.charge_stores}};
+    if (physical) add_physical_terms(params.physical, sensor);
+    return sensor;
+}
+
+/// The name of a sensor or schedule without its folders.
+std::string file_name(const std::string& name) {
+    return std::filesystem::path(name).filename().string();
+}
+
+const char* name_of(Transfer transfer) {
+    if (transfer == Transfer::kGamma22) return "gamma22";
+    return transfer == Transfer::kSrgb ? "srgb" : "linear";
+}
+
+toml::table footage_table(const FootageOrigin& footage) {
+    toml::table table{{"name", footage.name},
+                      {"transfer", name_of(footage.reading.transfer)},
+                      {"luminance", footage.reading.luminance}};
+    if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
+    if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
+    if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
+    return table;
+}
+
+/// The command line, without what another table has.
+toml::table options_table(const SensorChoice& choice) {
+    toml::array settings;
+    for (const std::string& setting : choice.settings) settings.push_back(setting);
+    return toml::table{{"sensor", file_name(choice.sensor)},
+                       {"schedule", file_name(choice.schedule)},
+                       {"set", settings}};
+}
+
+toml::table schedule_table(const SensorSetup& setup) {
+    const std::string keys = schedule_keys(setup.choice);
+    toml::table table = keys.size() > kMostScheduleKeys ? toml::table() : toml::parse(keys);
+    table.insert_or_assign("name", setup.schedule.name);
+    return table;
+}
+
+/// An argument as a shell takes it.
+std::string shell_quoted(const std::string& argument) {
+    constexpr std::string_view kPlain =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./=:,%+@-";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos)
+        return argument;
+    std::string text = "'";
+    for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+std::string text_of(const toml::node_view<const toml::node>& node) {
+    return node.value<std::string>().value_or("");
+}
+
+/// The options of a command that differ from their defaults.
+std::string options_of(const toml::table& provenance) {
+    const auto footage = provenance["footage"];
+    const auto options = provenance["options"];
+    std::string text;
+    const auto add = [&](std::string_view option, const std::string& value) {
+        text += fmt::format(" {} {}", option, shell_quoted(value));
+    };
+    const SensorChoice defaults;
+    if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
+    if (footage["luminance"].value_or(false)) text += " --luminance";
+    if (const auto most = footage["max_value"].value<double>())
+        add("--max-value", fmt::format("{}", *most));
+    if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
+    if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
+        add("--schedule", it);
+    if (const auto* settings = options["set"].as_array())
+        for (const toml::node& setting : *settings)
+            add("--set", setting.value<std::string>().value_or(""));
+    const auto seed = provenance["seed"];
+    const auto number = seed.value<std::int64_t>();
+    if (const auto it = number ? std::to_string(*number) : text_of(seed); it != "1")
+        add("--seed", it);
+    if (const auto it = text_of(provenance["overrun"]); it != "stretch") add("--overrun", it);
+    return text;
+}
+
+}  // namespace
+
+std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage) {
+    toml::table sensor = sensor_table(setup.params);
+    if (setup.timing) sensor.insert("timing", toml::parse(timing_keys(setup.choice)));
+    toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
+                     {"footage", footage_table(footage)},
+                     {"options", options_table(setup.choice)},
+                     {"overrun", setup.overrun == OverrunPolicy::kDrop ? "drop" : "stretch"},
+                     {"schedule", schedule_table(setup)},
+                     {"sensor", sensor}};
+    // TOML integers are signed, seeds are not.
+    if (setup.seed <= std::numeric_limits<std::int64_t>::max())
+        text.insert("seed", static_cast<std::int64_t>(setup.seed));
+    else
+        text.insert("seed", std::to_string(setup.seed));
+    std::ostringstream stream;
+    stream << text << '\n';
+    return stream.str();
+}
+
+std::string command_of(const std::string& provenance) {
+    try {
+        const toml::table table = toml::parse(provenance);
+        const auto footage = table["footage"];
+        std::string name = text_of(footage["name"]);
+        // Light of a camera, and what was taken off it, is in no file that `emulate` reads.
+        if (name.empty() || !footage["sha256"] || footage["black_level_dn"] || !table["options"])
+            return {};
+        if (name.starts_with('-')) name.insert(0, "./");
+        std::string command = fmt::format("stipple emulate {} -o again.stipple{}",
+                                          shell_quoted(name), options_of(table));
+        if (!is_plain_text(command, false)) command.clear();
+        return command;
+    } catch (const toml::parse_error&) {
+        return {};
+    }
+}
+
+std::vector<std::string> timing_settings(const std::string& provenance) {
+    std::vector<std::string> settings;
+    try {
+        const toml::table table = toml::parse(provenance);
+        if (const auto* timing = table["sensor"]["timing"].as_table())
+            for (const auto& [key, node] : *timing) {
+                std::ostringstream setting;
+                setting << "timing." << key.str() << '=';
+                node.visit([&](const auto& value) { setting << value; });
+                settings.push_back(setting.str());
+            }
+    } catch (const toml::parse_error&) {
+        settings.clear();
+    }
+    return settings;
+}
+
+}  // namespace stipple

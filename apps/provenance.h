@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/footage_origin.h"
+#include "apps/sensor_setup.h"
+
+namespace stipple {
+
+/// The text that a stream carries of where it comes from (TOML, docs/stream_format.md): all that
+/// decides its bytes. No time and no folder, so that the same run gives the same bytes.
+[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage);
+
+/// The command that makes the same stream again, in the folder of its footage, where `provenance`
+/// tells of one; else empty. Quoted for a shell and without control characters: the text
+/// may be anybody's.
+[[nodiscard]] std::string command_of(const std::string& provenance);
+
+/// The keys of the section [timing] of the sensor that `provenance` tells of, as overrides of a
+/// Config; none if it has none.
+[[nodiscard]] std::vector<std::string> timing_settings(const std::string& provenance);
+
+}  // namespace stipple

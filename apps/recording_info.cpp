@@ -1,0 +1,167 @@
+#include "apps/recording_info.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "apps/interrupt.h"
+#include "apps/json_file.h"
+#include "apps/leftovers.h"
+#include "capture/frame_rate.h"
+#include "capture/recording/recording_reader.h"
+#include "core/error.h"
+#include "core/joined.h"
+#include "stream/plain_text.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostGapsListed = 1000;
+constexpr std::size_t kMostGapsShown = 10;
+
+/// Frames that are missing between two that are there.
+struct Gap {
+    std::uint64_t before_frame;  ///< id of the frame after it
+    std::uint64_t frames;
+    GapCause cause;
+};
+
+/// What was seen of the frames.
+struct FrameSummary {
+    std::optional<FrameRecord> first;
+    std::uint64_t last_id = 0;
+    std::uint64_t incomplete = 0;
+    std::uint64_t missing = 0;
+    std::uint64_t gaps = 0;
+    std::vector<Gap> listed;  ///< the first of them
+    FrameRate rate;
+
+    void add(const FrameRecord& record) {
+        const std::uint64_t lost = first ? missing_after(last_id, record) : record.lost_before;
+        if (!first) first = record;
+        last_id = record.id;
+        rate.add(record);
+        if (record.status != FrameStatus::kComplete) ++incomplete;
+        if (lost == 0) return;
+        missing += lost;
+        ++gaps;
+        if (listed.size() < kMostGapsListed) listed.push_back({record.id, lost, record.cause});
+    }
+};
+
+/// Text of a file that may be anybody's, for a terminal.
+std::string plain(const std::string& text) {
+    return is_plain_text(text, false) ? text : "(not printable)";
+}
+
+std::string_view cause_of(const Gap& gap) {
+    // By damage of the file no cause is told.
+    return gap.cause == GapCause::kNone ? "damage"
+                                        : kGapCauseNames[static_cast<std::size_t>(gap.cause)];
+}
+
+ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames) {
+    const CameraDescription& camera = reader.session().camera;
+    const RecordingReport& report = reader.report();
+    ordered_json json{{"kind", "recording"},
+                      {"camera",
+                       {{"transport", camera.transport},
+                        {"vendor", camera.vendor},
+                        {"model", camera.model},
+                        {"serial", camera.serial}}},
+                      {"settings", ordered_json::object()},
+                      {"frames", report.frames},
+                      {"incomplete", frames.incomplete},
+                      {"missing_frames", frames.missing},
+                      {"gaps", ordered_json::array()},
+                      {"width", nullptr},
+                      {"height", nullptr},
+                      {"format", nullptr},
+                      {"frames_per_s", nullptr},
+                      {"end_reason", nullptr},
+                      {"complete", reader.end().has_value()},
+                      {"tail_bytes", report.tail_bytes},
+                      {"damaged_places", report.damage.size() + report.unlisted_damage}};
+    for (const auto& [name, value] : reader.session().settings) json["settings"][name] = value;
+    for (const Gap& gap : frames.listed)
+        json["gaps"].push_back(
+            {{"before_frame", gap.before_frame}, {"frames", gap.frames}, {"cause", cause_of(gap)}});
+    if (frames.first) {
+        json["width"] = frames.first->layout.width;
+        json["height"] = frames.first->layout.height;
+        json["format"] = frames.first->layout.format->name;
+    }
+    if (frames.rate.hz()) json["frames_per_s"] = *frames.rate.hz();
+    if (reader.end()) json["end_reason"] = reader.end()->reason;
+    return json;
+}
+
+std::string gaps_text(const FrameSummary& frames) {
+    if (frames.gaps == 0) return "missing      none";
+    std::string text =
+        fmt::format("missing      {} frames in {} places", frames.missing, frames.gaps);
+    for (std::size_t i = 0; i < std::min(frames.listed.size(), kMostGapsShown); ++i)
+        text += fmt::format("\n             {} before frame {}: {}", frames.listed[i].frames,
+                            frames.listed[i].before_frame, cause_of(frames.listed[i]));
+    if (frames.gaps > kMostGapsShown)
+        text += fmt::format("\n             and {} more", frames.gaps - kMostGapsShown);
+    return text;
+}
+
+std::string info_text(const RecordingReader& reader, const FrameSummary& frames) {
+    const CameraDescription& camera = reader.session().camera;
+    std::string text = fmt::format("camera       {}", plain(camera.transport));
+    for (const std::string& fact : {camera.vendor, camera.model, camera.serial})
+        if (!fact.empty()) text += fmt::format(", {}", plain(fact));
+    if (frames.first) {
+        const FrameLayout& layout = frames.first->layout;
+        text += fmt::format("\nframes       {} x {} (width x height) {}, {} of them", layout.width,
+                            layout.height, layout.format->name, reader.report().frames);
+        if (frames.incomplete > 0) text += fmt::format(", {} incomplete", frames.incomplete);
+        if (frames.rate.hz())
+            text += fmt::format("\nrate         {:.5g} per second", *frames.rate.hz());
+    } else {
+        text += "\nframes       none";
+    }
+    text.append(1, '\n').append(gaps_text(frames));
+    for (const auto& [name, value] : reader.session().settings)
+        text += fmt::format("\nsetting      {} = {}", plain(name), plain(value));
+    return text;
+}
+
+std::string condition_text(const RecordingReader& reader) {
+    if (reader.end()) return fmt::format("undamaged, complete ({})", plain(reader.end()->reason));
+    const RecordingReport& report = reader.report();
+    std::string text =
+        fmt::format("cut off, or still being written; {} frames are whole", report.frames);
+    if (report.tail_bytes > 0)
+        text += fmt::format(", {} bytes of the next one follow", report.tail_bytes);
+    return text;
+}
+
+}  // namespace
+
+void recording_info(const std::string& file, const RunOptions& run) {
+    RecordingReader reader(file);
+    JsonFile json(run);
+    FrameSummary frames;
+    CapturedFrame frame;
+    while (reader.next(frame)) {
+        throw_if_stopped();
+        frames.add(frame.record);
+    }
+    json.write(info_json(reader, frames));
+    run.say(info_text(reader, frames));
+    if (!reader.report().damage.empty()) throw InputError(file, joined(reader.faults()));
+    run.say(fmt::format("condition    {}{}", condition_text(reader), leftover_text(file)));
+}
+
+}  // namespace stipple

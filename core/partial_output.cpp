@@ -1,0 +1,91 @@
+#include "core/partial_output.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kMark = ".partial";
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// The name of a process; empty if there is none.
+std::string process_name(const std::string& process) {
+    std::ifstream file(fmt::format("/proc/{}/comm", process));
+    std::string name;
+    std::getline(file, name);
+    return name;
+}
+
+}  // namespace
+
+bool PartialOutput::running() const {
+    const std::string name = process_name(std::to_string(process));
+    return !name.empty() && name == process_name("self");
+}
+
+fs::path partial_path(const fs::path& final_path, int process) {
+    return folder_of(final_path) / fmt::format(".{}.{}{}{}", final_path.stem().string(), process,
+                                               kMark, final_path.extension().string());
+}
+
+std::optional<PartialOutput> partial_output(const fs::path& path) {
+    const std::string name = path.filename().string();
+    const auto mark = name.rfind(kMark);
+    if (!name.starts_with('.') || mark == std::string::npos || mark == 0) return std::nullopt;
+    const std::string extension = name.substr(mark + kMark.size());
+    if (!extension.empty() && extension.front() != '.') return std::nullopt;
+    const auto dot = name.rfind('.', mark - 1);
+    if (dot == std::string::npos || dot < 2) return std::nullopt;
+    PartialOutput found{path, path.parent_path() / (name.substr(1, dot - 1) + extension)};
+    const char* const end = name.data() + mark;
+    const auto [read_to, error] = std::from_chars(name.data() + dot + 1, end, found.process);
+    if (error != std::errc() || read_to != end || found.process < 1) return std::nullopt;
+    return found;
+}
+
+std::vector<PartialOutput> partial_outputs(const fs::path& folder) {
+    std::vector<PartialOutput> found;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (auto partial = partial_output(entry.path())) found.push_back(std::move(*partial));
+    std::ranges::sort(found, {}, &PartialOutput::path);
+    return found;
+}
+
+std::optional<fs::path> partial_of(const fs::path& final_path) {
+    std::error_code error;
+    std::optional<fs::path> newest;
+    for (const PartialOutput& partial : partial_outputs(folder_of(final_path)))
+        if (partial.final_path.filename() == final_path.filename() &&
+            (!newest ||
+             fs::last_write_time(partial.path, error) > fs::last_write_time(*newest, error)))
+            newest = partial.path;
+    return newest;
+}
+
+bool rename_to_free_name(const fs::path& from, const fs::path& to) {
+    if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+    if (errno == EEXIST) return false;
+    if (errno != EINVAL && errno != ENOSYS)
+        throw fs::filesystem_error("rename", std::error_code(errno, std::generic_category()));
+    // The file system does not know it: look first.
+    if (fs::exists(fs::symlink_status(to))) return false;
+    fs::rename(from, to);
+    return true;
+}
+
+}  // namespace stipple

@@ -1,0 +1,19 @@
+#include "decoder/saturated_samples.h"
+
+#include "core/exposure_schedule.h"
+
+namespace stipple {
+
+void SaturatedSamples::add(const SamplePacket& packet) {
+    if (packet.dn.empty()) return;  // dropped
+    const std::uint16_t* dn = packet.dn.data();
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        visit_due(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
+            const PixelResponse& response = responses_.at(row, col);
+            for (int plane = 0; plane < header_.shape.planes; ++plane)
+                if (response.saturated(*dn++)) ++saturated_;
+        });
+    samples_ += packet.dn.size();
+}
+
+}  // namespace stipple

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+#include "decoder/pixel_response.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// Counts the samples of packets that are only a lower bound, as PixelResponse tells.
+class SaturatedSamples {
+  public:
+    explicit SaturatedSamples(const StreamHeader& header)
+        : header_(header), responses_(header.calibration) {}
+
+    void add(const SamplePacket& packet);
+
+    [[nodiscard]] std::uint64_t samples() const { return samples_; }
+    [[nodiscard]] std::uint64_t saturated() const { return saturated_; }
+
+  private:
+    const StreamHeader& header_;
+    PixelResponses responses_;
+    std::uint64_t samples_ = 0;
+    std::uint64_t saturated_ = 0;
+};
+
+}  // namespace stipple
