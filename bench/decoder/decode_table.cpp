@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "apps/command_line.h"
-#include "apps/name_check.h"
+#include "apps/names_of.h"
 #include "apps/number_check.h"
 #include "core/npy_writer.h"
 #include "decoder/decode_options.h"
@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
         .split_at_commas();
     command.add_list("--methods", options.methods, "of `stipple decode` (all)")
         .split_at_commas()
-        .check(name_check(decode_method_from_name));
+        .one_of(names_of(decode_methods()));
     command.add_list("--set", options.settings, "METHOD.KEY=VALUE");
     command.add_option("--schedule", options.schedule, "of config/schedules (random)");
     command.add_option("--size", options.side_px, "side of the crop, pixels (96)")
