@@ -10,6 +10,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "capture/host_clock.h"
@@ -153,7 +154,7 @@ void CameraRecording::finish() {
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);
     if (writer_.totals().frames == 0)
         throw DeviceError(arguments_.camera.address,
-                          "no frame came; record for longer, or see `stipple capture doctor`");
+                          "no frame came; record for longer, or see \"stipple capture doctor\"");
 }
 
 nlohmann::ordered_json CameraRecording::json() const {
@@ -179,8 +180,8 @@ nlohmann::ordered_json CameraRecording::json() const {
 std::string CameraRecording::text() const {
     const RecordingEnd totals = writer_.totals();
     std::string text =
-        fmt::format("{}: {} frames, {:.1f} per second, {:.1f} MB", output_.final_path().string(),
-                    totals.frames, static_cast<double>(totals.frames) / seconds_,
+        fmt::format("{}: {}, {:.1f} per second, {:.1f} MB", output_.final_path().string(),
+                    counted(totals.frames, "frame"), static_cast<double>(totals.frames) / seconds_,
                     static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
     return fmt::format("{}\nlost: {}", text, lost_text(session_.totals()));

@@ -38,7 +38,7 @@ std::string rate_warning(double frames_hz, const SensorParams& sensor) {
     const double slots_hz = 1e6 / sensor.slot_us;
     if (frames_hz == 0 || std::abs(frames_hz / slots_hz - 1) <= kTolerance) return {};
     return fmt::format(
-        "the camera sends {:.4g} frames/s, but a slot of sensor '{}' takes {:g} us ({:.4g} a "
+        "the camera sends {:.4g} frames/s, but a slot of sensor \"{}\" takes {:g} us ({:.4g} a "
         "second): times in the stream are wrong. Set AcquisitionFrameRate={:.4g} of the camera, or "
         "slot_us={:.5g} of the sensor",
         frames_hz, sensor.name, sensor.slot_us, slots_hz, slots_hz, 1e6 / frames_hz);

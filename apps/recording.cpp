@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/account_text.h"
+#include "apps/number_text.h"
 
 namespace stipple {
 Recording::Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
@@ -67,12 +68,13 @@ std::string recording_text(const Recording& recording, double seconds) {
         fmt::format(", {:.2f} % of the samples saturated", 100 * recording.saturated_fraction());
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
-        "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
-        "light throughput {:.1f} %{}, {:.3g} slots/s",
-        stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
-        setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
+        "{} of {} x {} x {}, {} of {} bits{}\n"
+        "light throughput {:.1f} %{}, {} slots/s",
+        counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
+        counted(recording.samples(), "sample"), setup.params.bit_depth,
+        any ? per_sample : ": no exposure ended within the footage",
         100 * setup.schedule.schedule.light_throughput(), any ? saturated : "",
-        static_cast<double>(stats.slots) / seconds);
+        rounded(static_cast<double>(stats.slots) / seconds));
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));
     return text;

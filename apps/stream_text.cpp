@@ -118,8 +118,12 @@ std::string damage_text(const StreamReport& report) {
     constexpr std::size_t kMostPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
     const std::size_t listed = std::min(report.damage.size(), kMostPlaces);
-    std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
-                                   report.missing_slots, report.slots);
+    const bool only_cut_off = places == 0 && report.missing_slots == 0;
+    std::string text =
+        only_cut_off
+            ? fmt::format("the stream was cut off: its first {} slots are whole", report.slots)
+            : fmt::format("the stream is damaged; {} of {} slots are incomplete",
+                          report.missing_slots, report.slots);
     for (const StreamDamage& place : std::span(report.damage).first(listed))
         text += fmt::format("\n  byte {}: {}, {} bytes skipped", place.offset, place.cause,
                             place.bytes);
