@@ -1,5 +1,10 @@
+#include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "apps/camera_report.h"
 #include "apps/chart.h"

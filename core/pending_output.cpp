@@ -52,7 +52,7 @@ fs::path tidy(const fs::path& path, OutputKind kind) {
         throw InputError("output \"-\"", "standard output does not take it; give it a name");
     fs::path result = path.lexically_normal();
     std::error_code error;
-    if (!result.has_filename() && kind == OutputKind::kFile)
+    if (!result.empty() && !result.has_filename() && kind == OutputKind::kFile)
         throw InputError(fmt::format("output \"{}\"", path.string()),
                          fs::is_directory(result, error)
                              ? "is a folder; name a file in it"

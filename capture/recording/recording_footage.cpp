@@ -23,6 +23,7 @@ RecordingFootage::RecordingFootage(const std::filesystem::path& file,
                           : throw InputError(file.string(), "holds no frame that can be used")),
              options.black_level_dn) {
     to_hold_ = 0;  // nothing stands in for what came before the first frame
+    gaps_.clear();
 }
 
 bool RecordingFootage::advance() {

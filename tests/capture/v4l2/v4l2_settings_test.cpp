@@ -117,7 +117,7 @@ TEST(V4l2SettingsTest, TakesTheSizeAskedFor) {
 TEST(V4l2SettingsTest, RefusesSizesThatAreNone) {
     EmulatedV4l2 emulated;
     for (const char* const text : {"0", "-1", "65536", "99999999999999999999", "1e3", "", "8 "})
-        EXPECT_THAT(error_of<InputError>({{"Width", text}}), HasSubstr("Width: '")) << text;
+        EXPECT_THAT(error_of<InputError>({{"Width", text}}), HasSubstr("Width: \"")) << text;
 }
 
 TEST(V4l2SettingsTest, PlacesTheRegion) {
@@ -147,7 +147,7 @@ TEST(V4l2SettingsTest, SetsTheRateAndRefusesAnotherOne) {
                 HasSubstr("would send 60 frames/s instead of 200"));
     for (const char* const text : {"0", "-5", "nan", "inf", "fast"})
         EXPECT_THAT(error_of<InputError>({{"AcquisitionFrameRate", text}}),
-                    HasSubstr("AcquisitionFrameRate: '"));
+                    HasSubstr("AcquisitionFrameRate: \""));
 }
 
 TEST(V4l2SettingsTest, RefusesARateThatCannotBeSet) {
