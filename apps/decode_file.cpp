@@ -144,7 +144,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     options.stages = stages.sink();
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
     if (report.slots == 0)
-        throw_if_stopped("nothing is written, for the first 48 frames are decoded together");
+        throw_if_stopped("nothing is written, for frames are completed 48 at a time");
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();

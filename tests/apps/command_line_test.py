@@ -131,6 +131,13 @@ class CommandLineTest(ProgramTest):
         self.assertNotIn("\x1b", text)
         self.assertNotIn("[", text)
 
+    def test_a_warning_takes_the_place_of_the_bar(self):
+        self.succeed("capture", "record", f"replay:{self.write_flat('light.npy', 100)}", "-o", "cut.strec")
+        cut = self.folder / "cut.strec"
+        cut.write_bytes(cut.read_bytes()[:-10])
+        text = self.on_a_terminal("capture", "record", "replay:cut.strec", "-o", "again.strec")
+        self.assertRegex(text, r"recording \d+ frames[^\n]*\r\x1b\[Kstipple: cut\.strec: was cut off[^\n\x1b]*\r\n")
+
     def test_the_summary_stands_alone_in_its_line(self):
         text = self.on_a_terminal(*LONGER, "-o", "out.npy", stdout=True)
         self.assertIn(CLEAR + "out.npy: 9 frames", text)
