@@ -13,6 +13,7 @@
 #include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
@@ -149,6 +150,9 @@ void CameraRecording::finish() {
         output_.commit();
     else
         throw_if_stopped();
+    if (failure_ && output_.committed())
+        say_error("{}: {} kept", output_.final_path().string(),
+                  counted(writer_.totals().frames, "frame"));
     if (failure_) throw DeviceError(*failure_);
     if (bad_file_) throw InputError(*bad_file_);
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);

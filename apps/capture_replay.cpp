@@ -46,7 +46,7 @@ std::string gaps_text(const RecordingFootage& footage) {
     const auto& gaps = footage.gaps();
     for (std::size_t i = 0; i < std::min(gaps.size(), kMostPlaces); ++i)
         text += fmt::format("{}{} at slot {}", i == 0 ? "" : ", ", gaps[i].frames, gaps[i].slot);
-    if (gaps.size() > kMostPlaces) text += fmt::format(" and more (--json lists them)");
+    if (gaps.size() > kMostPlaces) text += ", and more (--json lists them)";
     return text;
 }
 

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "apps/number_text.h"
+
 namespace stipple {
 namespace {
 
@@ -120,10 +122,9 @@ std::string damage_text(const StreamReport& report) {
     const std::size_t listed = std::min(report.damage.size(), kMostPlaces);
     const bool only_cut_off = places == 0 && report.missing_slots == 0;
     std::string text =
-        only_cut_off
-            ? fmt::format("the stream was cut off: its first {} slots are whole", report.slots)
-            : fmt::format("the stream is damaged; {} of {} slots are incomplete",
-                          report.missing_slots, report.slots);
+        only_cut_off ? fmt::format("the stream was cut off after {}", counted(report.slots, "slot"))
+                     : fmt::format("the stream is damaged; {} of {} slots are incomplete",
+                                   report.missing_slots, report.slots);
     for (const StreamDamage& place : std::span(report.damage).first(listed))
         text += fmt::format("\n  byte {}: {}, {} bytes skipped", place.offset, place.cause,
                             place.bytes);

@@ -187,6 +187,7 @@ class RecordingTest(ProgramTest):
         self.assertIn("clip.strec: cannot be written: File too large", done.stderr)
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
         self.assertGreaterEqual(figures["slots"], 1)
+        self.assertRegex(done.stderr, rf"clip\.strec: {figures['slots']} frames? kept\n")
         np.testing.assert_array_equal(
             self.array("again.npy"), (self.dn / 65535).astype(np.float32)[:figures["slots"]])
 
