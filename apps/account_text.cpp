@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "apps/number_text.h"
+
 namespace stipple {
 namespace {
 
@@ -117,11 +119,11 @@ std::string account_text(const ReadoutAccount& account) {
         1e-6 * code_bits_per_second(account, static_cast<double>(account.slots()) / span_s));
     if (account.overruns() > 0)
         text += fmt::format(
-            "\noverruns     {} slots do not fit their {} clocks: {}", account.overruns(),
+            "\noverruns     {} longer than {} clocks: {}", counted(account.overruns(), "slot"),
             account.budget().clocks,
             account.budget().policy == OverrunPolicy::kDrop
                 ? fmt::format("{} samples dropped", totals.dropped_samples)
-                : "they are stretched; `--overrun drop` keeps the rate and gives up rows");
+                : "they are stretched; \"--overrun drop\" keeps the rate and gives up rows");
     return text;
 }
 

@@ -43,10 +43,11 @@ std::unique_ptr<Camera> open_picture_camera(const CameraArguments& arguments,
     if (is_replay(arguments))
         throw InputError(place,
                          "what was recorded is a coded stream, not pictures; record the camera "
-                         "anew with `stipple capture record --coded`");
-    throw InputError(place, fmt::format("the camera sends a coded stream, not pictures; write it "
-                                        "with `stipple capture record --coded {} -o FILE.stipple`",
-                                        arguments.address));
+                         "anew with \"stipple capture record --coded\"");
+    throw InputError(place,
+                     fmt::format("the camera sends a coded stream, not pictures; write it "
+                                 "with \"stipple capture record --coded {} -o FILE.stipple\"",
+                                 arguments.address));
 }
 
 bool is_replay(const CameraArguments& arguments) {

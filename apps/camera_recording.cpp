@@ -11,8 +11,10 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "apps/standard_error.h"
 #include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
@@ -153,12 +155,15 @@ void CameraRecording::finish() {
         output_.commit();
     else
         throw_if_stopped();
+    if (failure_ && output_.committed())
+        say_error("{}: {} kept", output_.final_path().string(),
+                  counted(writer_.totals().frames, "frame"));
     if (failure_) throw DeviceError(*failure_);
     if (bad_file_) throw InputError(*bad_file_);
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);
     if (writer_.totals().frames == 0)
         throw DeviceError(arguments_.camera.address,
-                          "no frame came; record for longer, or see `stipple capture doctor`");
+                          "no frame came; record for longer, or see \"stipple capture doctor\"");
 }
 
 nlohmann::ordered_json CameraRecording::json() const {
@@ -184,7 +189,8 @@ nlohmann::ordered_json CameraRecording::json() const {
 std::string CameraRecording::text() const {
     const RecordingEnd totals = writer_.totals();
     std::string text =
-        fmt::format("{}: {} frames{}, {:.1f} MB", output_.final_path().string(), totals.frames,
+        fmt::format("{}: {}{}, {:.1f} MB", output_.final_path().string(),
+                    counted(totals.frames, "frame"),
                     rate_.hz() ? fmt::format(", {:.1f} per second", *rate_.hz()) : "",
                     static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);

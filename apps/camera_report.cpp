@@ -81,21 +81,21 @@ std::string camera_text(const CameraReport& report) {
     if (report.configured) text += fmt::format("{:>12}{:>11}", "configured", "deviation");
     text += '\n';
     for (const Row& row : kRows) text += row_text(row, report);
-    const double zeros = report.evaluation.dark_zero_fraction;
-    if (zeros > kCutOff)
-        text += fmt::format(
-            "warning: {:.1f} % of the dark values are 0: the black level is too low, so the\n"
-            "converter cuts the dark noise off and the figures above are biased (of normal noise\n"
-            "around 0 it leaves the mean 0.40 sigma and the deviation 0.58 sigma). A black level "
-            "of\n"
-            "4 sigma is enough; the emulated sensor takes one in mode \"physical\".\n",
-            100 * zeros);
     text.pop_back();
     return text;
 }
 
-void draw_photon_transfer(const emva1288::Evaluation& evaluation,
-                          const std::filesystem::path& folder) {
+std::string bias_warning(const emva1288::Evaluation& evaluation) {
+    if (evaluation.dark_zero_fraction <= kCutOff) return {};
+    return fmt::format(
+        "{:.1f} % of the dark values are 0: the black level is too low, so the converter cuts the "
+        "dark noise off and the figures are biased (of normal noise around 0 it leaves the mean "
+        "0.40 sigma and the deviation 0.58 sigma). A black level of 4 sigma is enough; the "
+        "emulated sensor takes one in mode \"physical\"",
+        100 * evaluation.dark_zero_fraction);
+}
+
+std::vector<PhotonTransferChart> photon_transfer_charts(const emva1288::Evaluation& evaluation) {
     const auto& points = evaluation.transfer;
     const double saturation_dn = points[evaluation.saturation].mean_dn;
     std::string commands = "$points << END\n";
@@ -117,8 +117,11 @@ void draw_photon_transfer(const emva1288::Evaluation& evaluation,
         "linecolor rgb '#004080'\n",
         evaluation.figures.gain_dn_per_e, saturation_dn, saturation_dn, saturation_dn,
         evaluation.figures.gain_dn_per_e, 0.7 * saturation_dn);
-    for (const char* name : {"photon_transfer.png", "photon_transfer.svg"})
-        draw_chart(folder / name, {}, commands);
+    std::vector<PhotonTransferChart> charts;
+    for (const char* extension : {".png", ".svg"})
+        charts.push_back(
+            {std::string("photon_transfer") + extension, draw_chart(extension, {}, commands)});
+    return charts;
 }
 
 }  // namespace stipple

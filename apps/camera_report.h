@@ -1,9 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "emva1288/camera_figures.h"
 
@@ -18,11 +18,20 @@ struct CameraReport {
 /// The keys of `characterize` in docs/cli.md.
 [[nodiscard]] nlohmann::ordered_json camera_json(const CameraReport& report);
 
-/// A table of the figures, with a warning where they are biased.
+/// A table of the figures.
 [[nodiscard]] std::string camera_text(const CameraReport& report);
 
-/// Draws the photon transfer curve as photon_transfer.png and .svg. \throws DeviceError.
-void draw_photon_transfer(const emva1288::Evaluation& evaluation,
-                          const std::filesystem::path& folder);
+/// Says how the figures are biased; empty if they are not.
+[[nodiscard]] std::string bias_warning(const emva1288::Evaluation& evaluation);
+
+/// A chart as the content of a file.
+struct PhotonTransferChart {
+    std::string name;
+    std::string content;
+};
+
+/// The photon transfer curve as photon_transfer.png and .svg. \throws as draw_chart.
+[[nodiscard]] std::vector<PhotonTransferChart> photon_transfer_charts(
+    const emva1288::Evaluation& evaluation);
 
 }  // namespace stipple

@@ -6,6 +6,7 @@
 
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
+#include "apps/number_text.h"
 #include "capture/doctor/network_doctor.h"
 #include "capture/doctor/usb_findings.h"
 #include "capture/open_camera.h"
@@ -15,9 +16,10 @@
 namespace stipple {
 namespace {
 
+using Level = DoctorFinding::Level;
 constexpr std::array<const char*, 3> kLevels{"good", "warning", "problem"};
 
-const char* name_of(DoctorFinding::Level level) {
+const char* name_of(Level level) {
     return kLevels[static_cast<std::size_t>(level)];
 }
 
@@ -68,6 +70,9 @@ void doctor(const std::string& address, const RunOptions& run) {
     const std::vector<DoctorFinding> findings = examine(address);
     json.write(findings_json(findings));
     run.say(findings_text(findings));
+    const auto problems = std::ranges::count(findings, Level::kProblem, &DoctorFinding::level);
+    if (problems > 0)
+        throw DeviceError("capture doctor", fmt::format("found {}", counted(problems, "problem")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/capture_commands.h"
+#include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "capture/camera_listing.h"
 
@@ -32,7 +33,11 @@ std::string search_text(const CameraSearch& search) {
 
 void list(const RunOptions& run) {
     JsonFile json(run);
-    const CameraSearch search = list_cameras();
+    const CameraSearch search = [] {
+        const HeldSignals a_second;
+        return list_cameras();
+    }();
+    throw_if_stopped();
     json.write(search_json(search));
     run.say(search_text(search));
 }

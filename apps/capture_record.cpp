@@ -21,7 +21,7 @@ void add_capture_record(Command& capture, Action& action) {
     add_session_arguments(command, options->session);
     auto coded_flag = command.add_flag(
         "--coded", *coded,
-        "the samples of a camera of `capture serve --mode coded`, as `emulate` writes them");
+        "the samples of a camera of \"capture serve --mode coded\", as \"emulate\" writes them");
     for (const char* option : {"--incomplete", "--stall", "--no-reconnect"})
         coded_flag.excludes(command.option(option));
     command.footer(

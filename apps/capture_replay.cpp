@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/capture_commands.h"
@@ -7,8 +8,11 @@
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
 #include "apps/number_check.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
+#include "apps/standard_error.h"
 #include "capture/recording/recording_footage.h"
+#include "core/error.h"
 #include "core/frame_writer.h"
 
 namespace stipple {
@@ -22,18 +26,46 @@ struct ReplayOptions {
     double black_level_dn = 0;
 };
 
-void say_what_is_missing(const RecordingFootage& footage, std::int64_t slots,
-                         const std::string& file, const RunOptions& run) {
+constexpr std::size_t kMostPlaces = 10;  // that are told to people
+
+nlohmann::ordered_json figures_of(const RecordingFootage& footage, std::int64_t slots) {
     const RecordingReport& report = footage.recording().report();
-    std::string text = fmt::format("{}: {} slots, {} frames missing or incomplete, {} slots held",
-                                   file, slots, footage.missing_frames(), footage.held_slots());
-    for (const RecordingDamage& damage : report.damage)
-        text += fmt::format("\n! byte {}: {}, {} bytes skipped", damage.offset, damage.cause,
-                            damage.bytes);
-    if (report.unlisted_damage > 0)
-        text += fmt::format("\n! {} further places of damage", report.unlisted_damage);
-    if (!footage.recording().end()) text += "\n! the recording was cut off";
-    run.say(text);
+    auto gaps = nlohmann::ordered_json::array();
+    for (const auto& [slot, frames] : footage.gaps())
+        gaps.push_back({{"slot", slot}, {"frames", frames}});
+    return {{"slots", slots},
+            {"held_slots", footage.held_slots()},
+            {"missing_frames", footage.missing_frames()},
+            {"gaps", gaps},
+            {"damaged_places", report.damage.size() + report.unlisted_damage},
+            {"cut_off", !footage.recording().end()}};
+}
+
+/// Where frames are missing; empty if none is.
+std::string gaps_text(const RecordingFootage& footage) {
+    std::string text;
+    const auto& gaps = footage.gaps();
+    for (std::size_t i = 0; i < std::min(gaps.size(), kMostPlaces); ++i)
+        text += fmt::format("{}{} at slot {}", i == 0 ? "" : ", ", gaps[i].frames, gaps[i].slot);
+    if (gaps.size() > kMostPlaces) text += ", and more (--json lists them)";
+    return text;
+}
+
+/// Warns of what is missing. \throws InputError listing the damage, if there is any.
+void say_what_is_wrong(const std::string& file, const RecordingFootage& footage) {
+    const RecordingReport& report = footage.recording().report();
+    if (footage.missing_frames() > 0)
+        say_error("{}: {} missing or incomplete: {}", file,
+                  counted(footage.missing_frames(), "frame"), gaps_text(footage));
+    if (!footage.recording().end()) say_error("{}: was cut off before its end", file);
+    const std::size_t places = report.damage.size() + report.unlisted_damage;
+    if (places == 0) return;
+    std::string text = "the recording is damaged";
+    for (std::size_t i = 0; i < std::min(report.damage.size(), kMostPlaces); ++i)
+        text += fmt::format("\n  byte {}: {}, {} skipped", report.damage[i].offset,
+                            report.damage[i].cause, counted(report.damage[i].bytes, "byte"));
+    if (places > kMostPlaces) text += fmt::format("\n  and {} more", places - kMostPlaces);
+    throw InputError(file, text + "\n  the output is made of what is left");
 }
 
 void replay(const ReplayOptions& options, const RunOptions& run) {
@@ -49,13 +81,10 @@ void replay(const ReplayOptions& options, const RunOptions& run) {
         writer.write(frame);
     if (progress.done() == 0) throw_if_stopped();
     writer.finish();
-    const RecordingReport& report = footage.recording().report();
-    json.write({{"slots", progress.done()},
-                {"held_slots", footage.held_slots()},
-                {"missing_frames", footage.missing_frames()},
-                {"damaged_places", report.damage.size() + report.unlisted_damage},
-                {"cut_off", !footage.recording().end()}});
-    say_what_is_missing(footage, progress.done(), options.output, run);
+    json.write(figures_of(footage, progress.done()));
+    run.say(fmt::format("{}: {}, {} held for frames that are missing", options.output,
+                        counted(progress.done(), "slot"), footage.held_slots()));
+    if (stop_signal() == 0) say_what_is_wrong(options.recording, footage);
 }
 
 }  // namespace
@@ -63,7 +92,7 @@ void replay(const ReplayOptions& options, const RunOptions& run) {
 void add_capture_replay(Command& capture, Action& action) {
     Command command = capture.add_command("replay", "A recording as footage");
     const auto options = std::make_shared<ReplayOptions>();
-    command.add_option("RECORDING", options->recording, "file of `capture record`")
+    command.add_option("RECORDING", options->recording, "file of \"capture record\"")
         .required()
         .input();
     command.add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")

@@ -12,6 +12,7 @@
 #include "apps/number_check.h"
 #include "apps/sensor_arguments.h"
 #include "apps/served_source.h"
+#include "apps/session_report.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -45,7 +46,12 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     GigeServer server(*source, settings);
     fmt::print("{}\n", ready_text(*source, settings));
     std::fflush(stdout);
-    server.run([] { return stop_signal() != 0; });
+    std::string said;
+    server.run([&] {
+        if (const std::string warning = source->warning(); warning != said)
+            say_warning(said = warning);
+        return stop_signal() != 0;
+    });
     json.write(counts_json(server.counts()));
     throw_if_stopped();  // there is no output that could be shorter
 }
@@ -53,10 +59,12 @@ void serve(const ServeOptions& options, const RunOptions& run) {
 void add_source_arguments(Command& command, ServedSourceChoice& source) {
     command
         .add_option("SOURCE", source.path,
-                    "footage, or in mode frames a recording of `capture record`")
+                    "footage, or in mode frames a recording of \"capture record\"")
         .required()
         .input();
-    command.add_option("--mode", source.mode, "frames as they are, or the samples of a sensor")
+    command
+        .add_option("--mode", source.mode,
+                    "frames as they are (the default), or the samples of a sensor")
         .one_of({"frames", "coded"})
         .type_name("frames|coded");
     command

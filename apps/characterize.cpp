@@ -1,14 +1,24 @@
+#include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "apps/camera_report.h"
+#include "apps/chart.h"
 #include "apps/flat_field_series.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/sensor_setup.h"
+#include "apps/session_report.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
+#include "apps/text_file.h"
+#include "core/error.h"
 #include "core/pending_output.h"
 
 namespace stipple {
@@ -20,6 +30,14 @@ struct CharacterizeOptions {
     std::string output;      ///< folder; may be empty if there is a descriptor
 };
 
+bool is_chart_name(std::string_view name) {
+    return name == "photon_transfer.png" || name == "photon_transfer.svg";
+}
+
+bool is_series_name(std::string_view name) {
+    return is_chart_name(name) || name == kDescriptorName || is_series_image_name(name);
+}
+
 emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std::string& place,
                               const RunOptions& run) {
     Progress progress(run, "evaluating", {});
@@ -29,16 +47,38 @@ emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std
     });
 }
 
-void report(const CameraReport& camera, JsonFile& json, const RunOptions& run) {
+/// Draws the charts into the folder, as far as they can be. Returns how many there are; `failure`
+/// is why there are not more, unless that is that there is no gnuplot, which is a warning.
+std::size_t draw_charts(const emva1288::Evaluation& evaluation, const PendingOutput& folder,
+                        std::optional<DeviceError>& failure) {
+    std::size_t drawn = 0;
+    try {
+        for (const auto& [name, content] : photon_transfer_charts(evaluation)) {
+            write_whole(folder.partial() / name, (folder.final_path() / name).string(), content);
+            ++drawn;
+        }
+    } catch (const NoGnuplot& e) {
+        say_error("{}: no charts are drawn: {}", folder.final_path().string(), e.what());
+    } catch (const DeviceError& e) {
+        failure = e;
+    }
+    return drawn;
+}
+
+/// Tells the figures, and then what became of the charts.
+void report(const CameraReport& camera, const std::optional<DeviceError>& failure, JsonFile& json,
+            const RunOptions& run) {
     json.write(camera_json(camera));
     run.say(camera_text(camera));
+    say_warning(bias_warning(camera.evaluation));
+    if (failure) throw DeviceError(*failure);
 }
 
 void characterize_sensor(const CharacterizeOptions& options, const RunOptions& run) {
     SensorParams params = set_up_params(options.sensor);
     params.physical.cfa = ColourFilter::kNone;
     JsonFile json(run);
-    PendingOutput folder(options.output, run.force, OutputKind::kFolder);
+    PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
     {
         Progress progress(run, "photographing", kSeriesImages);
         photograph_series(params, options.sensor.seed, folder.partial(), [&] {
@@ -49,21 +89,21 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     const auto place = (folder.final_path() / kDescriptorName).string();
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, place, run),
                               configured_figures(params)};
-    draw_photon_transfer(camera.evaluation, folder.partial());
+    std::optional<DeviceError> failure;
+    draw_charts(camera.evaluation, folder, failure);
     folder.commit();
-    report(camera, json, run);
+    report(camera, failure, json, run);
 }
 
 void characterize_images(const CharacterizeOptions& options, const RunOptions& run) {
     JsonFile json(run);
     std::optional<PendingOutput> folder;
-    if (!options.output.empty()) folder.emplace(options.output, run.force, OutputKind::kFolder);
+    if (!options.output.empty())
+        folder.emplace(options.output, run.force, OutputKind::kFolder, is_chart_name);
     const CameraReport camera{evaluate(options.descriptor, options.descriptor, run), {}};
-    if (folder) {
-        draw_photon_transfer(camera.evaluation, folder->partial());
-        folder->commit();
-    }
-    report(camera, json, run);
+    std::optional<DeviceError> failure;
+    if (folder && draw_charts(camera.evaluation, *folder, failure) > 0) folder->commit();
+    report(camera, failure, json, run);
 }
 
 }  // namespace

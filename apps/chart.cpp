@@ -1,92 +1,101 @@
 #include "apps/chart.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
-
-#include "core/error.h"
+#include <utility>
 
 namespace stipple {
 namespace {
 
-struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
+constexpr const char* kGnuplot = "gnuplot";
+
+[[noreturn]] void fail(const std::string& problem) {
+    throw DeviceError(kGnuplot, problem);
+}
+
+/// A descriptor that is closed at the end.
+class Descriptor {
+  public:
+    explicit Descriptor(int descriptor) : descriptor_(descriptor) {
+        if (descriptor_ < 0) fail(strerror(errno));
+    }
+    ~Descriptor() { reset(); }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    void reset() {
+        if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+    }
+    [[nodiscard]] int get() const { return descriptor_; }
+
+  private:
+    int descriptor_;
 };
-using Scratch = std::unique_ptr<std::FILE, Closer>;
 
-/// A file without a name, gone when it is closed.
-Scratch scratch_file() {
-    Scratch file(std::tmpfile());
-    if (!file) throw DeviceError("gnuplot", "no temporary file: " + std::string(strerror(errno)));
-    return file;
+/// All that comes from here on.
+std::string read_all(const Descriptor& source) {
+    std::string text;
+    for (std::array<char, 65536> part;;) {
+        const auto bytes = read(source.get(), part.data(), part.size());
+        if (bytes < 0 && errno == EINTR) continue;
+        if (bytes < 0) fail(strerror(errno));
+        if (bytes == 0) return text;
+        text.append(part.data(), static_cast<std::size_t>(bytes));
+    }
 }
 
-std::string text_of(std::FILE* file) {
-    std::string text(4096, '\0');
-    std::rewind(file);
-    text.resize(std::fread(text.data(), 1, text.size(), file));
-    return text;
-}
-
-/// Runs gnuplot on what `script` holds; its words go to `log`. Returns its exit status.
-int run_gnuplot(std::FILE* script, std::FILE* log) {
+pid_t start_gnuplot(const Descriptor& script, const Descriptor& picture, const Descriptor& log) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(log), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(log), STDERR_FILENO);
-    std::string name = "gnuplot", no_start_file = "--default-settings";
+    posix_spawn_file_actions_adddup2(&actions, script.get(), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, picture.get(), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, log.get(), STDERR_FILENO);
+    std::string name = kGnuplot, no_start_file = "--default-settings";
     char* const arguments[] = {name.data(), no_start_file.data(), nullptr};
     pid_t child = 0;
     const int problem = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (problem != 0)
-        throw DeviceError("gnuplot", fmt::format("{}; charts need it: install the package "
-                                                 "gnuplot-nox",
-                                                 strerror(problem)));
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return status;
+        throw NoGnuplot(kGnuplot, fmt::format("{}; charts need it: install the package gnuplot-nox",
+                                              strerror(problem)));
+    return child;
 }
 
-std::string terminal_of(const std::filesystem::path& file, ChartSize size) {
-    const auto extension = file.extension();
-    if (extension == ".png")
-        return fmt::format("set terminal pngcairo size {},{} noenhanced font 'DejaVu Sans,11'\n",
-                           size.width, size.height);
-    if (extension == ".svg")
-        return fmt::format(
-            "set terminal svg size {},{} noenhanced background 'white' font 'DejaVu Sans,11'\n",
-            size.width, size.height);
-    throw InputError(file.string(), "a chart is a .png or a .svg");
-}
-
-/// gnuplot's single quotes: a quote within is written twice.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
+std::string terminal_of(std::string_view extension, ChartSize size) {
+    return fmt::format("set terminal {} size {},{} noenhanced {}font 'DejaVu Sans,11'\n",
+                       extension == ".svg" ? "svg" : "pngcairo", size.width, size.height,
+                       extension == ".svg" ? "background 'white' " : "");
 }
 
 }  // namespace
 
-void draw_chart(const std::filesystem::path& file, ChartSize size, const std::string& commands) {
-    const Scratch script = scratch_file();
-    const Scratch log = scratch_file();
-    const std::string text = terminal_of(file, size) + "set output " + quoted(file.string()) +
-                             "\n" + commands + "\nset output\n";
-    if (std::fwrite(text.data(), 1, text.size(), script.get()) != text.size() ||
-        std::fflush(script.get()) != 0 || fseek(script.get(), 0, SEEK_SET) != 0)
-        throw DeviceError("gnuplot", "no room for its commands: " + std::string(strerror(errno)));
-    if (run_gnuplot(script.get(), log.get()) != 0)
-        throw DeviceError(file.string(), "gnuplot failed: " + text_of(log.get()));
+// The picture comes through a pipe, for gnuplot does not notice where it cannot be written.
+std::string draw_chart(std::string_view extension, ChartSize size, const std::string& commands) {
+    const Descriptor script(memfd_create(kGnuplot, MFD_CLOEXEC));
+    const Descriptor log(memfd_create(kGnuplot, MFD_CLOEXEC));
+    const std::string text = terminal_of(extension, size) + commands + "\n";
+    if (pwrite(script.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
+        fail("there is no room for its commands");
+    std::array<int, 2> pipe{-1, -1};
+    static_cast<void>(pipe2(pipe.data(), O_CLOEXEC));
+    const Descriptor output(pipe[0]);
+    Descriptor input(pipe[1]);
+    const pid_t child = start_gnuplot(script, input, log);
+    input.reset();
+    std::string chart = read_all(output);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    lseek(log.get(), 0, SEEK_SET);
+    if (status != 0 || chart.empty()) fail(fmt::format("failed: {}", read_all(log)));
+    return chart;
 }
 
 }  // namespace stipple

@@ -1,9 +1,17 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
+#include <string_view>
+
+#include "core/error.h"
 
 namespace stipple {
+
+/// gnuplot cannot be run, which charts need.
+class NoGnuplot : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
 
 /// Size of a chart: pixels of a PNG, the same numbers in an SVG.
 struct ChartSize {
@@ -11,10 +19,10 @@ struct ChartSize {
     int height = 640;
 };
 
-/// Draws a chart with gnuplot. `commands` are gnuplot's (data in here-documents, `$points << END`);
-/// terminal and output are set here from the extension of `file`, .png or .svg.
-/// \throws InputError for another extension, DeviceError if gnuplot is not installed or fails, with
-/// what it said.
-void draw_chart(const std::filesystem::path& file, ChartSize size, const std::string& commands);
+/// The content of the file that gnuplot draws. `commands` are gnuplot's (data in here-documents,
+/// `$points << END`); terminal and output are set here from the `extension`, ".png" or ".svg".
+/// \throws NoGnuplot, DeviceError if it fails, with what it said.
+[[nodiscard]] std::string draw_chart(std::string_view extension, ChartSize size,
+                                     const std::string& commands);
 
 }  // namespace stipple

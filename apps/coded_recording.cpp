@@ -11,6 +11,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
+#include "apps/number_text.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
@@ -148,8 +149,9 @@ void record_coded_stream(const CameraRecordingArguments& arguments, const RunOpt
     json.write({{"slots", recorder.slots()},
                 {"missing_slots", recorder.missing()},
                 {"damaged_frames", recorder.damaged()}});
-    run.say(fmt::format("{}: {} slots, {} of them missing, {} frames damaged", arguments.output,
-                        recorder.slots(), recorder.missing(), recorder.damaged()));
+    run.say(fmt::format("{}: {}, {} of them missing, {} damaged", arguments.output,
+                        counted(recorder.slots(), "slot"), recorder.missing(),
+                        counted(recorder.damaged(), "frame")));
 }
 
 }  // namespace stipple

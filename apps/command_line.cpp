@@ -6,29 +6,34 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <system_error>
+
+#include "apps/standard_error.h"
+#include "apps/usage_problem.h"
+#include "core/suggestion.h"
 
 namespace stipple {
 namespace {
 
-/// The word of the command line that stands for a subcommand and is none, or null. CLI11 says of it
-/// only that a subcommand is missing.
-const char* unknown_subcommand(CLI::App& app, std::span<char* const> words) {
-    CLI::App* command = &app;
-    for (const char* word : words) {
-        const auto choices = command->get_subcommands({});
-        if (choices.empty() || word[0] == '-') return nullptr;
-        const auto chosen = std::ranges::find_if(
-            choices, [&](const CLI::App* choice) { return choice->check_name(word); });
-        if (chosen == choices.end()) return word;
-        command = *chosen;
-    }
-    return nullptr;
-}
-
 namespace fs = std::filesystem;
+
+/// The words, with --help for "help" in front of subcommands or alone behind one.
+std::vector<std::string> with_help(const CLI::App& program, std::vector<std::string> words) {
+    if (!words.empty() && words.front() == "help") {
+        words.erase(words.begin());
+        words.emplace_back("--help");
+    }
+    const CLI::App* command = &program;
+    for (std::string& word : words) {
+        const auto named = command->get_subcommands(
+            [&](const CLI::App* choice) { return choice->check_name(word); });
+        if (named.empty() && word == "help" && &word == &words.back()) word = "--help";
+        if (named.empty()) break;
+        command = named.front();
+    }
+    return words;
+}
 
 /// What the options given name, by the words of the command line.
 std::vector<std::pair<std::string, fs::path>> named_files(
@@ -36,8 +41,25 @@ std::vector<std::pair<std::string, fs::path>> named_files(
     std::vector<std::pair<std::string, fs::path>> files;
     for (const CLI::Option* option : options)
         for (const std::string& name : option->results())
-            if (name != "-" && !name.empty()) files.emplace_back(option->get_name(), name);
+            if (name != "-") files.emplace_back(option->get_name(), name);
     return files;
+}
+
+/// \throws UsageError for words that name no file where one is wanted.
+void check_names(const FileOptions& files) {
+    const auto check = [](const CLI::Option* option, const char* standard_stream) {
+        for (const std::string& name : option->results()) {
+            if (name.empty()) throw UsageError(option->get_name(), "is empty; name a file");
+            if (name == "-" && standard_stream != nullptr)
+                throw UsageError(option->get_name(), standard_stream);
+        }
+    };
+    for (const CLI::Option* option : files.inputs)
+        check(option, "\"-\" is no file; write /dev/stdin where a stream comes from a pipe");
+    for (const CLI::Option* option : files.outputs)
+        check(option, option->get_name() == "--json"
+                          ? nullptr
+                          : "\"-\" is no file; standard output does not take it, give it a name");
 }
 
 /// The file or folder that an input stands for: of a pattern the folder.
@@ -88,7 +110,11 @@ CommandOption& CommandOption::split_at_commas() {
 }
 
 CommandOption& CommandOption::one_of(const std::vector<std::string>& values) {
-    option_->check(CLI::IsMember(values));
+    option_->check([values](const std::string& value) {
+        return std::ranges::find(values, value) != values.end()
+                   ? std::string()
+                   : fmt::format("\"{}\" is unknown; {}", value, suggestion(value, values));
+    });
     return *this;
 }
 
@@ -191,12 +217,13 @@ std::vector<Command> Command::leaves() {
 CommandLine::CommandLine(const std::string& program, const std::string& text,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(text, program)) {
-    if (!version.empty()) app_->set_version_flag("--version", program + ' ' + version);
+    if (!version.empty()) app_->set_version_flag("-V,--version", program + ' ' + version);
 }
 
 CommandLine::~CommandLine() = default;
 
 void CommandLine::check_files() const {
+    check_names(files_);
     const auto inputs = named_files(files_.inputs);
     const auto outputs = named_files(files_.outputs);
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
@@ -217,20 +244,26 @@ void CommandLine::check_files() const {
 }
 
 CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
+    const std::vector<std::string> words = with_help(*app_, {argv + 1, argv + argc});
     try {
-        if (const char* word = unknown_subcommand(*app_, {argv + 1, argv + argc}))
-            throw CLI::ValidationError(
-                fmt::format("there is no subcommand \"{}\"; --help lists them", word));
+        if (const auto problem = unknown_subcommand(*app_, words); !problem.empty())
+            throw CLI::ValidationError(problem);
         try {
-            app_->parse(argc, argv);
+            app_->parse(std::vector(words.rbegin(), words.rend()));  // as CLI11 wants them
             check_files();
             return Parsed::kAction;
         } catch (const UsageError& e) {
             throw CLI::ValidationError(e.option(), e.what());
         }
+    } catch (const CLI::CallForHelp&) {
+        fmt::print("{}", app_->help());
+    } catch (const CLI::CallForVersion& version) {
+        fmt::print("{}\n", version.what());
     } catch (const CLI::ParseError& e) {
-        return app_->exit(e) == 0 ? Parsed::kHelp : Parsed::kWrong;
+        say_error(usage_problem(*app_, words, e));
+        return Parsed::kWrong;
     }
+    return Parsed::kHelp;
 }
 
 }  // namespace stipple

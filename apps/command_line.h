@@ -137,6 +137,7 @@ class CommandLine {
     enum class Parsed { kAction, kHelp, kWrong };
     /// Takes the command line apart and runs the callbacks of the subcommand that it names. Prints
     /// help and version where they are asked for, and what is wrong where something is.
+    /// \throws std::system_error if standard output cannot be written.
     [[nodiscard]] Parsed parse(int argc, char** argv);
 
   private:

@@ -25,12 +25,14 @@ struct CompareOptions {
 };
 
 [[noreturn]] void fail_shape(const CompareOptions& options, FrameShape result, FrameShape wanted) {
-    throw InputError(options.result,
-                     fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
-                                 "reference \"{}\" has {} x {} x {}{}",
-                                 result.rows, result.cols, result.planes, options.reference,
-                                 wanted.rows, wanted.cols, wanted.planes,
-                                 result.planes == wanted.planes ? "" : "; try --luminance"));
+    const bool same_size = result.rows == wanted.rows && result.cols == wanted.cols;
+    throw InputError(
+        options.result,
+        fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+                    "reference \"{}\" has {} x {} x {}{}",
+                    result.rows, result.cols, result.planes, options.reference, wanted.rows,
+                    wanted.cols, wanted.planes,
+                    same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
 /// Adds up all frames. \throws InputError if one video ends before the other.

@@ -5,19 +5,17 @@
 #include <string>
 
 #include "apps/decode_file.h"
-#include "apps/name_check.h"
+#include "apps/names_of.h"
 #include "apps/number_check.h"
 #include "apps/subcommands.h"
+#include "core/joined.h"
 #include "decoder/reconstruct.h"
 
 namespace stipple {
 namespace {
 
 std::string method_help() {
-    std::string names;
-    for (const NamedDecodeMethod& known : decode_methods())
-        names += fmt::format("{}{}", names.empty() ? "" : ", ", known.name);
-    return names + fmt::format(" ({})", DecodeArguments{}.method);
+    return fmt::format("{} ({})", joined(names_of(decode_methods())), DecodeArguments{}.method);
 }
 
 }  // namespace
@@ -33,7 +31,7 @@ void add_decode(Command& app, Action& action) {
         .required()
         .output();
     command.add_option("--method", options->method, method_help())
-        .check(name_check(decode_method_from_name))
+        .one_of(names_of(decode_methods()))
         .type_name("NAME");
     command
         .add_option("--options", options->options,
@@ -62,6 +60,7 @@ void add_decode(Command& app, Action& action) {
         .add_flag("--check-schedule", options->check_schedule,
                   "first see whether the samples follow the schedule, or which shift of it; "
                   "=fix goes on with that shift")
+        .type_name("[=fix]")
         .one_of({"true", "fix"});
     command.footer(
         "Examples:\n"
@@ -70,7 +69,9 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    command.callback([options, &action] {
+    command.callback([command, options, &action] {
+        if (!options->follow)
+            command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
         action = [options](const RunOptions& run) { decode_file(*options, run); };
     });
 }

@@ -13,6 +13,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
 #include "apps/stage_outputs.h"
@@ -68,14 +69,16 @@ DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, F
     std::optional<std::int64_t> total = reader.slots();
     if (arguments.until > 0) total = std::min(total.value_or(arguments.until), arguments.until);
     Progress progress(run, "decoding", total);
+    std::int64_t written = 0;
     return decode(
         reader, options,
         [&](std::int64_t slot, std::span<const float> frame) {
             writer.write(frame);
-            return slot + 1 != arguments.until && stop_signal() == 0;
+            written = slot + 1;
+            return written != arguments.until && stop_signal() == 0;
         },
         [&](double slots) {
-            progress.reach(slots);
+            progress.reach(slots, written);
             return stop_signal() == 0;
         });
 }
@@ -94,11 +97,11 @@ void warn(std::string_view end, const DecodeReport& report, const DecodeArgument
     if (end == "timeout")
         say_error(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
-            "if it ended here, after {} slots",
-            arguments.stream, follower.timeout_s(), report.slots);
+            "if it ended here, after {}",
+            arguments.stream, follower.timeout_s(), counted(report.slots, "slot"));
     else if (end == "stream" && arguments.until > 0)
-        say_error("{}: ends after {} slots, before --until {}", arguments.stream, report.slots,
-                  arguments.until);
+        say_error("{}: ends after {}, before --until {}", arguments.stream,
+                  counted(report.slots, "slot"), arguments.until);
 }
 
 /// NaN without a sample.
@@ -148,7 +151,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
     options.stages = stages.sink();
     const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
-    if (report.slots == 0) throw_if_stopped();
+    if (report.slots == 0)
+        throw_if_stopped("nothing is written, for frames are completed 48 at a time");
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();
@@ -158,9 +162,10 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
     json.write(figures);
     warn(end, report, arguments, follower);
-    run.say(fmt::format("{}: {} frames, method {}, {:.3g} s, {:.3g} voxels/s, {} MB{}",
-                        arguments.output, report.slots, arguments.method, report.seconds,
-                        figures["voxels_per_second"].get<double>(), peak_memory_bytes() / 1000000,
+    run.say(fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments.output,
+                        counted(report.slots, "frame"), arguments.method, rounded(report.seconds),
+                        rounded(1e-6 * figures["voxels_per_second"].get<double>()),
+                        peak_memory_bytes() / 1000000,
                         report.samples == 0 ? ""
                                             : fmt::format(", {:.2f} % of the samples saturated",
                                                           100 * saturated_fraction(report))));

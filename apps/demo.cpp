@@ -6,7 +6,7 @@
 
 #include "apps/demo_trials.h"
 #include "apps/json_file.h"
-#include "apps/name_check.h"
+#include "apps/names_of.h"
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
 #include "apps/trial.h"
@@ -89,7 +89,7 @@ void add_demo(Command& app, Action& action) {
         .type_name("DIR")
         .output();
     command.add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
-        .check(name_check(scene_from_name))
+        .one_of(names_of(scenes()))
         .type_name("NAME");
     add_scene_arguments(command, options->rendering);
     command.footer(

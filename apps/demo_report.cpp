@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/quality_json.h"
@@ -25,24 +27,29 @@ nlohmann::ordered_json trials_json(const std::vector<TrialResult>& results) {
 std::string trials_table(const std::vector<TrialResult>& results) {
     constexpr auto kLine = "{:<16}{:>13}{:>9}{:>9}{:>10}{:>10}{:>10}{:>8}\n";
     const auto number = [](double value, int digits) {
-        return fmt::format("{:.{}f}", value, digits);
+        return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
     };
     std::string text = fmt::format(kLine, "", "compression", "Mbit", "Mbit/s", "PSNR dB",
                                    "gamma dB", "PU21 dB", "SSIM");
     for (const TrialResult& result : results)
-        text +=
-            fmt::format(kLine, result.name, number(result.size.compression_ratio, 2) + " : 1",
-                        number(static_cast<double>(result.size.payload_bits) / 1e6, 1),
-                        number(result.size.megabits_per_second, 1),
-                        number(result.quality.psnr_db, 2), number(result.quality.psnr_gamma_db, 2),
-                        number(result.quality.pu21_psnr_db, 2), number(result.quality.ssim, 3));
-    const RecordingSize& size = results.front().size;
+        text += fmt::format(
+            kLine, result.name,
+            result.size.payload_bits > 0 ? number(result.size.compression_ratio, 2) + " : 1"
+                                         : "no sample",
+            number(static_cast<double>(result.size.payload_bits) / 1e6, 1),
+            number(result.size.megabits_per_second, 1), number(result.quality.psnr_db, 2),
+            number(result.quality.psnr_gamma_db, 2), number(result.quality.pu21_psnr_db, 2),
+            number(result.quality.ssim, 3));
+    const auto read = std::ranges::find_if(
+        results, [](const TrialResult& result) { return result.size.payload_bits > 0; });
+    if (read != results.end())
+        text += fmt::format("Every pixel read in every slot would be {:.1f} Mbit/s. ",
+                            read->size.megabits_per_second * read->size.compression_ratio);
     return text + fmt::format(
-                      "Every pixel read in every slot would be {:.1f} Mbit/s. Light is "
-                      "compared up to {:.1f}.\n"
-                      "Decoded by the method fast; `stipple decode` alone takes best, which is "
+                      "Light is compared up to {:.1f}.\n"
+                      "Decoded by the method fast; \"stipple decode\" alone takes best, which is "
                       "slower and better.",
-                      size.megabits_per_second * size.compression_ratio, kBrightestLight);
+                      kBrightestLight);
 }
 
 }  // namespace stipple

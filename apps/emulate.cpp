@@ -87,7 +87,8 @@ void add_emulate(Command& app, Action& action) {
     add_sensor_arguments(command, options->sensor);
     add_footage_arguments(command, options->reading);
     add_max_value(command, options->reading.max_value);
-    command.add_option("--truth", options->truth, "write the light that was emulated, as `decode`")
+    command
+        .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
         .type_name("OUT")
         .output();
     add_waveform_arguments(command, options->waveform);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
+#include <charconv>
 #include <vector>
 
+#include "apps/text_file.h"
 #include "core/dn_image.h"
 #include "core/error.h"
-#include "core/output_file.h"
 #include "readout/coded_sensor.h"
 
 namespace stipple {
@@ -70,10 +70,17 @@ class Bench {
 
 }  // namespace
 
+bool is_series_image_name(std::string_view name) {
+    int image = 0;
+    const auto [end, error] = std::from_chars(name.data() + std::min<std::size_t>(name.size(), 6),
+                                              name.data() + name.size(), image);
+    return error == std::errc() && name == fmt::format("image_{:04}.png", image);
+}
+
 void photograph_series(const SensorParams& params, std::uint64_t seed,
                        const std::filesystem::path& folder, const std::function<void()>& advance) {
     if (!params.physical.transmittance.empty() || !params.physical.gain_map.empty())
-        throw InputError(fmt::format("sensor '{}'", params.name),
+        throw InputError(fmt::format("sensor \"{}\"", params.name),
                          "has pixels of unequal transmittance or gain, which EMVA 1288 does not "
                          "know; set transmittance=[] and gain_map=[]");
     Bench bench(params, seed, folder, advance);
@@ -85,9 +92,7 @@ void photograph_series(const SensorParams& params, std::uint64_t seed,
     bench.photograph(0, kStack);
     const std::string text = series_text(bench.series());
     const auto descriptor = folder / kDescriptorName;
-    OutputFile output(descriptor, descriptor.string());
-    output.write(std::as_bytes(std::span(text)));
-    output.close();
+    write_whole(descriptor, descriptor.string(), text);
 }
 
 }  // namespace stipple

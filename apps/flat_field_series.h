@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "emva1288/camera_figures.h"
 #include "emva1288/series.h"
@@ -16,6 +17,9 @@ inline constexpr int kSeriesImages = 2 + 2 * 50 + 100 + 100;
 
 /// Name of the descriptor in the folder of a series.
 inline constexpr const char* kDescriptorName = "emva1288_data.txt";
+
+/// Whether an image of a series may have this name: image_0001.png ...
+[[nodiscard]] bool is_series_image_name(std::string_view name);
 
 /// Photographs a uniformly lit field of 320 x 240 pixels with the emulated sensor: one slot an
 /// image, the whole array read in each. A colour filter array is left off. Images are 16-bit PNG

@@ -33,7 +33,8 @@ std::int64_t now_ms() {
 
 /// Ends the program as the signal does to programs that do not catch it.
 void end_at_once(int signal) {
-    write_error_text("\nstipple: stopped at once\n");
+    if (!clear_bar()) write_error_text("\n");  // a terminal has shown ^C
+    write_error_text("stipple: stopped at once\n");
     visit_partial_outputs([](const char* path) {
         write_error_text("stipple: what was written so far: ");
         write_error_text(path);
@@ -50,8 +51,9 @@ void on_stop_signal(int signal) {
     int none = 0;
     if (received_signal.compare_exchange_strong(none, signal)) {
         received_ms = now_ms();
+        if (!clear_bar()) write_error_text("\n");
         write_error_text(
-            "\nstipple: stopping when this step is done; a second Ctrl-C stops at once\n");
+            "stipple: stopping when this step is done; a second Ctrl-C stops at once\n");
     } else if (now_ms() - received_ms > kSameWishMs) {
         end_at_once(signal);
     }
@@ -85,8 +87,19 @@ int stop_signal() noexcept {
     return received_signal.load();
 }
 
-void throw_if_stopped() {
-    if (stop_signal() != 0) throw Interrupted();
+void throw_if_stopped(std::string_view left) {
+    if (stop_signal() != 0) throw Interrupted{left};
+}
+
+HeldSignals::HeldSignals() {
+    sigset_t stop;
+    sigemptyset(&stop);
+    for (const int signal : kStopSignals) sigaddset(&stop, signal);
+    pthread_sigmask(SIG_BLOCK, &stop, &before_);
+}
+
+HeldSignals::~HeldSignals() {
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 }  // namespace stipple

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <csignal>
+#include <string_view>
+
 namespace stipple {
 
 /// Thrown where a run that was asked to stop has nothing worth keeping.
-struct Interrupted {};
+struct Interrupted {
+    std::string_view left;  ///< what the run leaves, for the message; may be empty
+};
 
 /// From here on the first SIGINT, SIGTERM or SIGHUP only asks loops to stop, so that they finish
 /// their output as a shorter one; reads that wait are interrupted (EINTR). Half a second later a
@@ -18,7 +23,20 @@ void occupy_standard_streams();
 /// The signal that asked to stop, or 0.
 [[nodiscard]] int stop_signal() noexcept;
 
-/// \throws Interrupted if a signal asked to stop.
-void throw_if_stopped();
+/// \throws Interrupted if a signal asked to stop. `left` is a literal.
+void throw_if_stopped(std::string_view left = {});
+
+/// While it lives, the signals that `catch_signals` catches wait: for libraries that take a poll()
+/// that one interrupts for a fault.
+class HeldSignals {
+  public:
+    HeldSignals();
+    ~HeldSignals();
+    HeldSignals(const HeldSignals&) = delete;
+    HeldSignals& operator=(const HeldSignals&) = delete;
+
+  private:
+    sigset_t before_{};
+};
 
 }  // namespace stipple

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 
-#include "core/output_file.h"
+#include "apps/text_file.h"
 
 namespace stipple {
 
@@ -22,11 +20,7 @@ void JsonFile::write(const nlohmann::ordered_json& figures) {
     const std::string text =
         figures.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
     if (to_stdout_) fmt::print("{}", text);
-    if (!output_) return;
-    OutputFile file(output_->partial(), output_->final_path().string());
-    file.write(std::as_bytes(std::span(text)));
-    file.close();
-    output_->commit();
+    if (output_) write_text(*output_, text);
 }
 
 }  // namespace stipple

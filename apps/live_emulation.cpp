@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/interrupt.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
 #include "apps/session_report.h"
@@ -167,10 +168,11 @@ nlohmann::ordered_json LiveEmulation::json() const {
 
 std::string LiveEmulation::text() const {
     std::string text = fmt::format(
-        "{}\n{} frames, {} slots late (more than {} slots), {} held for frames that are missing\n"
+        "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing\n"
         "lost: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
-        recording_text(recording_, slots_per_s()), latencies_us_.size(), late_slots_,
+        arguments_.output, recording_text(recording_, slots_per_s()),
+        counted(latencies_us_.size(), "frame"), counted(late_slots_, "slot"),
         arguments_.late_after_slots, held_slots_, lost_text(totals_),
         sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
         sorted_quantile(latencies_us_, 1) * 1e-3);

@@ -27,7 +27,7 @@ constexpr auto kExamples =
     "  stipple emulate scene -o clip.stipple             through the sensor\n"
     "  stipple decode clip.stipple -o decoded            back to video\n"
     "  stipple compare decoded scene --max-value 2       how good it is\n"
-    "\"stipple SUBCOMMAND --help\" says more. Exit codes: 0 done, 1 an input cannot be used,\n"
+    "\"stipple help SUBCOMMAND\" says more. Exit codes: 0 done, 1 an input cannot be used,\n"
     "2 wrong command line, 3 an output or device failed, 130 and 143 stopped by Ctrl-C or SIGTERM\n"
     "(outputs are then complete files of fewer frames).";
 
@@ -50,8 +50,8 @@ int run(const Action& action, const RunOptions& options) {
     } catch (const InputError& e) {
         // An input that a signal has cut short is none to complain of.
         return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
-    } catch (const Interrupted&) {
-        return fail(signal_code(), "stopped");
+    } catch (const Interrupted& e) {
+        return fail(signal_code(), e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
     } catch (const std::bad_alloc&) {
         return fail(kDevice, "not enough memory");
     } catch (const std::exception& e) {
@@ -72,12 +72,13 @@ int main(int argc, char** argv) {
     Command root = line.root();
     root.footer(kExamples);
     for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_recover,
-                           add_schedule, add_timing, add_characterize, add_capture, add_demo})
+                           add_schedule, add_timing, add_characterize, add_capture, add_demo,
+                           add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, options);
     switch (line.parse(argc, argv)) {
         case CommandLine::Parsed::kHelp:
-            return kOk;
+            return run([](const RunOptions&) {}, options);  // standard output may be a full disk
         case CommandLine::Parsed::kWrong:
             return kUsage;
         case CommandLine::Parsed::kAction:

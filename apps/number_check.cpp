@@ -10,10 +10,11 @@ namespace stipple {
 namespace {
 
 template <typename Number>
-std::optional<Number> number_of(const std::string& text) {
+std::optional<Number> number_of(const std::string& text, bool* too_large = nullptr) {
     Number value{};
     const char* const end = text.data() + text.size();
     const auto parsed = std::from_chars(text.data(), end, value);
+    if (too_large != nullptr) *too_large = parsed.ec == std::errc::result_out_of_range;
     if (parsed.ec != std::errc() || parsed.ptr != end) return {};
     return value;
 }
@@ -21,8 +22,10 @@ std::optional<Number> number_of(const std::string& text) {
 template <typename Number>
 ValueCheck range_check(std::string kind, Number least, Number most) {
     return [=](const std::string& text) -> std::string {
-        const auto value = number_of<Number>(text);
+        bool too_large = false;
+        const auto value = number_of<Number>(text, &too_large);
         if (value && *value >= least && *value <= most) return {};
+        if (too_large) return fmt::format("\"{}\" is too large; {} is the most", text, most);
         if (most == std::numeric_limits<Number>::max())
             return fmt::format("\"{}\" is not {} of {} or more", text, kind, least);
         return fmt::format("\"{}\" is not {} from {} to {}", text, kind, least, most);

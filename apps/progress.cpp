@@ -2,13 +2,18 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <condition_variable>
+#include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <string_view>
 #include <utility>
 
+#include "apps/number_text.h"
 #include "apps/standard_error.h"
 
 namespace stipple {
@@ -16,14 +21,27 @@ namespace {
 
 constexpr std::chrono::milliseconds kBarEvery{100};
 constexpr std::chrono::seconds kLineEvery{5};
+constexpr std::size_t kShortestBar = 8;
+constexpr std::size_t kLongestBar = 24;
+
+/// Whether standard error is a terminal on which a line can be written over.
+bool can_show_bar() {
+    const char* const terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) != 0 &&
+           (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
+}
+
+/// Characters that a line of the terminal takes without a break.
+std::size_t terminal_columns() {
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 79;
+    return size.ws_col - std::size_t{1};
+}
 
 }  // namespace
 
 Progress::Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total)
-    : task_(std::move(task)),
-      total_(total),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      start_(Clock::now()) {
+    : task_(std::move(task)), total_(total), terminal_(can_show_bar()), start_(Clock::now()) {
     if (!run.quiet) display_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
 }
 
@@ -38,8 +56,9 @@ double Progress::seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-void Progress::reach(double frames) {
+void Progress::reach(double frames, std::int64_t complete) {
     done_ = frames;
+    complete_ = complete;
     done_at_s_ = seconds();
 }
 
@@ -50,28 +69,39 @@ void Progress::show(const std::stop_token& stop) const {
     std::condition_variable_any stopped;
     const auto never = [] { return false; };
     while (stopped.wait_for(lock, stop, interval, never), !stop.stop_requested()) {
-        terminal_ ? show_bar(line()) : write_error_text(line() + '\n');
+        terminal_ ? show_bar(line(terminal_columns())) : write_error_text(line(1000) + '\n');
     }
 }
 
-std::string Progress::line() const {
-    const double exact = done_;
-    const auto done = static_cast<std::int64_t>(exact);
-    const double rate = exact > 0 ? exact / done_at_s_ : 0;
-    const std::string rate_text = exact > 0 ? fmt::format(", {:.3g} frames/s", rate) : "";
-    if (!total_ || *total_ < done) return fmt::format("{} {} frames{}", task_, done, rate_text);
-    std::string text = task_ + ' ';
-    if (terminal_) {
-        constexpr std::int64_t kWidth = 24;
-        const auto filled = static_cast<std::size_t>(kWidth * done / *total_);
-        text += fmt::format("[{:-<{}}] ", std::string(filled, '#'), kWidth);
-    }
-    text += fmt::format("{}/{} frames{}", done, *total_, rate_text);
-    if (rate == 0) return text;
-    const double left_s = done_at_s_ + (static_cast<double>(*total_) - exact) / rate - seconds();
+std::string Progress::line(std::size_t columns) const {
+    const std::int64_t complete = complete_;
+    const bool known = total_ && *total_ >= complete;
+    const std::string counter =
+        known ? fmt::format("{}/{} frames", complete, *total_) : counted(complete, "frame");
+    const std::string text = fmt::format("{}{}", counter, pace());
+    const std::size_t length = task_.size() + 1 + text.size();
+    if (length > columns) return counter.substr(0, columns);
+    const std::size_t room = columns - length;
+    if (!terminal_ || !known || room < kShortestBar + 3) return task_ + ' ' + text;
+    return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kLongestBar)), text);
+}
+
+std::string Progress::bar(std::size_t width) const {
+    const double part = std::min(done_ / static_cast<double>(*total_), 1.0);
+    const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
+    return fmt::format("{:-<{}}", std::string(filled, '#'), width);
+}
+
+std::string Progress::pace() const {
+    const double done = done_;
+    if (done <= 0) return {};
+    const double rate = done / done_at_s_;
+    const std::string text = fmt::format(", {} frames/s", rounded(rate));
+    if (!total_) return text;
+    const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();
     if (left_s < 0) return text;  // this step takes longer than those before it
-    const std::chrono::seconds left(static_cast<std::int64_t>(left_s));
-    return text + fmt::format(", {:%T} left", left);
+    return text +
+           fmt::format(", {:%T} left", std::chrono::seconds(static_cast<std::int64_t>(left_s)));
 }
 
 }  // namespace stipple

@@ -25,23 +25,29 @@ class Progress {
 
     /// One more frame is done.
     void advance() { reach(static_cast<double>(done_) + 1); }
-    /// So many frames are done, the last one perhaps in part.
-    void reach(double frames);
+    /// So much work is done, in frames; `complete` of them are, and would be kept if it ended now.
+    void reach(double frames, std::int64_t complete);
+    void reach(double frames) { reach(frames, static_cast<std::int64_t>(frames)); }
 
-    [[nodiscard]] std::int64_t done() const { return static_cast<std::int64_t>(done_); }
+    [[nodiscard]] std::int64_t done() const { return complete_; }
     /// Since the construction.
     [[nodiscard]] double seconds() const;
 
   private:
     using Clock = std::chrono::steady_clock;
     void show(const std::stop_token& stop) const;
-    [[nodiscard]] std::string line() const;
+    /// Fits into `columns`.
+    [[nodiscard]] std::string line(std::size_t columns) const;
+    [[nodiscard]] std::string bar(std::size_t width) const;
+    /// Rate and time left, as far as they are known.
+    [[nodiscard]] std::string pace() const;
 
     std::string task_;
     std::optional<std::int64_t> total_;
     bool terminal_;
     Clock::time_point start_;
     std::atomic<double> done_ = 0;
+    std::atomic<std::int64_t> complete_ = 0;
     std::atomic<double> done_at_s_ = 0;  ///< when `done_` was last set
     std::jthread display_;               ///< last: it reads the others
 };

@@ -23,7 +23,7 @@ std::optional<double> other_rate(const FrameRate& frames, const SensorParams& se
 }
 
 std::string slot_text(const SensorParams& sensor) {
-    return fmt::format("a slot of sensor '{}' takes {:g} us ({:.4g} a second)", sensor.name,
+    return fmt::format("a slot of sensor \"{}\" takes {:g} us ({:.4g} a second)", sensor.name,
                        sensor.slot_us, 1e6 / sensor.slot_us);
 }
 

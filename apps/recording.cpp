@@ -6,6 +6,7 @@
 
 #include "apps/account_text.h"
 #include "apps/leftovers.h"
+#include "apps/number_text.h"
 #include "readout/light_account.h"
 
 namespace stipple {
@@ -82,12 +83,13 @@ std::string recording_text(const Recording& recording, std::optional<double> slo
         fmt::format(", {:.2f} % of the samples saturated", 100 * recording.saturated_fraction());
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
-        "{} slots of {} x {} x {}, {} samples of {} bits{}\n"
+        "{} of {} x {} x {}, {} of {} bits{}\n"
         "light throughput {:.1f} %, {:.1f} % read within the clip{}{}",
-        stats.slots, setup.shape.cols, setup.shape.rows, setup.shape.planes, recording.samples(),
-        setup.params.bit_depth, any ? per_sample : ": no exposure ended within the footage",
+        counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
+        counted(recording.samples(), "sample"), setup.params.bit_depth,
+        any ? per_sample : ": no exposure ended within the footage",
         100 * recording.light_throughput(), 100 * recording.light_read(), any ? saturated : "",
-        slots_per_s ? fmt::format(", {:.3g} slots/s", *slots_per_s) : "");
+        slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
     if (const ReadoutAccount* account = recording.account())
         text.append(1, '\n').append(account_text(*account));
     return text;

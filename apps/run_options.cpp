@@ -6,11 +6,14 @@
 
 #include "apps/command_line.h"
 #include "apps/number_check.h"
+#include "apps/standard_error.h"
 
 namespace stipple {
 
 void RunOptions::say(std::string_view text) const {
-    if (!quiet && json != "-") fmt::print("{}\n", text);
+    if (quiet || json == "-") return;
+    clear_bar();
+    fmt::print("{}\n", text);
 }
 
 void add_run_options(Command& command, RunOptions& run) {

@@ -10,6 +10,12 @@ void add_schedule(Command& app, Action& action) {
     for (const auto add : {add_schedule_make, add_schedule_show, add_schedule_check,
                            add_schedule_compile, add_schedule_import})
         add(command, action);
+    command.footer(
+        "Examples:\n"
+        "  stipple schedule show two_bucket\n"
+        "  stipple schedule check tiled --sensor lux1310 --size 1280x1024\n"
+        "  stipple schedule compile tiled -o tiled.mem\n"
+        "\"stipple list schedules\" lists their names.");
 }
 
 }  // namespace stipple

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "apps/chart.h"
+#include "apps/text_file.h"
 #include "core/error.h"
-#include "core/pending_output.h"
 
 namespace stipple {
 namespace {
@@ -129,8 +129,8 @@ void draw_schedule(const std::filesystem::path& file, bool force, const Schedule
     for (std::size_t i = 0; i < diagram.pixels.size(); ++i) add_pixel(drawing, diagram, i);
     PendingOutput pending(file, force);
     const int height = 140 + 34 * static_cast<int>(diagram.pixels.size());
-    draw_chart(pending.partial(), {.width = 1000, .height = height}, commands_of(diagram, drawing));
-    pending.commit();
+    write_text(pending, draw_chart(file.extension().string(), {.width = 1000, .height = height},
+                                   commands_of(diagram, drawing)));
 }
 
 }  // namespace stipple

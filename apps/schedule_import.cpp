@@ -23,6 +23,13 @@ struct ImportOptions {
     int period_slots = 0;
 };
 
+constexpr std::size_t kMostNameBytes = 64;  // a stream's header has room for no more
+
+std::string check_name(const std::string& name) {
+    if (name.size() <= kMostNameBytes) return {};
+    return fmt::format("has {} bytes; {} is the most", name.size(), kMostNameBytes);
+}
+
 void import(const ImportOptions& options, const RunOptions& run) {
     if (options.period_slots > 0 && !options.lengths)
         throw InputError("--period", "goes with --lengths; masks have one slot per layer");
@@ -31,7 +38,7 @@ void import(const ImportOptions& options, const RunOptions& run) {
         options.lengths ? lengths_schedule(volume, options.period_slots, options.volume)
                         : mask_schedule(volume, options.volume);
     const std::string stem = std::filesystem::path(options.output).stem().string();
-    const std::string name = (options.name.empty() ? stem : options.name).substr(0, 64);
+    const std::string name = (options.name.empty() ? stem : options.name).substr(0, kMostNameBytes);
     JsonFile json(run);
     write_text_file(options.output, run.force, code_text(schedule, name));
     const ScheduleFigures figures =
@@ -63,7 +70,9 @@ void add_schedule_import(Command& schedule, Action& action) {
                     "with --lengths: slots after which all repeats (the largest sum)")
         .check(whole_check(1, 65535))
         .type_name("N");
-    command.add_option("--name", options->name, "of the schedule (the output's)").type_name("NAME");
+    command.add_option("--name", options->name, "of the schedule (the output's)")
+        .check(check_name)
+        .type_name("NAME");
     command.footer(
         "Examples:\n"
         "  stipple schedule import masks.npy -o masks.toml\n"

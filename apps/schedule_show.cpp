@@ -24,7 +24,7 @@ void show(const ShowOptions& options, const RunOptions& run) {
     const auto [name, source, schedule] = set_up_schedule(options.schedule);
     const int slots =
         options.slots > 0 ? options.slots : std::clamp(2 * schedule.period_slots(), 24, 64);
-    const auto pixels = sample_pixels(schedule, options.pixels);
+    const auto pixels = sample_pixels(schedule, options.schedule.shape, options.pixels);
     JsonFile json(run);
     if (!options.output.empty())
         draw_schedule(options.output, run.force, {name, schedule, pixels, slots});

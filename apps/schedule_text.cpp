@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace stipple {
@@ -60,15 +61,17 @@ std::string figures_text(const std::string& name, const ScheduleFigures& figures
         figures.mean_due, figures.code_memory_bits);
 }
 
-std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, int count) {
-    const std::int64_t cols = schedule.tile_cols();
-    const std::int64_t tile = std::int64_t{schedule.tile_rows()} * cols;
+std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, FrameShape array,
+                                      int count) {
+    const std::int64_t cols = std::min(schedule.tile_cols(), array.cols);
+    const std::int64_t tile = std::min(schedule.tile_rows(), array.rows) * cols;
     std::vector<ArrayPixel> pixels;
     for (std::int64_t i = 0; i < count; ++i) {
         const std::int64_t in_tile = tile > count ? i * tile / count : i % tile;
         const std::int64_t tiles_right = tile > count ? 0 : i / tile;
-        pixels.push_back({static_cast<int>(in_tile / cols),
-                          static_cast<int>(in_tile % cols + tiles_right * cols)});
+        const std::int64_t col = in_tile % cols + tiles_right * cols;
+        if (col < array.cols)
+            pixels.push_back({static_cast<int>(in_tile / cols), static_cast<int>(col)});
     }
     return pixels;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/exposure_schedule.h"
+#include "core/geometry.h"
 #include "readout/schedule_figures.h"
 
 namespace stipple {
@@ -21,9 +22,10 @@ struct ArrayPixel {
     int col = 0;
 };
 
-/// `count` pixels that show what a schedule does: spread evenly over the tile or, where it has
-/// fewer, of it and its neighbours.
-[[nodiscard]] std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, int count);
+/// `count` pixels of an array that show what a schedule does: spread evenly over the tile or, where
+/// it has fewer, of it and those to its right. Fewer if the array ends before.
+[[nodiscard]] std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule,
+                                                    FrameShape array, int count);
 
 /// A line per pixel and a character per slot of [0, slots), the period before counts too: '-' open,
 /// '=' open in the second charge store, '.' closed; where an exposure is read, the slots it was

@@ -6,10 +6,12 @@
 namespace stipple {
 
 void add_sensor_arguments(Command& command, SensorChoice& sensor, const char* settings_option) {
-    command.add_option("--sensor", sensor.sensor, "sensor (paper)").type_name("NAME|FILE").input();
+    command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\" (paper)")
+        .type_name("NAME|FILE")
+        .input();
     command
         .add_option("--schedule", sensor.schedule,
-                    "who exposes when: docs/schedules.md lists the names (random)")
+                    "who exposes when, of \"stipple list schedules\" (random)")
         .type_name("NAME|FILE")
         .input();
     command

@@ -9,6 +9,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/input_file.h"
+#include "core/joined.h"
 #include "readout/program_text.h"
 #include "sensor_model/sensor_config.h"
 
@@ -43,7 +44,7 @@ NamedSchedule read_program(const SensorChoice& choice) {
     if (!settings.empty())
         throw InputError("--set schedule." + settings.front(),
                          fmt::format("{} is a compiled schedule, which has no keys; set them in "
-                                     "`stipple schedule compile`",
+                                     "\"stipple schedule compile\"",
                                      choice.schedule));
     const auto bytes = read_file(choice.schedule);
     const NamedProgram named =
@@ -58,12 +59,12 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
     if (own == ColourFilter::kNone || own == mosaic) return footage;
     if (mosaic != ColourFilter::kNone)
         throw InputError(
-            fmt::format("sensor '{}': cfa", params.name),
+            fmt::format("sensor \"{}\": cfa", params.name),
             fmt::format("its colour filter array begins as {}, the frames as {}; set cfa={}, or "
                         "move the camera's region (OffsetX, OffsetY) by a pixel",
                         name_of(own), name_of(mosaic), name_of(mosaic)));
     if (footage.planes != 3)
-        throw InputError(fmt::format("sensor '{}': cfa", params.name),
+        throw InputError(fmt::format("sensor \"{}\": cfa", params.name),
                          fmt::format("a colour filter array ({}) needs colour footage, this has {} "
                                      "plane; set cfa=none",
                                      name_of(params.physical.cfa), footage.planes));
@@ -78,6 +79,15 @@ std::string timing_keys(const SensorChoice& choice) {
 
 std::string schedule_keys(const SensorChoice& choice) {
     return is_program(choice.schedule) ? "" : schedule_config(choice).as_toml("");
+}
+
+std::string no_timing_text() {
+    std::vector<std::string> timed;
+    for (const std::string& name : config_names("sensors")) {
+        Config config(find_config("sensors", name), {});
+        if (read_timing(config, 1)) timed.push_back(name);
+    }
+    return fmt::format("has no section [timing]; these sensors have one: {}", joined(timed));
 }
 
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
@@ -110,9 +120,7 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, Colour
     if (sensor.timing) check_window(*sensor.timing, shape);
     if (!sensor.timing && choice.overrun == OverrunPolicy::kDrop)
         throw InputError("--overrun drop",
-                         fmt::format("the sensor '{}' has no section [timing], so nothing exceeds "
-                                     "a slot; `stipple timing` lists those that have one",
-                                     sensor.params.name));
+                         fmt::format("sensor \"{}\" {}", sensor.params.name, no_timing_text()));
     const ColumnAddressing addressing =
         sensor.timing ? sensor.timing->addressing : ColumnAddressing{};
     return {.params = sensor.params,
@@ -129,10 +137,11 @@ std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
     if (mosaic == ColourFilter::kNone || setup.params.physical.cfa != ColourFilter::kNone)
         return {};
     return fmt::format(
-        "the frames are a mosaic of colours ({}), but sensor '{}' has no colour filter array: they "
+        "the frames are a mosaic of colours ({}), but sensor \"{}\" has no colour filter array: "
+        "they "
         "are taken for grey, and decoding smooths over their pattern. A sensor of mode "
         "\"physical\" "
-        "with cfa={}, such as `ideal`, gives colour",
+        "with cfa={}, such as \"ideal\", gives colour",
         name_of(mosaic), setup.params.name, name_of(mosaic));
 }
 

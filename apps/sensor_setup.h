@@ -44,6 +44,9 @@ struct SensorSetup {
 /// The chosen sensor. \throws InputError naming file, line and key of what cannot be used.
 [[nodiscard]] SensorDescription read_sensor_file(const SensorChoice& choice);
 
+/// Says that a sensor has no section [timing], and which ones have.
+[[nodiscard]] std::string no_timing_text();
+
 /// The chosen schedule, made for an array of `shape`. \throws InputError naming file, line and key
 /// of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,

@@ -4,9 +4,11 @@
 
 #include "apps/coded_frames.h"
 #include "apps/footage_arguments.h"
+#include "apps/names_of.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
+#include "core/suggestion.h"
 
 namespace stipple {
 namespace {
@@ -18,7 +20,9 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
     if (!choice.format.empty()) {
         format = pixel_format_named(choice.format);
         if (format == nullptr)
-            throw InputError("--format " + choice.format, "is no pixel format that is known");
+            throw InputError(
+                "--format " + choice.format,
+                "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
     return std::make_unique<FootageFrames>(choice.path, choice.reading,
                                            choice.frames_per_s.value_or(kFramesPerS), format);

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "apps/chart.h"
+#include "apps/standard_error.h"
+#include "apps/text_file.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -18,6 +20,7 @@ StageOutputs::StageOutputs(std::filesystem::path folder, FrameShape shape, bool 
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw InputError(folder_.string(), "cannot be made: " + error.message());
+    chart_.emplace(folder_ / "convergence.png", force_);
 }
 
 StageSink StageOutputs::sink() {
@@ -48,10 +51,15 @@ void StageOutputs::write(std::string_view stage, std::int64_t slot, std::span<co
 
 void StageOutputs::finish() {
     for (auto& [stage, file] : files_) file.writer->finish();
-    if (!folder_.empty() && !descents_.empty()) draw();
+    if (folder_.empty() || descents_.empty()) return;
+    try {
+        write_text(*chart_, chart());
+    } catch (const NoGnuplot& e) {
+        say_error("{} is not drawn: {}", chart_->final_path().string(), e.what());
+    }
 }
 
-void StageOutputs::draw() const {
+std::string StageOutputs::chart() const {
     std::set<std::string> stages;
     for (const Descent& descent : descents_) stages.insert(descent.stage);
     std::string text =
@@ -74,7 +82,7 @@ void StageOutputs::draw() const {
             "set ylabel 'objective (Eq. 4)'\n{}\n",
             data, stage, lines, plots);
     }
-    draw_chart(folder_ / "convergence.png", {}, text + "unset multiplot\n");
+    return draw_chart(".png", {}, text + "unset multiplot\n");
 }
 
 nlohmann::ordered_json StageOutputs::figures() const {

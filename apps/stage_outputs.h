@@ -4,11 +4,13 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/frame_writer.h"
 #include "core/geometry.h"
+#include "core/pending_output.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
@@ -18,13 +20,14 @@ namespace stipple {
 class StageOutputs {
   public:
     /// `folder` is made where it is absent; empty: no files, figures only. \throws InputError if it
-    /// cannot be made.
+    /// cannot be made, or as PendingOutput for the chart.
     StageOutputs(std::filesystem::path folder, FrameShape shape, bool force);
 
     /// For DecodeOptions; refers to this object. Its frames throw as FrameWriter.
     [[nodiscard]] StageSink sink();
 
-    /// Completes the files. \throws as FrameWriter and draw_chart.
+    /// Completes the files; without gnuplot there is no chart but a warning. \throws as FrameWriter
+    /// and draw_chart.
     void finish();
 
     /// For each block and stage {first_slot, tile, stage, objective: one per iteration}.
@@ -45,11 +48,12 @@ class StageOutputs {
 
     void add(const StageStep& step);
     void write(std::string_view stage, std::int64_t slot, std::span<const float> frame);
-    void draw() const;
+    [[nodiscard]] std::string chart() const;
 
     std::filesystem::path folder_;
     FrameShape shape_;
     bool force_;
+    std::optional<PendingOutput> chart_;
     std::vector<Descent> descents_;
     std::map<std::string, StageFile, std::less<>> files_;
 };

@@ -24,11 +24,17 @@ void write_error_text(std::string_view text) noexcept {
 }
 
 void show_bar(std::string_view line) noexcept {
+    bar_is_shown = !line.empty();
     try {
         write_error_text(std::string(kClearLine).append(line));
     } catch (...) {  // no memory: no bar
     }
-    bar_is_shown = !line.empty();
+}
+
+bool clear_bar() noexcept {
+    const bool shown = bar_is_shown.exchange(false);
+    if (shown) write_error_text(kClearLine);
+    return shown;
 }
 
 void say_error(std::string_view text) noexcept {

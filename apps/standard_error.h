@@ -16,6 +16,10 @@ void write_error_text(std::string_view text) noexcept;
 /// Shows `line` in place of the last one, on a terminal; an empty one takes it away.
 void show_bar(std::string_view line) noexcept;
 
+/// Takes away the bar that is shown, if one is: other text is about to come. Safe in a signal
+/// handler. Returns whether there was one.
+bool clear_bar() noexcept;
+
 /// A line of its own, "stipple: " before it.
 void say_error(std::string_view text) noexcept;
 

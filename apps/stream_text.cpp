@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "apps/number_text.h"
+
 namespace stipple {
 namespace {
 
@@ -120,9 +122,9 @@ std::string damage_text(const StreamReport& report) {
     const std::size_t listed = std::min(report.damage.size(), kMostPlaces);
     if (report.damage.empty() && report.missing_slots == 0)
         return fmt::format(
-            "the stream is cut off: {} slots are whole, then it ends within a packet, "
+            "the stream is cut off: {} are whole, then it ends within a packet, "
             "of which there are {} bytes",
-            report.slots, report.tail_bytes);
+            counted(report.slots, "slot"), report.tail_bytes);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
     for (const StreamDamage& place : std::span(report.damage).first(listed))

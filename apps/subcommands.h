@@ -19,5 +19,6 @@ void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
 void add_characterize(Command& app, Action& action);
 void add_capture(Command& app, Action& action);  ///< cameras: its own subcommands
 void add_demo(Command& app, Action& action);     ///< all of it on an embedded scene
+void add_list(Command& app, Action& action);     ///< names that options take, a line each
 
 }  // namespace stipple

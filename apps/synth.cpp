@@ -7,7 +7,8 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/name_check.h"
+#include "apps/names_of.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
@@ -45,8 +46,8 @@ void synth(const SynthOptions& options, const RunOptions& run) {
                 {"cols", shape.cols},
                 {"planes", shape.planes},
                 {"slots_per_second", rate}});
-    run.say(fmt::format("{}: {} frames of {} x {}, linear light, {:.3g} frames/s", options.output,
-                        progress.done(), shape.cols, shape.rows, rate));
+    run.say(fmt::format("{}: {} of {} x {}, linear light, {} frames/s", options.output,
+                        counted(progress.done(), "frame"), shape.cols, shape.rows, rounded(rate)));
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ void add_synth(Command& app, Action& action) {
     Command command = app.add_command("synth", "Render an embedded HDR scene as footage");
     const auto options = std::make_shared<SynthOptions>();
     command.add_option("SCENE", options->scene, "pan, roll, pencils, dice or still")
-        .check(name_check(scene_from_name))
+        .one_of(names_of(scenes()))
         .required();
     command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
         .type_name("OUT")

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 
 #include "apps/account_text.h"
@@ -13,9 +11,7 @@
 #include "apps/size_argument.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
-#include "core/config.h"
 #include "core/error.h"
-#include "core/joined.h"
 
 namespace stipple {
 namespace {
@@ -26,24 +22,10 @@ struct TimingOptions {
     WaveformOptions waveform;
 };
 
-/// Names of the sensors beside the default one whose files have a section [timing].
-std::set<std::string> sensors_with_timing() {
-    std::set<std::string> names;
-    const auto folder = find_config("sensors", SensorChoice().sensor).parent_path();
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        if (entry.path().extension() != ".toml") continue;
-        Config config(entry.path(), {});
-        if (read_timing(config, 1)) names.insert(entry.path().stem().string());
-    }
-    return names;
-}
-
 SensorDescription read_timed_sensor(const SensorChoice& choice) {
     SensorDescription sensor = read_sensor_file(choice);
     if (!sensor.timing)
-        throw InputError(fmt::format("sensor '{}'", choice.sensor),
-                         fmt::format("has no section [timing]; these have one: {}",
-                                     joined(sensors_with_timing())));
+        throw InputError(fmt::format("sensor \"{}\"", choice.sensor), no_timing_text());
     return sensor;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/timing_arguments.h"
 
 #include "apps/number_check.h"
+#include "apps/sensor_setup.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -20,10 +21,7 @@ void add_waveform_arguments(Command& command, WaveformOptions& options) {
 std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
                                           bool has_timing) {
     if (options.file.empty()) return {};
-    if (!has_timing)
-        throw InputError("--vcd",
-                         "the sensor has no section [timing]; `stipple timing` lists "
-                         "those that have one");
+    if (!has_timing) throw InputError("--vcd", "the sensor " + no_timing_text());
     return std::optional<WaveformFile>(std::in_place, options.file, force);
 }
 

@@ -15,7 +15,7 @@ std::string camera_kind(const std::string& address) {
         if (colon != std::string::npos && address.substr(0, colon) == kind) return kind;
     throw InputError(address,
                      "is no address of a camera: write gige:IP, usb:SERIAL, v4l2:/dev/videoN or "
-                     "replay:FILE (`stipple capture list` shows what there is)");
+                     "replay:FILE (\"stipple capture list\" shows what there is)");
 }
 
 std::unique_ptr<Camera> open_camera(const std::string& address, const CameraSettings& settings,

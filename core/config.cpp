@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <list>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/joined.h"
+#include "core/suggestion.h"
 
 namespace stipple {
 namespace {
@@ -75,21 +75,6 @@ std::string_view type_name(const toml::node& value) {
         default:
             return "a date or time";
     }
-}
-
-/// Edits (insert, delete, replace a character) that turn `a` into `b` (Levenshtein).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row.back();
 }
 
 }  // namespace
@@ -293,19 +278,11 @@ std::string Config::as_toml(std::string_view section) const {
 }
 
 void Config::reject_unknown_keys() const {
-    const auto& asked = impl_->asked;
+    const std::vector<std::string> asked(impl_->asked.begin(), impl_->asked.end());
     for (const auto& [key, entry] : impl_->entries) {
         if (entry.known) continue;
-        const std::string_view name = key;
-        const auto farther = [&](const std::string& a, const std::string& b) {
-            return edit_distance(name, a) < edit_distance(name, b);
-        };
-        const auto nearest = std::min_element(asked.begin(), asked.end(), farther);
-        if (nearest == asked.end()) throw InputError(place(key), "is unknown");
-        const bool alike = 2 * edit_distance(name, *nearest) <= name.size();
-        throw InputError(place(key), alike
-                                         ? fmt::format("is unknown; did you mean \"{}\"?", *nearest)
-                                         : fmt::format("is unknown; known are {}", joined(asked)));
+        throw InputError(place(key),
+                         asked.empty() ? "is unknown" : "is unknown; " + suggestion(key, asked));
     }
 }
 

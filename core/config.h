@@ -66,7 +66,10 @@ class Config {
 };
 
 /// Finds `name` as a file, or as `<config folder>/<kind>/<name>.toml` (kind: "sensors",
-/// "schedules"). \throws InputError listing the names there are.
+/// "schedules"). \throws InputError naming the one that was probably meant, or all there are.
 [[nodiscard]] std::filesystem::path find_config(std::string_view kind, std::string_view name);
+
+/// All names of that kind, sorted.
+[[nodiscard]] std::vector<std::string> config_names(std::string_view kind);
 
 }  // namespace stipple

@@ -6,7 +6,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/suggestion.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -26,17 +26,17 @@ std::vector<fs::path> config_folders() {
     return folders;
 }
 
-std::set<std::string> names_in(const std::vector<fs::path>& folders, std::string_view kind) {
+}  // namespace
+
+std::vector<std::string> config_names(std::string_view kind) {
     std::set<std::string> names;
-    for (const fs::path& folder : folders) {
+    for (const fs::path& folder : config_folders()) {
         std::error_code error;
         for (const auto& entry : fs::directory_iterator(folder / kind, error))
             if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
     }
-    return names;
+    return {names.begin(), names.end()};
 }
-
-}  // namespace
 
 fs::path find_config(std::string_view kind, std::string_view name) {
     std::error_code error;
@@ -44,17 +44,16 @@ fs::path find_config(std::string_view kind, std::string_view name) {
     if (fs::is_regular_file(path, error)) return path;
     if (name.find('/') != std::string_view::npos || path.extension() == ".toml")
         throw InputError(name, "there is no such file");
-    const auto folders = config_folders();
-    for (const fs::path& folder : folders) {
+    for (const fs::path& folder : config_folders()) {
         fs::path file = folder / kind / fmt::format("{}.toml", name);
         if (fs::is_regular_file(file, error)) return file;
     }
-    const auto names = names_in(folders, kind);
-    throw InputError(
-        fmt::format("\"{}\"", name),
-        names.empty()
-            ? fmt::format("there is no {}/ in any configuration folder", kind)
-            : fmt::format("is neither a file nor one of the {}: {}", kind, joined(names)));
+    const auto names = config_names(kind);
+    throw InputError(fmt::format("\"{}\"", name),
+                     names.empty()
+                         ? fmt::format("there is no {}/ in any configuration folder", kind)
+                         : fmt::format("is neither a file nor one of the {}; {}", kind,
+                                       suggestion(name, names)));
 }
 
 }  // namespace stipple

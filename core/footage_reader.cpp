@@ -56,6 +56,16 @@ class ImageSequence {
 
 using Source = std::variant<ImageSequence, NpyReader, VideoReader>;
 
+/// Why a file of this extension is no footage.
+const char* not_footage(const std::string& extension) {
+    if (extension == ".stipple")
+        return "is a sample stream, not footage; \"stipple decode\" makes video of it";
+    if (extension == ".strec")
+        return "is no recording of a camera: it is empty, or does not begin as one";
+    return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
+           "pictures, a video file, or .npy";
+}
+
 Source open_source(const fs::path& source) {
     const std::string name = source.string();
     std::error_code error;
@@ -71,9 +81,7 @@ Source open_source(const fs::path& source) {
     if (lower_extension(source) == ".npy") return NpyReader(source);
     if (image_format(source) != ImageFormat::kNone) return ImageSequence({source});
     if (is_video_name(source)) return VideoReader(source);
-    throw InputError(name,
-                     "is no footage by its extension; give a folder or pattern of PNG, TIFF "
-                     "or EXR pictures, a video file, or .npy");
+    throw InputError(name, not_footage(lower_extension(source)));
 }
 
 }  // namespace

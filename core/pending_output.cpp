@@ -40,9 +40,13 @@ fs::path tidy(const fs::path& path, OutputKind kind) {
     if (path == "-")
         throw InputError("output \"-\"", "standard output does not take it; give it a name");
     fs::path result = path.lexically_normal();
-    if (!result.has_filename() && kind == OutputKind::kFile)
+    std::error_code error;
+    if (!result.empty() && !result.has_filename() && kind == OutputKind::kFile)
         throw InputError(fmt::format("output \"{}\"", path.string()),
-                         "ends as a folder does, but is a file; give it a name");
+                         fs::is_directory(result, error)
+                             ? "is a folder; name a file in it"
+                             : "names a folder that does not exist; create it first, or leave out "
+                               "the slash at the end");
     if (!result.has_filename()) result = result.parent_path();
     const auto name = result.filename();
     if (name.empty() || name == "." || name == "..")
@@ -59,6 +63,8 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+}  // namespace
+
 bool is_frame_name(std::string_view name) {
     constexpr std::string_view kPrefix = "frame_";
     constexpr std::string_view kSuffix = ".exr";
@@ -69,10 +75,12 @@ bool is_frame_name(std::string_view name) {
     return all_digits(name);
 }
 
-/// An entry of `folder` that is not a frame of ours, or an empty path.
-fs::path foreign_entry(const fs::path& folder) {
+namespace {
+
+/// An entry of `folder` that is not ours, or an empty path.
+fs::path foreign_entry(const fs::path& folder, IsOwnName is_own) {
     for (const auto& entry : fs::directory_iterator(folder))
-        if (!is_frame_name(entry.path().filename().string()) ||
+        if (!is_own(entry.path().filename().string()) ||
             !fs::is_regular_file(entry.symlink_status()))
             return entry.path();
     return {};
@@ -80,8 +88,9 @@ fs::path foreign_entry(const fs::path& folder) {
 
 }  // namespace
 
-PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind)
-    : final_(tidy(final_path, kind)), force_(force), kind_(kind) {
+PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind,
+                             IsOwnName is_own)
+    : final_(tidy(final_path, kind)), force_(force), kind_(kind), is_own_(is_own) {
     const fs::path parent = folder_of(final_);
     std::error_code error;
     if (!fs::is_directory(parent, error))
@@ -109,11 +118,11 @@ void PendingOutput::check_replaceable() const {
     if (!fs::is_directory(fs::symlink_status(final_, error)))
         refuse("is not a folder; give another name");
     try {
-        const fs::path foreign = foreign_entry(final_);
+        const fs::path foreign = foreign_entry(final_, is_own_);
         if (!foreign.empty())
             refuse(
-                fmt::format("holds \"{}\", which is not a frame written by Stipple, so the "
-                            "folder is not replaced; give another name",
+                fmt::format("holds \"{}\", which is no file that this run writes, so the folder "
+                            "is not replaced; give another name",
                             foreign.filename().string()));
     } catch (const fs::filesystem_error& e) {
         refuse("cannot be listed: " + e.code().message());
@@ -128,7 +137,7 @@ PendingOutput::~PendingOutput() {
 
 void PendingOutput::remove_replaced_folder() const {
     for (const auto& entry : fs::directory_iterator(final_))
-        if (is_frame_name(entry.path().filename().string())) fs::remove(entry.path());
+        if (is_own_(entry.path().filename().string())) fs::remove(entry.path());
     fs::remove(final_);  // fails, and keeps them, if other files have come in since
 }
 

@@ -2,10 +2,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 namespace stipple {
 
 enum class OutputKind { kFile, kFolder };
+
+/// Whether a run of this kind writes a file of this name into its folder.
+using IsOwnName = bool (*)(std::string_view name);
+/// frame_0000.exr ...
+[[nodiscard]] bool is_frame_name(std::string_view name);
 
 /// An output that appears under its final name only when it is complete. Write to `partial()`,
 /// then `commit()`; if it is destroyed without, the partial file or folder is removed.
@@ -14,10 +21,10 @@ class PendingOutput {
     /// Creates the folder `partial()` if `kind` is a folder.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
     /// missing. With `force` a regular file gives way to a file, and a folder that holds nothing
-    /// but our frames (frame_0000.exr ...) to a folder; anything else is an InputError, because
-    /// it may be somebody's work. \throws DeviceError if the folder cannot be created.
+    /// but files of our own names to a folder; anything else is an InputError, because it may be
+    /// somebody's work. \throws DeviceError if the folder cannot be created.
     PendingOutput(const std::filesystem::path& final_path, bool force,
-                  OutputKind kind = OutputKind::kFile);
+                  OutputKind kind = OutputKind::kFile, IsOwnName is_own = is_frame_name);
     ~PendingOutput();
     PendingOutput(const PendingOutput&) = delete;
     PendingOutput& operator=(const PendingOutput&) = delete;
@@ -42,6 +49,7 @@ class PendingOutput {
     std::filesystem::path partial_;
     bool force_;
     OutputKind kind_;
+    IsOwnName is_own_;
     bool committed_ = false;
     std::size_t place_in_list_;  ///< of partial outputs
 };

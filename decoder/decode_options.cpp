@@ -130,7 +130,7 @@ DecodeMethod decode_method_from_name(std::string_view name) {
         if (known.name == name) return known.method;
         names.emplace_back(known.name);
     }
-    throw InputError("decoding method", fmt::format("`{}` is none of {}", name, joined(names)));
+    throw InputError("decoding method", fmt::format("\"{}\" is none of {}", name, joined(names)));
 }
 
 DecodeOptions read_decode_options(DecodeMethod method, Config& config) {

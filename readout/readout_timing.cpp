@@ -15,7 +15,7 @@ namespace {
 constexpr int kMostSide = 65535;  ///< rows or columns of a stream
 
 void require(bool holds, std::string_view sensor, const std::string& constraint) {
-    if (!holds) throw InputError(fmt::format("sensor '{}': timing", sensor), constraint);
+    if (!holds) throw InputError(fmt::format("sensor \"{}\": timing", sensor), constraint);
 }
 
 bool rises(const std::vector<int>& values) {

@@ -24,12 +24,12 @@ namespace {
 constexpr int kSamplesPerPixel = 32;  // in one slot, over time and area together
 constexpr int kDefaultRows = 240;
 
-constexpr std::array<std::pair<std::string_view, SceneName>, 5> kNames{
-    {{"pan", SceneName::kPan},
-     {"roll", SceneName::kRoll},
-     {"pencils", SceneName::kPencils},
-     {"dice", SceneName::kDice},
-     {"still", SceneName::kStill}}};
+constexpr std::array<NamedScene, 5> kScenes{
+    {{"pan", SceneName::kPan, "a street at dusk passing by: large camera motion over depth"},
+     {"roll", SceneName::kRoll, "discs with fine texture rolling on a textured ground"},
+     {"pencils", SceneName::kPencils, "many thin coloured things, each moving its own way"},
+     {"dice", SceneName::kDice, "fast, complex rotation: cubes tumbling over a board"},
+     {"still", SceneName::kStill, "small motion; a bright window and deep shadow"}}};
 
 using SceneModel = std::variant<PanScene, RollScene, PencilsScene, DiceScene, StillScene>;
 
@@ -112,9 +112,13 @@ void store(Rgb light, const FrameShape& shape, std::size_t pixel, std::span<floa
 
 }  // namespace
 
+std::span<const NamedScene> scenes() {
+    return kScenes;
+}
+
 SceneName scene_from_name(std::string_view name) {
-    for (const auto& [known, value] : kNames)
-        if (known == name) return value;
+    for (const NamedScene& known : kScenes)
+        if (known.name == name) return known.scene;
     throw InputError(std::string("scene ").append(name),
                      "is not one of pan, roll, pencils, dice, still");
 }

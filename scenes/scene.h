@@ -11,14 +11,22 @@ namespace stipple {
 
 /// The embedded scenes; docs/scenes.md shows what is in each of them.
 enum class SceneName {
-    kPan,      ///< a street at dusk passing by: large camera motion over depth
-    kRoll,     ///< discs with fine texture rolling on a textured ground
-    kPencils,  ///< many thin coloured things, each moving its own way
-    kDice,     ///< fast, complex rotation: cubes tumbling over a board
-    kStill,    ///< small motion; a bright window and deep shadow
+    kPan,
+    kRoll,
+    kPencils,
+    kDice,
+    kStill,
 };
 
-/// `pan`, `roll`, `pencils`, `dice`, `still`. \throws InputError listing these names.
+struct NamedScene {
+    std::string_view name;
+    SceneName scene;
+    std::string_view text;  ///< what it shows, a line
+};
+
+[[nodiscard]] std::span<const NamedScene> scenes();
+
+/// \throws InputError listing the names of `scenes`.
 [[nodiscard]] SceneName scene_from_name(std::string_view name);
 
 struct SceneOptions {

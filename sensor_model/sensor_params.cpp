@@ -14,7 +14,7 @@ namespace stipple {
 namespace {
 
 [[noreturn]] void fail(const SensorParams& params, std::string_view key, std::string_view problem) {
-    throw InputError(fmt::format("sensor '{}': {}", params.name, key), problem);
+    throw InputError(fmt::format("sensor \"{}\": {}", params.name, key), problem);
 }
 
 void check(const SensorParams& params, std::string_view key, double value, ParameterRange range) {

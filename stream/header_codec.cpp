@@ -19,6 +19,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'P', 'L', '\r', '\n', 0x1A};
+constexpr std::array<std::uint8_t, 4> kRecording{0x89, 'S', 'T', 'R'};  // recording_format.md
 constexpr std::uint16_t kVersion = 1;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
@@ -223,9 +224,14 @@ std::size_t header_bytes(Bytes start, std::string_view place) {
     if (start.empty()) fail_at(place, 0, "the file is empty");
     if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) {
         const bool ours = start.size() > 4 && std::equal(&kMagic[1], &kMagic[5], &start[1]);
-        fail_at(place, 0,
-                ours ? "this sample stream was changed by a text-mode transfer; copy it as binary"
-                     : "this is not a sample stream (.stipple)");
+        if (ours)
+            fail_at(place, 0,
+                    "this sample stream was changed by a text-mode transfer; copy it as binary");
+        fail_at(
+            place, 0,
+            std::ranges::equal(magic.first(std::min(magic.size(), kRecording.size())), kRecording)
+                ? "this is the recording of a camera; \"stipple capture replay\" reads it"
+                : "this is not a sample stream (.stipple)");
     }
     if (start.size() < kHeaderStartBytes)
         fail_at(place, start.size(), "the file ends within its header");

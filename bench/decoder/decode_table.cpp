@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "apps/command_line.h"
-#include "apps/name_check.h"
+#include "apps/names_of.h"
 #include "apps/number_check.h"
 #include "core/npy_writer.h"
 #include "decoder/decode_options.h"
@@ -243,7 +243,7 @@ int run(int argc, char** argv) {
         .split_at_commas();
     command.add_list("--methods", options.methods, "of `stipple decode` (all)")
         .split_at_commas()
-        .check(name_check(decode_method_from_name));
+        .one_of(names_of(decode_methods()));
     command.add_list("--set", options.settings, "METHOD.KEY=VALUE");
     command.add_list("--schedules", options.schedules, "of config/schedules (random)")
         .split_at_commas();

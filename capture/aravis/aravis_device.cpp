@@ -10,6 +10,7 @@
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
+#include "core/suggestion.h"
 
 namespace stipple {
 namespace {
@@ -34,8 +35,8 @@ class Complaint {
 ArvDevice* open_gige(const std::string& address, const std::string& ip) {
     if (!parse_ipv4(ip))
         throw InputError(address,
-                         "is no IPv4 address: write gige:192.168.0.5 (`stipple capture "
-                         "list` shows the cameras that answer)");
+                         "is no IPv4 address: write gige:192.168.0.5 (\"stipple capture "
+                         "list\" shows the cameras that answer)");
     Complaint complaint;
     ArvDevice* device =
         arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), complaint.slot());
@@ -43,7 +44,7 @@ ArvDevice* open_gige(const std::string& address, const std::string& ip) {
         throw DeviceError(address,
                           fmt::format("no camera answers ({}): check power, cable and that the "
                                       "address is in the subnet of an interface of this machine "
-                                      "(`stipple capture doctor`)",
+                                      "(\"stipple capture doctor\")",
                                       complaint.text()));
     return device;
 }
@@ -63,7 +64,7 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
         if (device != nullptr) return device;
         throw DeviceError(address,
                           fmt::format("cannot be opened ({}): another program may have it, "
-                                      "or this user may not (`stipple capture doctor`)",
+                                      "or this user may not (\"stipple capture doctor\")",
                                       complaint.text()));
     }
     throw DeviceError(address,
@@ -90,13 +91,28 @@ std::string choices_of(ArvDevice* device, const char* feature) {
 }
 
 /// For the features that Aravis sets by the names that cameras of all ages have for them.
-using SetNumber = void (*)(ArvCamera*, double, GError**);
-constexpr std::array<std::pair<const char*, SetNumber>, 4> kNumbers{{
-    {"AcquisitionFrameRate", arv_camera_set_frame_rate},
-    {"ExposureTime", arv_camera_set_exposure_time},
-    {"Gain", arv_camera_set_gain},
-    {"BlackLevel", arv_camera_set_black_level},
+struct NumberFeature {
+    std::string_view name;
+    gboolean (*is_available)(ArvCamera*, GError**);
+    void (*set)(ArvCamera*, double, GError**);
+};
+constexpr std::array<NumberFeature, 4> kNumbers{{
+    {"AcquisitionFrameRate", arv_camera_is_frame_rate_available, arv_camera_set_frame_rate},
+    {"ExposureTime", arv_camera_is_exposure_time_available, arv_camera_set_exposure_time},
+    {"Gain", arv_camera_is_gain_available, arv_camera_set_gain},
+    {"BlackLevel", arv_camera_is_black_level_available, arv_camera_set_black_level},
 }};
+
+/// The values that an integer feature takes.
+std::string range_of(ArvDevice* device, const char* feature) {
+    Complaint complaint;
+    gint64 least = 0, most = 0;
+    arv_device_get_integer_feature_bounds(device, feature, &least, &most, complaint.slot());
+    if (complaint.any()) return {};
+    const gint64 step = arv_device_get_integer_feature_increment(device, feature, nullptr);
+    return fmt::format("; it takes {} to {}{}", least, most,
+                       step > 1 ? fmt::format(" in steps of {}", step) : "");
+}
 
 constexpr std::uint64_t kPrimaryApplicationPort = 0x0A10;  // GigE Vision 2.0, 27.38
 constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
@@ -108,7 +124,8 @@ struct AravisDevice::Impl {
     ArvDevice* device = nullptr;
 
     ~Impl() { g_clear_object(&camera); }
-    void set_number(const std::string& place, SetNumber set, const std::string& value) const;
+    void set_number(const std::string& place, const NumberFeature& feature,
+                    const std::string& value) const;
     void set_choice(const std::string& place, const char* feature, const std::string& value) const;
     void set_integer(const std::string& place, const char* feature, const std::string& value) const;
     void set_other(const std::string& place, const char* feature, const std::string& value) const;
@@ -178,13 +195,14 @@ std::optional<double> AravisDevice::read_number(const std::string& feature) cons
     return text ? parsed<double>(*text) : std::nullopt;
 }
 
-void AravisDevice::Impl::set_number(const std::string& place, SetNumber set,
+void AravisDevice::Impl::set_number(const std::string& place, const NumberFeature& feature,
                                     const std::string& value) const {
     const auto number = parsed<double>(value);
     if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
     Complaint complaint;
-    set(camera, *number, complaint.slot());
-    if (complaint.any()) throw InputError(place, complaint.text());
+    feature.set(camera, *number, complaint.slot());
+    if (complaint.any())
+        throw InputError(place, fmt::format("{} cannot be set ({})", value, complaint.text()));
 }
 
 void AravisDevice::Impl::set_choice(const std::string& place, const char* feature,
@@ -206,7 +224,9 @@ void AravisDevice::Impl::set_integer(const std::string& place, const char* featu
     if (!number) throw InputError(place, fmt::format("needs an integer, but is \"{}\"", value));
     Complaint complaint;
     arv_device_set_integer_feature_value(device, feature, *number, complaint.slot());
-    if (complaint.any()) throw InputError(place, complaint.text());
+    if (complaint.any())
+        throw InputError(place, fmt::format("{} cannot be set ({}){}", value, complaint.text(),
+                                            range_of(device, feature)));
     const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
     if (back != *number)
         throw DeviceError(place, fmt::format("asked for {}, the camera made it {}; ask for that if "
@@ -235,17 +255,23 @@ void AravisDevice::Impl::set_other(const std::string& place, const char* feature
     if (complaint.any()) throw InputError(place, complaint.text());
 }
 
+std::string AravisDevice::nearest_feature(const std::string& name) const {
+    std::vector<std::string> known;
+    for (const auto& [feature, value] : features()) known.push_back(feature);
+    const std::string nearest = nearest_name(name, known);
+    return nearest.empty() ? "\"stipple capture doctor ADDRESS\" lists those that it has"
+                           : fmt::format("did you mean \"{}\"?", nearest);
+}
+
 void AravisDevice::set(const std::string& feature, const std::string& value) {
     const std::string place = fmt::format("{}: {}", address_, feature);
-    const auto* const known =
-        std::find_if(kNumbers.begin(), kNumbers.end(),
-                     [&](const auto& entry) { return feature == entry.first; });
-    if (known != kNumbers.end()) return impl_->set_number(place, known->second, value);
+    const auto* const known = std::find_if(
+        kNumbers.begin(), kNumbers.end(), [&](const auto& entry) { return feature == entry.name; });
+    if (known != kNumbers.end() && known->is_available(impl_->camera, nullptr) != FALSE)
+        return impl_->set_number(place, *known, value);
     ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
     if (node == nullptr || ARV_IS_GC_FEATURE_NODE(node) == FALSE || ARV_IS_GC_CATEGORY(node))
-        throw InputError(place,
-                         "the camera has no such feature (`stipple capture doctor ADDRESS` "
-                         "lists what it has)");
+        throw InputError(place, "the camera has no such feature; " + nearest_feature(feature));
     if (ARV_IS_GC_ENUMERATION(node)) return impl_->set_choice(place, feature.c_str(), value);
     if (ARV_IS_GC_INTEGER(node) && !ARV_IS_GC_BOOLEAN(node))
         return impl_->set_integer(place, feature.c_str(), value);

@@ -44,6 +44,9 @@ class AravisDevice {
 
   private:
     struct Impl;
+    /// What to do about a name that is no feature.
+    [[nodiscard]] std::string nearest_feature(const std::string& name) const;
+
     std::string address_;
     std::unique_ptr<Impl> impl_;
 };

@@ -59,8 +59,8 @@ void GigeLink::set_socket_buffer(void* stream, std::size_t frame_bytes, int fram
     facts_["rmem_max_bytes"] = fmt::format("{}", most);
     if (!packet_socket_ && wanted > most)
         warnings_.push_back(fmt::format(
-            "the receive buffer holds {:.1f} frames of {} wanted, packets may be lost: `sysctl -w "
-            "net.core.rmem_max={}` (now {}) or give CAP_NET_RAW",
+            "the receive buffer holds {:.1f} frames of {} wanted, packets may be lost: \"sysctl -w "
+            "net.core.rmem_max={}\" (now {}) or give CAP_NET_RAW",
             static_cast<double>(given) / static_cast<double>(frame_bytes), frames, wanted, most));
 }
 

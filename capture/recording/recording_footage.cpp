@@ -23,6 +23,7 @@ RecordingFootage::RecordingFootage(const std::filesystem::path& file,
                           : throw InputError(file.string(), "holds no frame that can be used")),
              options.black_level_dn) {
     to_hold_ = 0;  // nothing stands in for what came before the first frame
+    gaps_.clear();
 }
 
 bool RecordingFootage::advance() {
@@ -37,6 +38,7 @@ bool RecordingFootage::advance() {
         const std::uint64_t gap = std::min(lost, kMaxHeld + 1) + (usable ? 0 : 1);
         missing_ += gap;
         to_hold_ += gap;
+        if (gap > 0) note(gap);
         if (!usable) continue;
         if (layout.format != nullptr && record.layout != layout)
             throw InputError(file_.string(),
@@ -55,8 +57,17 @@ bool RecordingFootage::advance() {
     return false;
 }
 
+/// Frames one after the other that are missing are one place.
+void RecordingFootage::note(std::uint64_t frames) {
+    if (!gaps_.empty() && gaps_.back().slot == slots_)
+        gaps_.back().frames += frames;
+    else if (gaps_.size() < kMostListedGaps)
+        gaps_.push_back({slots_, frames});
+}
+
 bool RecordingFootage::read(std::span<float> frame) {
     if (!has_coming_) return false;
+    ++slots_;
     if (to_hold_ > 0 && !last_.empty()) {
         --to_hold_;
         ++held_;

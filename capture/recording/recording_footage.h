@@ -21,6 +21,12 @@ struct RecordingFootageOptions {
     double black_level_dn = 0;
 };
 
+/// A place where frames are missing or incomplete.
+struct RecordingGap {
+    std::int64_t slot = 0;  ///< of the footage: the first that is held, or that comes after them
+    std::uint64_t frames = 0;
+};
+
 /// A recording as footage, one frame a time slot, read as FootageReader reads: linear light, 1.0 at
 /// full scale.
 class RecordingFootage {
@@ -44,6 +50,9 @@ class RecordingFootage {
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
     /// The camera's, by the frames so far.
     [[nodiscard]] const FrameRate& rate() const { return rate_; }
+    static constexpr std::size_t kMostListedGaps = 1000;
+    /// The first of the places where they are, so far.
+    [[nodiscard]] const std::vector<RecordingGap>& gaps() const { return gaps_; }
     /// Whether all frames were read, so that the reader's report is complete.
     [[nodiscard]] bool at_end() const { return !has_coming_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
@@ -51,13 +60,16 @@ class RecordingFootage {
   private:
     /// False at the end; else `coming_` is the next frame that is used and `to_hold_` is set.
     bool advance();
+    void note(std::uint64_t frames);
 
     std::filesystem::path file_;
     RecordingReader reader_;
     RecordingFootageOptions options_;
     std::optional<std::uint64_t> last_id_;  ///< of the frame read last, usable or not
     CapturedFrame coming_;
-    bool has_coming_;
+    std::int64_t slots_ = 0;  ///< that were read
+    std::vector<RecordingGap> gaps_;
+    bool has_coming_;  ///< initialised by `advance`, which uses what stands before
     FrameLight light_;
     std::vector<float> last_;    ///< light of the frame before; empty before the first
     std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing

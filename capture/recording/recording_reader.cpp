@@ -39,7 +39,7 @@ struct RecordingReader::Impl {
         const std::size_t fixed = kRecordingVersionOffset;
         if (magic.size() < kRecordingMagic.size() ||
             !std::equal(magic.begin(), magic.begin() + fixed, kRecordingMagic.begin()))
-            throw InputError(place, "is not a recording of `stipple capture record`");
+            throw InputError(place, "is not a recording of \"stipple capture record\"");
         if (const auto version = load<std::uint32_t>(&magic[fixed]);
             version != kRecordingMagic[fixed])
             throw InputError(place, "has format version " + std::to_string(version) +
@@ -188,7 +188,7 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
 }
 
 bool is_recording(const std::filesystem::path& path) {
-    std::error_code error;
+    std::error_code error;  // the reader of the file says what it is
     if (!std::filesystem::is_regular_file(path, error)) return false;
     FileWindow file(path);
     const Bytes start = file.peek(kRecordingVersionOffset);

@@ -111,6 +111,7 @@ CameraDescription ReplayCamera::description() const {
     result.transport = "replay";
     result.address = std::string(kPrefix).append(path_);
     result.warnings.clear();
+    if (!source_.clipping().empty()) result.warnings.push_back(source_.clipping());
     return result;
 }
 

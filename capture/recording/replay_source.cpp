@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "capture/clipping.h"
 #include "core/error.h"
 #include "stream/little_endian.h"
 
@@ -37,6 +38,9 @@ ReplaySource::ReplaySource(const std::filesystem::path& path, const std::string&
         footage_.emplace(path);
         layout_ = footage_layout(footage_->shape(), format);
         light_.resize(footage_->shape().sites());
+        if (footage_->read(light_))
+            clipping_ = clipping_text(path.string(), light_, *layout_.format);
+        rewind();
         return;
     }
     recording_.emplace(path);

@@ -29,6 +29,8 @@ class ReplaySource {
     /// The next frame; of footage, id counts from 0. False at the end. \throws InputError.
     bool next(CapturedFrame& frame);
     void rewind();
+    /// What of the first frame of footage its format cannot hold; empty if it holds it all.
+    [[nodiscard]] const std::string& clipping() const { return clipping_; }
     /// What is wrong with a recording that is at its end; empty if nothing is.
     [[nodiscard]] std::vector<std::string> faults() const {
         return recording_ ? recording_->faults() : std::vector<std::string>();
@@ -43,6 +45,7 @@ class ReplaySource {
     FrameLayout layout_;
     std::vector<float> light_;
     std::uint64_t next_id_ = 0;
+    std::string clipping_;
 };
 
 }  // namespace stipple

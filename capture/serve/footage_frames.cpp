@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "capture/clipping.h"
 #include "core/error.h"
 #include "sensor_model/colour_mosaic.h"
 #include "stream/bit_packing.h"
@@ -47,6 +48,8 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
         throw InputError(footage_.string(), "has neither 1 nor 3 planes; add --luminance");
     if (preferred != nullptr) make_default(*preferred);
     light_.resize(shape_.sites());
+    if (reader_.read(light_))  // `start` begins anew
+        warn(clipping_text(footage_.string(), light_, *image_.formats.front()));
     const bool takes_mosaic = filter_ != ColourFilter::kNone && shape_.planes == 3;
     if (takes_mosaic) mosaic_.resize(shape_.pixels());
     dn_.resize(takes_mosaic ? shape_.pixels() : shape_.sites());

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "capture/pixel_format.h"
@@ -41,8 +43,23 @@ class FrameSource {
     /// The next whole frame, or nothing at the end. \throws InputError.
     [[nodiscard]] virtual std::optional<ServedFrame> next() = 0;
 
+    /// What is lost or wrong in the frames, as far as it is known; empty if nothing is. May be
+    /// asked while another thread takes the frames.
+    [[nodiscard]] std::string warning() const {
+        const std::lock_guard lock(mutex_);
+        return warning_;
+    }
+
   protected:
     FrameSource() = default;
+    void warn(std::string warning) {
+        const std::lock_guard lock(mutex_);
+        warning_ = std::move(warning);
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::string warning_;
 };
 
 }  // namespace stipple

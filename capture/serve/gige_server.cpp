@@ -43,7 +43,7 @@ std::uint32_t address_of(const GigeServerOptions& options) {
 NetworkInterface own_interface(std::uint32_t address) {
     if (const auto interface = interface_at(address)) return *interface;
     throw DeviceError(ipv4_text(address),
-                      "no network interface of this machine has such an address; `ip address` "
+                      "no network interface of this machine has such an address; \"ip address\" "
                       "lists those it has");
 }
 

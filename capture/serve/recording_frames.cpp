@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/joined.h"
 
 namespace stipple {
 namespace {
@@ -17,7 +18,7 @@ void check_format(const FrameLayout& layout, const std::string& place) {
     const PixelFormat& format = *layout.format;
     if (format.pfnc == 0)
         throw InputError(place, fmt::format("{} has no number in GigE Vision, so it cannot be "
-                                            "served; use `stipple capture replay`",
+                                            "served; use \"stipple capture replay\"",
                                             format.name));
     if (layout.width * format.bits_per_pixel % 8 != 0)
         throw InputError(place, fmt::format("rows of {} pixels of {} are no whole bytes, so they "
@@ -75,7 +76,11 @@ void RecordingFrames::start(const PixelFormat&) {
 
 std::optional<ServedFrame> RecordingFrames::next() {
     CapturedFrame frame;
-    if (!read_complete(frame)) return {};
+    if (!read_complete(frame)) {
+        if (const auto faults = reader_.faults(); !faults.empty())
+            warn(fmt::format("{}: {}", file_.string(), joined(faults)));
+        return {};
+    }
     const FrameRecord& record = frame.record;
     if (record.layout != layout_)
         throw InputError(file_.string(),

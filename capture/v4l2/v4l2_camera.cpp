@@ -214,7 +214,7 @@ V4l2Memory memory_setting(const std::string& address, const CameraSettings& sett
         if (name != kMemorySetting) continue;
         if (value != "driver" && value != "own")
             throw InputError(address,
-                             fmt::format("BufferMemory: '{}' is neither driver nor own", value));
+                             fmt::format("BufferMemory: \"{}\" is neither driver nor own", value));
         memory = value == "own" ? V4l2Memory::kOwn : V4l2Memory::kDriver;
     }
     return memory;

@@ -125,18 +125,18 @@ class ControlSetter {
             std::vector<std::string> entries;
             for (const auto& [number, entry] : control.menu)
                 entries.push_back(fmt::format("{} ({})", number, entry));
-            refuse(control.name, fmt::format("'{}' is none of {}", text, joined(entries)));
+            refuse(control.name, fmt::format("\"{}\" is none of {}", text, joined(entries)));
         }
         const bool mask = control.type == V4L2_CTRL_TYPE_BITMASK;
         const std::int64_t least = mask ? 0 : control.minimum;
         const std::int64_t most = mask ? std::int64_t{0xFFFFFFFF} : control.maximum;
         if (!value || *value < least || *value > most)
             refuse(control.name,
-                   fmt::format("'{}' is no whole number from {} to {}", text, least, most));
+                   fmt::format("\"{}\" is no whole number from {} to {}", text, least, most));
         const auto above = static_cast<std::uint64_t>(*value) - static_cast<std::uint64_t>(least);
         if (!mask && control.step > 1 && above % control.step != 0)
-            refuse(control.name,
-                   fmt::format("'{}' is not {} plus a multiple of {}", text, least, control.step));
+            refuse(control.name, fmt::format("\"{}\" is not {} plus a multiple of {}", text, least,
+                                             control.step));
         return *value;
     }
 
@@ -175,7 +175,7 @@ class ControlSetter {
         const auto most = static_cast<double>(exposure->maximum) * kExposureUnitUs;
         if (!wanted || !(*wanted >= least && *wanted <= most))
             refuse("ExposureTime",
-                   fmt::format("'{}' is no number from {} to {} us", text, least, most));
+                   fmt::format("\"{}\" is no number from {} to {} us", text, least, most));
         const double units = std::round(*wanted / kExposureUnitUs);
         if (units * kExposureUnitUs != *wanted)
             refuse("ExposureTime",

@@ -27,7 +27,7 @@ std::string what_to_do_about(int error) {
         case ENOENT:
         case ENODEV:
         case ENXIO:
-            return "there is no such camera; `stipple capture list` shows those that there are";
+            return "there is no such camera; \"stipple capture list\" shows those that there are";
         case EBUSY:
             return "another program uses it; close that first";
         case ENOTTY:
@@ -73,7 +73,7 @@ void V4l2Device::query() {
     if (!single && !multi_planar_)
         throw DeviceError(address(),
                           "this node captures no video; take another one of this camera "
-                          "(`stipple capture list`)");
+                          "(\"stipple capture list\")");
     if ((able & V4L2_CAP_STREAMING) == 0)
         throw DeviceError(address(),
                           "its driver can only be read byte by byte, not streamed from; "

@@ -109,7 +109,7 @@ class FormatSetter {
         const auto value = integer_setting(*text);
         if (!value || *value < least || *value > kLargest)
             refuse(name,
-                   fmt::format("'{}' is no whole number from {} to {}", *text, least, kLargest));
+                   fmt::format("\"{}\" is no whole number from {} to {}", *text, least, kLargest));
         return static_cast<std::uint32_t>(*value);
     }
 
@@ -135,8 +135,9 @@ class FormatSetter {
         if (const std::string* const name = value_of(settings_, "PixelFormat")) {
             format_ = pixel_format_named(*name);
             if (format_ == nullptr || format_->v4l2 == 0)
-                refuse("PixelFormat", fmt::format("'{}' is no format of V4L2 that is read here; {}",
-                                                  *name, offer()));
+                refuse("PixelFormat",
+                       fmt::format("\"{}\" is no format of V4L2 that is read here; {}", *name,
+                                   offer()));
             wanted.fourcc = format_->v4l2;
         } else {
             format_ = pixel_format_of_v4l2(wanted.fourcc);
@@ -246,7 +247,7 @@ class FormatSetter {
             const auto wanted = number_setting(*text);
             if (!wanted || !(*wanted >= 0.001 && *wanted <= 1e6))
                 refuse("AcquisitionFrameRate",
-                       fmt::format("'{}' is no number from 0.001 to 1e6", *text));
+                       fmt::format("\"{}\" is no number from 0.001 to 1e6", *text));
             period = {1000, static_cast<__u32>(std::lround(*wanted * 1000))};
             if (device_.call(VIDIOC_S_PARM, &rate) != 0)
                 refuse("AcquisitionFrameRate", "the device does not let itself be told a rate");

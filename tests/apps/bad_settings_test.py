@@ -22,7 +22,7 @@ class BadSettingsTest(ProgramTest):
         self.refuse([message], "--set", "schedule.tile_rows=8")
 
     def test_a_policy_for_overruns_without_timing(self):
-        self.refuse(["--overrun drop", "[timing]", "stipple timing"], "--overrun", "drop")
+        self.refuse(["--overrun drop", "[timing]", "lux1310"], "--overrun", "drop")
 
     def test_a_value_out_of_range_with_the_range(self):
         for setting, limits in (("bit_depth=17", "1..16"), ("photons_per_unit=0", "0.001"),

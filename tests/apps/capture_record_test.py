@@ -143,13 +143,22 @@ class CaptureRecordTest(ProgramTest):
                   for name in ("clip.strec", "copy.strec")]
         self.assertEqual(hashes[0], hashes[1])
 
+    def findings_of(self, address):
+        """What the doctor finds; its exit code tells whether there is a problem among it."""
+        done = self.run_program("capture", "doctor", address, "--json", "-")
+        findings = json.loads(done.stdout)["findings"]
+        problems = [one for one in findings if one["level"] == "problem"]
+        self.assertEqual(done.returncode, DEVICE if problems else OK, done.stderr)
+        self.assertEqual(f"found {len(problems)} problem" in done.stderr, bool(problems), done.stderr)
+        return findings
+
     def test_the_doctor_knows_who_holds_control(self):
         self.serve()
-        found = self.figures("capture", "doctor", self.address)["findings"]
+        found = self.findings_of(self.address)
         self.assertIn(("control", "free"), [(one["subject"], one["fact"]) for one in found])
         recorder = self.record()
         self.until_frames(recorder, 1)
-        found = self.figures("capture", "doctor", self.address)["findings"]
+        found = self.findings_of(self.address)
         (control,) = [one for one in found if one["subject"] == "control"]
         self.assertEqual(control["level"], "problem")
         self.assertIn("stop that program", control["fix"])
@@ -164,7 +173,7 @@ class CaptureRecordTest(ProgramTest):
             self.fails(INPUT, [address, "gige:IP or usb:SERIAL"], "capture", "doctor", address)
 
     def test_the_doctor_says_once_what_to_do_of_a_camera_that_does_not_answer(self):
-        findings = self.figures("capture", "doctor", "gige:127.254.254.253")["findings"]
+        findings = self.findings_of("gige:127.254.254.253")
         subjects = [one["subject"] for one in findings]
         self.assertEqual(len(subjects), len(set(subjects)), subjects)
         (camera,) = [one for one in findings if one["subject"] == "camera"]

@@ -1,13 +1,21 @@
 """EMVA 1288: a series of the emulated sensor gives back what it is configured to."""
 
 import json
+import os
+import resource
+import shutil
 import unittest
 
-from program import INPUT, USAGE, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
 
 # What has to hold, relative.
 BOUNDS = {"gain_dn_per_e": 0.02, "quantum_efficiency": 0.02, "dark_noise_e": 0.03,
           "saturation_e": 0.08, "dsnu_e": 0.04, "prnu": 0.04}
+
+
+def small_files():
+    """A disk that is full soon."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
 
 
 class CharacterizeTest(ProgramTest):
@@ -68,7 +76,10 @@ class CharacterizeTest(ProgramTest):
         """Eq. 1 cuts the noise off at 0: mean 0.40 sigma, deviation 0.58 sigma of 10 e."""
         text = self.succeed("characterize", "--sensor", "paper", "-o", "series",
                             "--set", "bit_depth=12", "--json", "figures.json")
-        self.assertIn("black level is too low", text)
+        self.assertNotIn("black level", text)
+        done = self.run_program("characterize", "--evaluate", "series/emva1288_data.txt", "-q")
+        self.assertEqual((done.returncode, done.stdout), (OK, ""))
+        self.assertIn("black level is too low", done.stderr)
         figures = json.loads((self.folder / "figures.json").read_text())
         self.assertTrue(figures["biased"])
         sigma_dn = 10 * 4095 / 2000
@@ -81,6 +92,67 @@ class CharacterizeTest(ProgramTest):
         figures = self.characterize("paper", "mode=physical", "bit_depth=12", "prnu=0.01",
                                     "dsnu_e=3")
         self.expect_configured(figures, BOUNDS)
+
+    def with_gnuplot(self, script, *arguments):
+        """A run that finds this gnuplot, or with no script none."""
+        tools = self.folder / "tools"
+        shutil.rmtree(tools, ignore_errors=True)
+        tools.mkdir()
+        if script:
+            (tools / "gnuplot").write_text("#!/bin/sh\n" + script)
+            (tools / "gnuplot").chmod(0o755)
+        return self.run_program(*arguments, env=dict(os.environ, PATH=str(tools)))
+
+    def test_charts_that_cannot_be_drawn_cost_nothing_else(self):
+        pictures = ["image_0001.png", "image_0302.png", "emva1288_data.txt"]
+        for script, code, said in (("", OK, "no charts are drawn: gnuplot: No such file"),
+                                   ("echo full >&2; exit 1", DEVICE, "gnuplot: failed: full")):
+            done = self.with_gnuplot(script, "characterize", "--sensor", "t6", "-o", "series", "--force")
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertIn("system gain K", done.stdout)
+            names = {path.name for path in (self.folder / "series").iterdir()}
+            self.assertEqual(len(names), 303)
+            self.assertTrue(names.issuperset(pictures))
+        done = self.with_gnuplot("", "characterize", "--evaluate", "series/emva1288_data.txt", "-o", "none")
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_a_run_may_replace_its_own_folder_only(self):
+        if shutil.which("gnuplot") is None:
+            self.skipTest("gnuplot is not installed")
+        camera = ["characterize", "--sensor", "t6", "-o", "series", "--force"]
+        evaluate = ["characterize", "--evaluate", "series/emva1288_data.txt", "--force", "-o"]
+        for line in (camera, camera, [*evaluate, "charts"], [*evaluate, "charts"]):
+            self.succeed(*line)
+        self.fails(INPUT, ["series", "is not replaced"], *evaluate, "series")
+        (self.folder / "series/thesis.txt").touch()
+        self.fails(INPUT, ['"thesis.txt"', "is not replaced"], *camera)
+
+    def test_a_chart_is_whole_or_absent(self):
+        if shutil.which("gnuplot") is None:
+            self.skipTest("gnuplot is not installed")
+        for name in ("r.png", "r.svg"):
+            self.fails(DEVICE, [name, "cannot be written"], "schedule", "show", "random", "-o", name,
+                       "--slots", 30, preexec_fn=small_files)
+        done = self.with_gnuplot("echo half; echo full >&2; exit 1", "schedule", "show", "random", "-o",
+                                 "r.png")
+        self.assertEqual((done.returncode, done.stdout), (DEVICE, ""), PROGRAM)
+        self.assertFalse((self.folder / "r.png").exists())
+        self.succeed("schedule", "show", "random", "-o", "r.png")
+        self.assertEqual((self.folder / "r.png").read_bytes()[-8:-4], b"IEND")
+
+    def test_charts_on_a_full_disk_leave_the_table(self):
+        if shutil.which("gnuplot") is None:
+            self.skipTest("gnuplot is not installed")
+        self.succeed("characterize", "--sensor", "t6", "-o", "series")
+        done = self.run_program("characterize", "--evaluate", "series/emva1288_data.txt", "-o", "charts",
+                                preexec_fn=small_files)
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        self.assertIn("system gain K", done.stdout)
+        self.assertIn("charts/photon_transfer", done.stderr)
+        for path in (self.folder / "charts").glob("*"):
+            self.assertTrue(path.read_bytes().rstrip().endswith((b"\xaeB`\x82", b"</svg>")), path)
 
     def test_what_cannot_be_used_is_named(self):
         self.fails(USAGE, ["--output"], "characterize", "--sensor", "t6")

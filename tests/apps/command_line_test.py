@@ -1,14 +1,20 @@
 """Help, figures, progress, exit codes."""
 
+import fcntl
 import os
 import pty
+import struct
 import subprocess
+import termios
 import unittest
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
-from program import INPUT, OK, PROGRAM, USAGE, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
+LONGER = ["synth", "still", "--frames", "9", "--size", "320x240"]
+CLEAR = "\r\x1b[K"
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
 
 
@@ -31,8 +37,39 @@ class CommandLineTest(ProgramTest):
             for option in ("--json", "--threads", "--force", "--quiet"):
                 self.assertIn(option, text)
 
+    def test_help_has_several_names(self):
+        self.assertEqual(self.succeed("help"), self.succeed("--help"))
+        wanted = self.succeed("capture", "replay", "--help")
+        for line in (["help", "capture", "replay"], ["capture", "replay", "help"]):
+            self.assertEqual(self.succeed(*line), wanted)
+        self.assertIn("stipple capture record", self.succeed("capture", "--help"))
+        self.assertNotIn("stipple demo", self.succeed("schedule", "--help"))
+
+    def test_help_that_cannot_be_written_is_an_error(self):
+        for line in ("--help", "--version"):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = self.start_program(line, stdout=full)
+                self.assertIn("No space left", done.communicate()[1])
+            self.assertEqual(done.returncode, DEVICE)
+
     def test_version(self):
         self.assertRegex(self.succeed("--version"), r"^stipple \d+\.\d+\.\d+\n$")
+        self.assertEqual(self.succeed("-V"), self.succeed("--version"))
+
+    def test_names_are_listed_with_a_line_each(self):
+        for kind, name in (("sensors", "lux1310"), ("schedules", "two_bucket"), ("scenes", "pan"),
+                           ("methods", "naive")):
+            names = self.figures("list", kind)[kind]
+            self.assertIn(name, [entry["name"] for entry in names])
+            lines = self.succeed("list", kind).splitlines()
+            self.assertEqual([line.split(maxsplit=1) for line in lines],
+                             [[entry["name"], entry["text"]] for entry in names])
+            self.assertTrue(all(entry["text"] and "docs/" not in entry["text"] for entry in names))
+        folder = Path(__file__).parents[2] / "config"
+        for kind in ("sensors", "schedules"):
+            self.assertEqual([entry["name"] for entry in self.figures("list", kind)[kind]],
+                             sorted(path.stem for path in (folder / kind).glob("*.toml")))
+        self.fails(USAGE, ["KIND"], "list")
 
     def test_wrong_command_lines_exit_with_2(self):
         for line in ([], ["dance"], ["synth"], ["synth", "pan"], ["synth", "tango", "-o", "x"],
@@ -42,7 +79,7 @@ class CommandLineTest(ProgramTest):
                      ["compare", "a"], ["compare", "a", "b", "--margin", "-1"]):
             self.fails(USAGE, ["--help"], *line)
         for line in (["dance"], ["schedule", "dance"], ["capture", "dance", "--force"]):
-            self.fails(USAGE, ['there is no subcommand "dance"', "--help"], *line)
+            self.fails(USAGE, ['there is no subcommand "dance"; known are ', "--help"], *line)
 
     def test_unusable_inputs_exit_with_1_and_say_which(self):
         self.fails(INPUT, ["stipple: missing.stipple: "], "info", "missing.stipple")
@@ -61,19 +98,49 @@ class CommandLineTest(ProgramTest):
         self.assertIn("2 frames of 32 x 24", text)
         self.assertIn('"slots": 2', (self.folder / "figures.json").read_text())
 
-    def test_progress_is_a_bar_on_a_terminal_only(self):
-        self.assertNotIn("[#", self.run_program(*SYNTH, "-o", "plain.npy").stderr)
+    def on_a_terminal(self, *line, columns=80, term="xterm", stdout=False):
+        """What a terminal shows of a run."""
         screen, terminal = pty.openpty()
         self.addCleanup(os.close, screen)
-        longer = ["synth", "still", "--frames", "9", "--size", "320x240"]
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("4H", 24, columns, 0, 0))
         with ThreadPoolExecutor() as reader:
             shown = reader.submit(read_to_the_end, screen)
             with os.fdopen(terminal, "w") as stderr:
-                subprocess.run([PROGRAM, *longer, "-o", "out.npy"], cwd=self.folder, timeout=60,
-                               stdout=subprocess.DEVNULL, stderr=stderr, check=True)
-        text = shown.result().decode()
-        self.assertRegex(text, r"\[#+-*\] \d/9 frames, [\d.e+]+ frames/s, \d\d:\d\d:\d\d left")
-        self.assertTrue(text.endswith("\r\x1b[K"), "the bar is taken away at the end")
+                subprocess.run([PROGRAM, *line], cwd=self.folder, timeout=60, check=True,
+                               stdout=stderr if stdout else subprocess.DEVNULL, stderr=stderr,
+                               env=dict(os.environ, TERM=term))
+        return shown.result().decode()
+
+    def test_progress_is_a_bar_on_a_terminal_only(self):
+        self.assertNotIn("[#", self.run_program(*SYNTH, "-o", "plain.npy").stderr)
+        text = self.on_a_terminal(*LONGER, "-o", "out.npy")
+        self.assertRegex(text, r"\[#+-*\] \d/9 frames, [\d.]+ frames/s, \d\d:\d\d:\d\d left")
+        self.assertTrue(text.endswith(CLEAR), "the bar is taken away at the end")
+
+    def test_the_bar_fits_the_terminal(self):
+        for columns in (120, 62, 50, 42, 12, 5):
+            text = self.on_a_terminal(*LONGER, "-o", f"{columns}.npy", columns=columns)
+            lines = [line for line in text.split(CLEAR) if line]
+            self.assertTrue(lines)
+            for line in lines:
+                self.assertLess(len(line), columns, line)
+        self.assertNotIn("[", text.replace(CLEAR, ""))
+
+    def test_a_dumb_terminal_gets_no_bar(self):
+        text = self.on_a_terminal(*LONGER, "-o", "out.npy", term="dumb")
+        self.assertNotIn("\x1b", text)
+        self.assertNotIn("[", text)
+
+    def test_a_warning_takes_the_place_of_the_bar(self):
+        self.succeed("capture", "record", f"replay:{self.write_flat('light.npy', 100)}", "-o", "cut.strec")
+        cut = self.folder / "cut.strec"
+        cut.write_bytes(cut.read_bytes()[:-10])
+        text = self.on_a_terminal("capture", "record", "replay:cut.strec", "-o", "again.strec")
+        self.assertRegex(text, r"recording \d+ frames[^\n]*\r\x1b\[Kstipple: cut\.strec: was cut off[^\n\x1b]*\r\n")
+
+    def test_the_summary_stands_alone_in_its_line(self):
+        text = self.on_a_terminal(*LONGER, "-o", "out.npy", stdout=True)
+        self.assertIn(CLEAR + "out.npy: 9 frames", text)
 
 
 if __name__ == "__main__":

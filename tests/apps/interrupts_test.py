@@ -34,6 +34,7 @@ class InterruptsTest(ProgramTest):
             program.kill()
         self.assertEqual(program.returncode, STOPPED, message)
         self.assertIn("stopped", message)
+        return message
 
     def partial_bytes(self, ending):
         return sum(path.stat().st_size for path in self.folder.rglob(f".*.partial{ending}"))
@@ -66,6 +67,19 @@ class InterruptsTest(ProgramTest):
                        when=frames)
         self.assertIn(frames(), range(1, 6000))
         self.assertEqual(len(list((self.folder / "out").iterdir())), frames())
+
+    def test_decode_that_has_no_frame_yet_says_that_nothing_is_written(self):
+        self.write_stream(slots=40, rows=160, cols=160)
+        started = time.monotonic()
+        message = self.interrupt("decode", "clip.stipple", "-o", "out.npy", "--method", "best",
+                                 when=lambda: self.partial_bytes(".npy") or
+                                 time.monotonic() > started + 1)
+        self.assertIn("stopped; nothing is written", message)
+        self.assertEqual(self.names(), ["clip.stipple", "light.npy"])
+
+    def test_the_search_for_cameras_ends_without_a_word_of_its_libraries(self):
+        message = self.interrupt("capture", "list", when=lambda: True)
+        self.assertEqual(message.strip().splitlines()[1:], ["stipple: stopped"])
 
     def endless(self, **options):
         """A run that goes on until it is told to stop, once it listens and has written something."""

@@ -1,5 +1,6 @@
 """Recordings of cameras: what docs/recording_format.md says of them, and what is made of them."""
 
+import json
 import re
 import signal
 import struct
@@ -102,7 +103,7 @@ class RecordingTest(ProgramTest):
     def test_a_recording_comes_back_as_the_light_it_was_made_of(self):
         self.record()
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
-        self.assertEqual(figures, {"slots": 6, "held_slots": 0, "missing_frames": 0,
+        self.assertEqual(figures, {"slots": 6, "held_slots": 0, "missing_frames": 0, "gaps": [],
                                    "damaged_places": 0, "cut_off": False})
         np.testing.assert_array_equal(self.array("again.npy"),
                                       (self.dn / 65535).astype(np.float32))
@@ -161,6 +162,41 @@ class RecordingTest(ProgramTest):
                 self.assertEqual(done.stderr.count("was cut off"), 1 if said else 0, done.stderr)
                 self.assertIn(said, done.stderr)
 
+    def test_a_damaged_recording_is_replayed_and_told_even_if_quiet(self):
+        self.record()
+        clip = self.folder / "clip.strec"
+        whole = clip.read_bytes()
+        starts = [found.start() for found in re.finditer(rb"\xc5FRM", whole)][1:]  # of frames
+        flipped = bytearray(whole)
+        flipped[starts[3] - 1] ^= 0xFF  # the last sample of frame 2
+        for content, code, parts in (
+                (flipped, INPUT, ["clip.strec: 1 frame missing or incomplete: 1 at slot 2",
+                                  "the recording is damaged\n  byte ", "made of what is left"]),
+                (whole[:starts[4] + 100], 0, ["clip.strec: was cut off before its end"])):
+            clip.write_bytes(content)
+            done = self.run_program("capture", "replay", "clip.strec", "-o", "again.npy", "-q", "--force",
+                                    "--json", "figures.json")
+            self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
+            for part in parts:
+                self.assertIn(part, done.stderr)
+            (self.folder / "figures.json").rename(self.folder / f"{code}.json")
+        self.assertEqual(len(self.array("again.npy")), 4)
+        gaps = json.loads((self.folder / "1.json").read_text())["gaps"]
+        self.assertEqual(gaps, [{"slot": 2, "frames": 1}])
+
+    def test_light_that_a_camera_cannot_hold_is_told_by_its_share(self):
+        light = np.full((3, 8, 8, 3), 0.5, np.float32)
+        light[0, :2] = 4.5
+        np.save(self.folder / "hdr.npy", light)
+        done = self.run_program("capture", "record", "replay:hdr.npy", "-o", "a.strec", *FAST, "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for part in ("hdr.npy: its first frame has light up to 4.5", "25 % of it is clipped to 1.0",
+                     "RGB8", "1/255"):
+            self.assertIn(part, done.stderr)
+        np.save(self.folder / "hdr.npy", light[1:])
+        done = self.run_program("capture", "record", "replay:hdr.npy", "-o", "b.strec", *FAST, "-q")
+        self.assertEqual(done.stderr, "")
+
     def test_what_the_emulator_finds_missing_in_a_recording_is_said(self):
         self.record()
         clip, whole = self.folder / "clip.strec", (self.folder / "clip.strec").read_bytes()
@@ -179,7 +215,7 @@ class RecordingTest(ProgramTest):
         flipped = bytearray(whole)
         flipped[starts[3] - 1] ^= 0xFF  # the last sample of frame 2
         said = emulate(flipped)
-        self.assertIn("clip.strec: is damaged (1 of its blocks cannot be read), lacks 1 frames", said)
+        self.assertIn("clip.strec: is damaged (1 of its blocks cannot be read), lacks 1 frame, missing", said)
         light = (self.dn / 65535).astype(np.float32)
         light[2] = light[1]  # the frame before stands in
         np.testing.assert_array_equal(self.array("a.npy"), light)
@@ -195,6 +231,7 @@ class RecordingTest(ProgramTest):
         self.assertIn("clip.strec: cannot be written: File too large", done.stderr)
         figures = self.figures("capture", "replay", "clip.strec", "-o", "again.npy")
         self.assertGreaterEqual(figures["slots"], 1)
+        self.assertRegex(done.stderr, rf"clip\.strec: {figures['slots']} frames? kept\n")
         np.testing.assert_array_equal(
             self.array("again.npy"), (self.dn / 65535).astype(np.float32)[:figures["slots"]])
 

@@ -7,6 +7,7 @@ import signal
 import struct
 import subprocess
 import threading
+import time
 import unittest
 
 import numpy as np
@@ -76,6 +77,46 @@ class ServeTest(ProgramTest):
             self.skipTest(BUILT_WITHOUT)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
+
+    def warnings_of(self, source, frames):
+        """What a server says while a client records so many frames."""
+        ServeTest.count += 1
+        address = own_address(ServeTest.count)
+        server = self.start_program("capture", "serve", source, "--address", address, "--fps", 200,
+                                    stdout=subprocess.PIPE)
+        self.addCleanup(self.stop, server)
+        self.assertIn("READY", server.stdout.readline())
+        self.record(address, "clip.strec", "--frames", frames, "--force")
+        time.sleep(0.5)  # the warning comes from another thread
+        server.send_signal(signal.SIGINT)
+        return server.communicate(timeout=60)[1]
+
+    def test_light_that_is_clipped_and_damage_are_told(self):
+        light = np.full((6, 8, 16), 0.5, np.float32)
+        self.assertNotIn("clipped", self.warnings_of(self.write_array("light.npy", light), 6))
+        self.succeed("capture", "record", "replay:light.npy", "-o", "whole.strec", "--frames", 6)
+        light[0, :2] = 4.5
+        said = self.warnings_of(self.write_array("hdr.npy", light), 6)
+        self.assertIn("hdr.npy: its first frame has light up to 4.5; 25 % of it is clipped", said)
+        self.assertIn("Mono8", said)
+        content = bytearray((self.folder / "whole.strec").read_bytes())
+        blocks = [at for at in range(len(content)) if content[at:at + 4] == b"\xc5FRM"]
+        content[blocks[2] - 1] ^= 0xFF  # the last sample of the first frame, behind the session
+        (self.folder / "damaged.strec").write_bytes(content)
+        self.assertIn("damaged.strec: is damaged", self.warnings_of("damaged.strec", 5))
+
+    def test_a_setting_that_cannot_be_is_answered_with_what_can(self):
+        address = self.serve(self.scene())
+        for setting, parts in (
+                ("Width=33", ["Width: 33 cannot be set", "it takes ", " to 64 in steps of "]),
+                ("ExposureTime=100", ["ExposureTime: the camera has no such feature"]),
+                ("Wdith=32", ["Wdith: the camera has no such feature", 'did you mean "Width"?'])):
+            done = self.run_program("capture", "record", "gige:" + address, "-o", "x.strec", "--set", setting)
+            if BUILT_WITHOUT in done.stderr:
+                self.skipTest(BUILT_WITHOUT)
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            for part in parts:
+                self.assertIn(part, done.stderr)
 
     def tool(self, name, *arguments):
         """Output of one of Aravis' programs."""

@@ -1,11 +1,12 @@
 """What a decoding method in stages leaves behind: estimates, figures, chart."""
 
+import os
 import shutil
 import unittest
 
 import numpy as np
 
-from program import INPUT, ProgramTest
+from program import INPUT, OK, ProgramTest
 
 QUICK = ["--method", "portz2013"]
 for setting in ("stage1.window_px=2", "stage1.iterations=3", "stage2.window_px=2",
@@ -33,6 +34,22 @@ class StagesTest(ProgramTest):
         self.assertEqual(self.array("stages/stage1.npy").shape, self.array("out.npy").shape)
         np.testing.assert_array_equal(self.array("stages/stage2.npy"), self.array("out.npy"))
         self.assertFalse(np.array_equal(self.array("stages/start.npy"), self.array("out.npy")))
+
+    def test_without_gnuplot_all_but_the_chart_is_there(self):
+        stream = self.write_stream(slots=10, rows=17, cols=18)
+        done = self.run_program("decode", stream, "-o", "out.npy", *QUICK, "--stages", "stages",
+                                env=dict(os.environ, PATH=str(self.folder)))
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertIn("stages/convergence.png is not drawn: gnuplot: No such file", done.stderr)
+        self.assertEqual([name for name in self.names() if name.startswith("stages/")],
+                         ["stages/stage1.npy", "stages/stage2.npy", "stages/start.npy"])
+
+    def test_a_chart_that_is_there_is_not_written_over(self):
+        stream = self.write_stream(slots=10, rows=17, cols=18)
+        (self.folder / "stages").mkdir()
+        (self.folder / "stages/convergence.png").touch()
+        self.fails(INPUT, ["stages/convergence.png", "exists already"], "decode", stream, "-o", "out.npy",
+                   *QUICK, "--stages", "stages")
 
     def test_a_method_without_stages_is_refused(self):
         self.fails(INPUT, ["--stages", "method naive has none", "portz2013"], "decode",

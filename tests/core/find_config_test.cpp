@@ -40,9 +40,15 @@ TEST_F(FindConfigTest, RefusesAMissingPath) {
 }
 
 TEST_F(FindConfigTest, ListsTheKnownNames) {
-    const auto message = message_of<InputError>([] { return find_config("sensors", "tinny"); });
-    expect_parts(message, {"\"tinny\": is neither a file nor one of the sensors: ", "tiny"});
+    const auto message = message_of<InputError>([] { return find_config("sensors", "camera"); });
+    expect_parts(message,
+                 {"\"camera\": is neither a file nor one of the sensors; known are ", "tiny"});
     EXPECT_EQ(message.find("notes"), std::string::npos);
+}
+
+TEST_F(FindConfigTest, SuggestsWhatWasProbablyMeant) {
+    expect_parts(message_of<InputError>([] { return find_config("sensors", "tinny"); }),
+                 {"one of the sensors; did you mean \"tiny\"?"});
 }
 
 TEST_F(FindConfigTest, SaysSoIfAKindHasNoFolder) {

@@ -122,9 +122,13 @@ TEST(PendingOutputTest, RefusesAMissingParentFolderAndANamelessOutput) {
                  {"clip.npy: there is no folder", "/no\""});
     write_text(folder / "file", "");
     EXPECT_THROW(PendingOutput(folder / "file/clip.npy", false), InputError);
-    for (const char* name : {"", ".", "..", "/", "a/.."})
+    for (const char* name : {"", ".", "..", "a/.."})
         expect_parts(message_of<InputError>([&] { PendingOutput(name, true); }),
                      {"give it a name"});
+    expect_parts(message_of<InputError>([&] { PendingOutput("/", true); }),
+                 {"\"/\": is a folder; name a file in it"});
+    expect_parts(message_of<InputError>([&] { PendingOutput(folder / "no/", true); }),
+                 {"/no/\": names a folder that does not exist"});
 }
 
 }  // namespace

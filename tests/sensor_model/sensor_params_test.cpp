@@ -32,9 +32,9 @@ TEST(SensorParamsTest, DefaultsAreThePapers) {
 
 TEST(SensorParamsTest, NamesTheParameterAndItsRange) {
     EXPECT_EQ(message_of({.name = "mine", .bit_depth = 17}),
-              "sensor 'mine': bit_depth: 17 is outside 1 .. 16");
+              "sensor \"mine\": bit_depth: 17 is outside 1 .. 16");
     EXPECT_EQ(message_of({.read_noise_e = -1}),
-              "sensor 'paper': read_noise_e: -1 is outside 0 .. 100000");
+              "sensor \"paper\": read_noise_e: -1 is outside 0 .. 100000");
 }
 
 TEST(SensorParamsTest, RefusesWhatIsNotAPositiveFiniteNumber) {

@@ -94,7 +94,8 @@ TEST(V4l2SettingsTest, RefusesFormatsThatAreNotRaw) {
     EmulatedV4l2 emulated(driver);
     EXPECT_THAT(error_of<InputError>({}),
                 HasSubstr("set to YUYV, which is not read here; it has Mono8"));
-    EXPECT_THAT(error_of<InputError>({{"PixelFormat", "YUYV"}}), HasSubstr("'YUYV' is no format"));
+    EXPECT_THAT(error_of<InputError>({{"PixelFormat", "YUYV"}}),
+                HasSubstr("\"YUYV\" is no format"));
 }
 
 TEST(V4l2SettingsTest, RefusesASizeThatTheDriverWouldReplace) {
@@ -116,7 +117,7 @@ TEST(V4l2SettingsTest, TakesTheSizeAskedFor) {
 TEST(V4l2SettingsTest, RefusesSizesThatAreNone) {
     EmulatedV4l2 emulated;
     for (const char* const text : {"0", "-1", "65536", "99999999999999999999", "1e3", "", "8 "})
-        EXPECT_THAT(error_of<InputError>({{"Width", text}}), HasSubstr("Width: '")) << text;
+        EXPECT_THAT(error_of<InputError>({{"Width", text}}), HasSubstr("Width: \"")) << text;
 }
 
 TEST(V4l2SettingsTest, PlacesTheRegion) {
@@ -146,7 +147,7 @@ TEST(V4l2SettingsTest, SetsTheRateAndRefusesAnotherOne) {
                 HasSubstr("would send 60 frames/s instead of 200"));
     for (const char* const text : {"0", "-5", "nan", "inf", "fast"})
         EXPECT_THAT(error_of<InputError>({{"AcquisitionFrameRate", text}}),
-                    HasSubstr("AcquisitionFrameRate: '"));
+                    HasSubstr("AcquisitionFrameRate: \""));
 }
 
 TEST(V4l2SettingsTest, RefusesARateThatCannotBeSet) {
@@ -214,10 +215,10 @@ TEST(V4l2SettingsTest, RefusesControlsAndValuesThatAreNone) {
     const std::vector<std::pair<std::pair<const char*, const char*>, const char*>> cases{
         {{"contrast", "1"},
          "contrast: the device has no such setting; its controls are brightness"},
-        {{"brightness", "256"}, "brightness: '256' is no whole number from 0 to 255"},
-        {{"brightness", "12"}, "brightness: '12' is not 0 plus a multiple of 5"},
-        {{"brightness", "bright"}, "brightness: 'bright' is no whole number"},
-        {{"exposure_auto", "2"}, "'2' is none of 1 (Manual Mode), 3 (Aperture Priority Mode)"},
+        {{"brightness", "256"}, "brightness: \"256\" is no whole number from 0 to 255"},
+        {{"brightness", "12"}, "brightness: \"12\" is not 0 plus a multiple of 5"},
+        {{"brightness", "bright"}, "brightness: \"bright\" is no whole number"},
+        {{"exposure_auto", "2"}, "\"2\" is none of 1 (Manual Mode), 3 (Aperture Priority Mode)"},
         {{"ExposureTime", "2550"}, "the device counts in 100 us"},
         {{"ExposureTime", "1e9"}, "is no number from 100 to 500000 us"}};
     for (const auto& [setting, message] : cases)

@@ -1,0 +1,138 @@
+"""What the program says of command lines and inputs that cannot be meant: the fault, and what was meant."""
+
+import os
+import shutil
+import subprocess
+import unittest
+
+import numpy as np
+
+from program import INPUT, PROGRAM, USAGE, ProgramTest
+
+
+class UsageTest(ProgramTest):
+    def test_a_misspelt_name_is_answered_with_what_was_meant(self):
+        for wrong, meant, line in (
+                ("synht", '"synth"', ["synht"]), ("lst", '"list"', ["capture", "lst"]),
+                ("shwo", '"show"', ["schedule", "shwo"]), ("pna", '"pan"', ["synth", "pna", "-o", "x"]),
+                ("nave", '"naive"', ["decode", "a", "-o", "x", "--method", "nave"]),
+                ("SRGB", '"srgb"', ["emulate", "a", "-o", "x", "--transfer", "SRGB"]),
+                ("sensor", '"sensors"', ["list", "sensor"])):
+            said = self.fails(USAGE, [f'"{wrong}"', f"did you mean {meant}?"], *line)
+            self.assertRegex(said, r'^stipple: .*\n"stipple[a-z ]* --help" says more\n$')
+        light = self.write_flat("light.npy")
+        for option, wrong, meant in (("--sensor", "papre", "paper"), ("--schedule", "randm", "random")):
+            self.fails(INPUT, [f'"{wrong}"', f'did you mean "{meant}"?'], "emulate", light, "-o", "x",
+                       option, wrong)
+
+    def test_a_misspelt_option_is_named_before_what_is_missing(self):
+        for wrong, meant, line in (
+                ("--shcedule", "--schedule", ["emulate", "--shcedule", "foo"]),
+                ("--frmes", "--frames", ["synth", "pan", "-o", "x", "--frmes", "3"]),
+                ("--lum", "--luminance", ["emulate", "a", "--lum=1"]),
+                ("--Frames", "--frames", ["capture", "record", "a", "--Frames", "3"])):
+            command = " ".join(["stipple", *line[:2 if line[0] == "capture" else 1]])
+            said = self.fails(USAGE, [f"stipple: {wrong} is no option of {command}; did you mean {meant}?"],
+                              *line)
+            self.assertNotIn("required", said)
+        self.fails(USAGE, ["-v is no option of stipple; did you mean -V?"], "-v")
+        self.fails(USAGE, ['--threads is no option of stipple; write it behind "stipple info"'],
+                   "--threads", 3, "info", "a")
+
+    def test_words_that_are_too_many_are_named_in_their_order(self):
+        self.fails(USAGE, ['"more" is more than stipple info takes'], "info", "a", "more", "words")
+        self.fails(USAGE, ['"-o" is no option behind "--"'], "emulate", "--", "s.npy", "-o", "x")
+        for name in ("a.png", "b.png", "c.png"):
+            self.write_png(name, [[1]])
+        self.fails(USAGE, ['"b.png"', "name their folder"], "emulate", "a.png", "b.png", "c.png", "-o", "x")
+
+    def test_options_that_are_given_wrong(self):
+        self.fails(USAGE, ["--frames is given 2 times; give it once"], "synth", "pan", "-o", "x",
+                   "--frames", 2, "--frames", 3)
+        self.fails(USAGE, ["--output needs a value"], "synth", "pan", "--output")
+        self.fails(USAGE, ["18446744073709551615 is the most"], "synth", "pan", "-o", "x", "--seed", 2**64)
+        self.fails(USAGE, ["--timeout", "--follow"], "decode", "a", "-o", "x", "--timeout", 3)
+        self.fails(USAGE, ["--json", "is empty"], "info", "a", "--json", "")
+        self.fails(USAGE, ["STREAM", "/dev/stdin"], "info", "-")
+        self.fails(USAGE, ["--output", "standard output"], "synth", "pan", "-o", "-")
+        self.fails(USAGE, ["--name", "64"], "schedule", "import", "a.npy", "-o", "x", "--name", "n" * 65)
+
+    def test_subcommands_that_are_missing(self):
+        self.fails(USAGE, ['"stipple" needs a subcommand: synth, emulate'])
+        self.fails(USAGE, ['"stipple capture" needs a subcommand: list, doctor'], "capture")
+
+    def test_a_full_standard_error_changes_no_exit_code(self):
+        for line in (["--frmes"], ["synth", "--size", "3"], ["dance"], []):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([PROGRAM, *line], stderr=full, timeout=60, check=False)
+            self.assertEqual(done.returncode, USAGE)
+
+
+class InputTest(ProgramTest):
+    def test_a_sensor_without_timing_is_told_with_those_that_have_it(self):
+        light = self.write_flat("light.npy")
+        for option in (["--overrun", "drop"], ["--vcd", "a.vcd"]):
+            said = self.fails(INPUT, [option[0], "no section [timing]", "lux1310, "], "emulate", light, "-o",
+                              "x", *option)
+            self.assertNotIn("stipple timing", said)
+
+    def test_luminance_is_no_advice_where_sizes_differ(self):
+        for rows, advised in ((8, True), (6, False)):
+            self.write_array("a.npy", np.zeros((3, rows, 8, 3)))
+            self.write_flat("b.npy", slots=3)
+            said = self.fails(INPUT, ["a.npy", "b.npy"], "compare", "a.npy", "b.npy")
+            self.assertEqual("--luminance" in said, advised, said)
+
+    def test_a_file_of_another_kind_is_told_what_it_is(self):
+        (self.folder / "empty.strec").touch()
+        self.fails(INPUT, ["empty.strec", "empty"], "emulate", "empty.strec", "-o", "x")
+        stream = self.write_stream()
+        self.fails(INPUT, [stream, "stipple decode"], "emulate", stream, "-o", "x")
+        self.succeed("capture", "record", "replay:light.npy", "-o", "b.strec", "--set",
+                     "AcquisitionFrameRate=0")
+        for line in (["info", "b.strec"], ["decode", "b.strec", "-o", "x.npy"]):
+            self.fails(INPUT, ["b.strec", "recording of a camera", "capture replay"], *line)
+
+    def test_a_file_that_may_not_be_read_is_an_input_error(self):
+        folder = self.folder / "locked"
+        folder.mkdir()
+        shutil.copy(self.folder / self.write_flat("light.npy"), folder / "light.npy")
+        folder.chmod(0)
+        self.addCleanup(folder.chmod, 0o700)
+        self.folder.chmod(0o777)
+        options = {"user": 65534, "group": 65534} if os.getuid() == 0 else {}
+        for line in (["emulate", "locked/light.npy", "-o", "x"],
+                     ["capture", "serve", "locked/light.npy", "--address", "127.9.9.9"]):
+            said = self.fails(INPUT, ["locked/light.npy: ", "Permission denied"], *line, **options)
+            self.assertNotIn("filesystem error", said)
+
+    def test_a_folder_that_does_not_exist_is_no_file(self):
+        light = self.write_flat("light.npy")
+        for line in (["emulate", light], ["capture", "record", f"replay:{light}"]):
+            self.fails(INPUT, ["newdir/", "names a folder that does not exist"], *line, "-o", "newdir/")
+
+    def test_a_stream_that_was_cut_off_is_told_so(self):
+        stream = self.folder / self.write_stream(slots=12)
+        whole = stream.read_bytes()
+        stream.write_bytes(whole[:whole.rindex(b"\xc5SPK") + 20])
+        for line in (["info", stream.name], ["decode", stream.name, "-o", "x.npy", "--force"]):
+            done = self.run_program(*line)
+            self.assertEqual(done.returncode, INPUT)
+            self.assertIn("cut off", done.stderr)
+            self.assertNotIn("0 of", done.stderr)
+
+    def test_a_demo_that_is_too_short_for_a_sample_has_no_nan(self):
+        text = self.succeed("demo", "--frames", 2, "--size", "32x24")
+        self.assertNotIn("nan", text)
+        self.assertNotIn("inf", text)
+        self.assertIn("no sample", text)
+
+    def test_a_diagram_shows_no_pixel_beyond_the_array(self):
+        for size, pixels in (("1x1", 1), ("3x1", 3), ("640x480", 10)):
+            text = self.succeed("schedule", "show", "random", "--size", size)
+            self.assertEqual(text.count("("), pixels, text)
+        self.assertEqual(self.succeed("schedule", "show", "full4x", "--size", "4x9").count("("), 4)
+
+
+if __name__ == "__main__":
+    unittest.main()
