@@ -1,0 +1,208 @@
+#include "core/video_decoder.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+
+#include "core/error.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/display.h>
+}
+
+namespace stipple {
+namespace {
+
+/// Containers announce a frame count that may be off by some frames (it is often duration x rate).
+constexpr double kLeastFractionOfAnnounced = 0.9;
+
+/// Errors that a decoder logs. Some decoders tell of damage nowhere else.
+struct LoggedErrors {
+    std::atomic<int> count = 0;
+    std::atomic<int> first_frame = 0;  ///< the frame that came next when the first was logged
+    int next_frame = 0;
+};
+
+/// In place of FFmpeg's own log on standard error.
+void log_to_decoder(void* context, int level, const char* /*format*/, va_list /*arguments*/) {
+    if (context == nullptr || level > AV_LOG_ERROR) return;
+    if (*static_cast<const AVClass* const*>(context) != avcodec_get_class()) return;
+    auto* const errors = static_cast<LoggedErrors*>(static_cast<AVCodecContext*>(context)->opaque);
+    if (errors != nullptr && errors->count++ == 0) errors->first_frame = errors->next_frame;
+}
+
+struct Deleter {
+    void operator()(AVFormatContext* file) const { avformat_close_input(&file); }
+    void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+    void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+};
+template <typename Type>
+using Owned = std::unique_ptr<Type, Deleter>;
+
+std::string reason(int error) {
+    char text[AV_ERROR_MAX_STRING_SIZE] = {};
+    av_strerror(error, text, sizeof(text));
+    return text;
+}
+
+Owned<AVFormatContext> open_file(const std::string& name) {
+    AVFormatContext* file = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "protocol_whitelist", "file", 0);
+    // "file:" before it, for a name may have a colon.
+    int error = avformat_open_input(&file, ("file:" + name).c_str(), nullptr, &options);
+    av_dict_free(&options);
+    Owned<AVFormatContext> opened(file);
+    if (error >= 0) error = avformat_find_stream_info(file, nullptr);
+    if (error < 0)
+        throw InputError(name, fmt::format("cannot be read as video ({}); it is damaged, ends too "
+                                           "early or is none",
+                                           reason(error)));
+    return opened;
+}
+
+/// What a frame does not declare of its colours, its container may.
+void complete_colours(AVFrame& frame, const AVCodecParameters& container) {
+    if (frame.colorspace == AVCOL_SPC_UNSPECIFIED) frame.colorspace = container.color_space;
+    if (frame.color_range == AVCOL_RANGE_UNSPECIFIED) frame.color_range = container.color_range;
+    if (frame.color_trc == AVCOL_TRC_UNSPECIFIED) frame.color_trc = container.color_trc;
+}
+
+}  // namespace
+
+struct VideoDecoder::Impl {
+    std::string name;
+    LoggedErrors errors;
+    Owned<AVFormatContext> file;
+    const AVStream* stream = nullptr;
+    Owned<AVCodecContext> codec;
+    Owned<AVPacket> packet{av_packet_alloc()};
+    Owned<AVFrame> frame{av_frame_alloc()};
+    bool ended = false;  ///< the file, not yet the frames
+    int packets = 0;     ///< one a frame, those that an edit list hides too
+    std::string shortfall;
+
+    void open(const std::filesystem::path& path);
+    void send_packet();
+    void check_end();
+    [[nodiscard]] double announced_frames() const;
+    [[noreturn]] void fail(const std::string& problem) const {
+        throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
+                         problem + "; repair or cut the film first");
+    }
+};
+
+void VideoDecoder::Impl::open(const std::filesystem::path& path) {
+    av_log_set_callback(log_to_decoder);
+    name = path.string();
+    file = open_file(name);
+    const AVCodec* decoder = nullptr;
+    const int index = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    if (index < 0)
+        throw InputError(name, index == AVERROR_DECODER_NOT_FOUND
+                                   ? "is coded in a way that FFmpeg here cannot decode"
+                                   : "holds no video");
+    stream = file->streams[index];
+    codec.reset(avcodec_alloc_context3(decoder));
+    avcodec_parameters_to_context(codec.get(), stream->codecpar);
+    codec->opaque = &errors;
+    codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT | AV_CODEC_FLAG_BITEXACT;
+    codec->err_recognition |= AV_EF_CRCCHECK;
+    codec->thread_count = 0;
+    codec->thread_type = FF_THREAD_SLICE;  // decoders in one context each log which frame is wrong
+    const int error = avcodec_open2(codec.get(), decoder, nullptr);
+    if (error < 0) throw InputError(name, "cannot be decoded: " + reason(error));
+}
+
+/// Gives the decoder what it needs for more frames.
+void VideoDecoder::Impl::send_packet() {
+    int error = 0;
+    do {
+        av_packet_unref(packet.get());
+        error = av_read_frame(file.get(), packet.get());
+    } while (error >= 0 && (packet->stream_index != stream->index || packet->size == 0));
+    if (error < 0 && error != AVERROR_EOF) fail("cannot be read: " + reason(error));
+    ended = error < 0;
+    packets += ended ? 0 : 1;
+    if (!ended && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0) fail("is damaged or cut short");
+    error = avcodec_send_packet(codec.get(), ended ? nullptr : packet.get());
+    if (error < 0) fail("is damaged: " + reason(error));
+}
+
+double VideoDecoder::Impl::announced_frames() const {
+    if (stream->nb_frames > 0) return static_cast<double>(stream->nb_frames);
+    const double seconds = stream->duration > 0
+                               ? static_cast<double>(stream->duration) * av_q2d(stream->time_base)
+                               : static_cast<double>(file->duration) / AV_TIME_BASE;
+    return std::round(seconds * av_q2d(stream->avg_frame_rate));
+}
+
+void VideoDecoder::Impl::check_end() {
+    if (errors.next_frame == 0)
+        throw InputError(name, "holds no frame; it is damaged or ends too early");
+    const double announced = announced_frames();
+    if (packets >= announced - 1) return;
+    const std::string text = fmt::format("ends after {} of the {:.0f} frames", packets, announced);
+    if (packets < kLeastFractionOfAnnounced * announced)
+        throw InputError(name, text + "; it is truncated or damaged");
+    shortfall = fmt::format("{}: {} that its container announces", name, text);
+}
+
+VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+    impl_->open(file);
+}
+
+VideoDecoder::~VideoDecoder() = default;
+VideoDecoder::VideoDecoder(VideoDecoder&&) noexcept = default;
+VideoDecoder& VideoDecoder::operator=(VideoDecoder&&) noexcept = default;
+
+const AVFrame* VideoDecoder::next() {
+    AVFrame& frame = *impl_->frame;
+    int error = avcodec_receive_frame(impl_->codec.get(), &frame);
+    for (; error == AVERROR(EAGAIN) && !impl_->ended;
+         error = avcodec_receive_frame(impl_->codec.get(), &frame))
+        impl_->send_packet();
+    if (error == AVERROR_EOF) {
+        impl_->check_end();
+        return nullptr;
+    }
+    if (error < 0) impl_->fail("is damaged: " + reason(error));
+    if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
+        impl_->fail("is damaged: parts of it are missing or made up");
+    ++impl_->errors.next_frame;
+    complete_colours(frame, *impl_->stream->codecpar);
+    return &frame;
+}
+
+int VideoDecoder::quarter_turns() const {
+    const auto* const matrix = reinterpret_cast<const std::int32_t*>(
+        av_stream_get_side_data(impl_->stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
+    if (matrix == nullptr) return 0;
+    const double quarters = av_display_rotation_get(matrix) / 90;
+    const double determinant =
+        static_cast<double>(matrix[0]) * matrix[4] - static_cast<double>(matrix[1]) * matrix[3];
+    if (!(determinant > 0) || quarters != std::round(quarters))
+        throw InputError(impl_->name,
+                         "is to be shown mirrored, or turned by another angle than 90, 180 or 270 "
+                         "degrees; convert it first, e.g. by ffmpeg");
+    return (static_cast<int>(quarters) + 4) % 4;
+}
+
+std::vector<std::string> VideoDecoder::warnings() const {
+    std::vector<std::string> texts;
+    const int count = impl_->errors.count;
+    if (count > 0)
+        texts.push_back(fmt::format(
+            "{}: the decoder reports {} error{}, the first at frame {}: "
+            "frames from there on may be wrong",
+            impl_->name, count, count == 1 ? "" : "s", impl_->errors.first_frame.load()));
+    if (!impl_->shortfall.empty()) texts.push_back(impl_->shortfall);
+    return texts;
+}
+
+}  // namespace stipple
