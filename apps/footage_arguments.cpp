@@ -7,13 +7,14 @@
 
 namespace stipple {
 
-void add_footage_arguments(Command& command, FootageOptions& options) {
+void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
-        .add_choice<std::optional<Transfer>>("--transfer", options.transfer,
-                                             {{"linear", Transfer::kLinear},
-                                              {"gamma22", Transfer::kGamma22},
-                                              {"srgb", Transfer::kSrgb}},
-                                             "how the numbers of the footage map to light (linear)")
+        .add_choice<std::optional<Transfer>>(
+            "--transfer", options.transfer,
+            {{"linear", Transfer::kLinear},
+             {"gamma22", Transfer::kGamma22},
+             {"srgb", Transfer::kSrgb}},
+            "how the numbers of " + footage + " map to light (linear)")
         .type_name("linear|gamma22|srgb");
     command.add_flag("--luminance", options.luminance, "Rec. 709 luminance of colour footage");
 }

@@ -100,19 +100,29 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
     return {footage.rows, footage.cols, 1};
 }
 
+/// \throws InputError for a file without keys, which would be taken for all the defaults.
+Config open_config(std::string_view kind, const std::string& name,
+                   const std::vector<std::string>& settings) {
+    const auto file = find_config(kind, name);
+    Config config(file, settings);
+    if (config.file_is_empty())
+        throw InputError(file.string(), fmt::format("holds no keys; config/{} has examples", kind));
+    return config;
+}
+
 }  // namespace
 
 NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
                               const ColumnAddressing& addressing) {
     if (is_program(choice.schedule)) return read_program(choice);
-    Config config(find_config("schedules", choice.schedule), settings_of(choice, "schedule."));
+    Config config = open_config("schedules", choice.schedule, settings_of(choice, "schedule."));
     NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing);
     config.reject_unknown_keys();
     return schedule;
 }
 
 SensorDescription read_sensor_file(const SensorChoice& choice) {
-    Config config(find_config("sensors", choice.sensor), settings_of(choice, ""));
+    Config config = open_config("sensors", choice.sensor, settings_of(choice, ""));
     SensorDescription sensor{.params = read_sensor(config), .timing = {}};
     sensor.timing = read_timing(config, sensor.params.bit_depth);
     config.reject_unknown_keys();

@@ -11,6 +11,7 @@
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
 #include "core/frame_writer.h"
+#include "core/video_reader.h"
 #include "scenes/scene.h"
 
 namespace stipple {
@@ -43,8 +44,10 @@ void synth(const SynthOptions& options, const RunOptions& run) {
                 {"cols", shape.cols},
                 {"planes", shape.planes},
                 {"slots_per_second", rate}});
-    run.say(fmt::format("{}: {} frames of {} x {}, linear light, {:.3g} frames/s", options.output,
-                        progress.done(), shape.cols, shape.rows, rate));
+    run.say(fmt::format("{}: {} frames of {} x {}, {}, {:.3g} frames/s", options.output,
+                        progress.done(), shape.cols, shape.rows,
+                        is_video_name(options.output) ? "tone-mapped to 8 bits" : "linear light",
+                        rate));
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ void add_synth(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple synth pan -o scene\n"
-        "  stipple synth dice -o dice.mp4 --frames 200 --size 640x480 --seed 7");
+        "  stipple synth dice -o dice.npy --frames 200 --size 640x480 --seed 7");
     command.callback([options, &action] {
         action = [options](const RunOptions& run) { synth(*options, run); };
     });
