@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +18,7 @@ extern "C" {
 namespace stipple {
 namespace {
 
-/// Containers announce a frame count that may be off by some frames (it is often duration x rate).
+/// Containers announce a number of frames or a duration, which may be off by some frames.
 constexpr double kLeastFractionOfAnnounced = 0.9;
 
 /// Errors that a decoder logs. Some decoders tell of damage nowhere else.
@@ -85,12 +86,15 @@ struct VideoDecoder::Impl {
     Owned<AVFrame> frame{av_frame_alloc()};
     bool ended = false;  ///< the file, not yet the frames
     int packets = 0;     ///< one a frame, those that an edit list hides too
+    double end_s =
+        0;  ///< when the last packet, of any stream if only the file has a duration, ends
     std::string shortfall;
 
     void open(const std::filesystem::path& path);
     void send_packet();
     void check_end();
-    [[nodiscard]] double announced_frames() const;
+    void count_packet();
+    [[nodiscard]] double announced_s() const;
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
                          problem + "; repair or cut the film first");
@@ -125,32 +129,47 @@ void VideoDecoder::Impl::send_packet() {
     do {
         av_packet_unref(packet.get());
         error = av_read_frame(file.get(), packet.get());
+        if (error >= 0) count_packet();
     } while (error >= 0 && (packet->stream_index != stream->index || packet->size == 0));
     if (error < 0 && error != AVERROR_EOF) fail("cannot be read: " + reason(error));
     ended = error < 0;
-    packets += ended ? 0 : 1;
     if (!ended && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0) fail("is damaged or cut short");
     error = avcodec_send_packet(codec.get(), ended ? nullptr : packet.get());
     if (error < 0) fail("is damaged: " + reason(error));
 }
 
-double VideoDecoder::Impl::announced_frames() const {
-    if (stream->nb_frames > 0) return static_cast<double>(stream->nb_frames);
-    const double seconds = stream->duration > 0
-                               ? static_cast<double>(stream->duration) * av_q2d(stream->time_base)
-                               : static_cast<double>(file->duration) / AV_TIME_BASE;
-    return std::round(seconds * av_q2d(stream->avg_frame_rate));
+void VideoDecoder::Impl::count_packet() {
+    const bool of_video = packet->stream_index == stream->index;
+    if (of_video) ++packets;
+    if (packet->pts == AV_NOPTS_VALUE || (stream->duration > 0 && !of_video)) return;
+    const AVStream& own = *file->streams[packet->stream_index];
+    const std::int64_t first = own.start_time == AV_NOPTS_VALUE ? 0 : own.start_time;
+    end_s = std::max(
+        end_s, static_cast<double>(packet->pts + packet->duration - first) * av_q2d(own.time_base));
 }
 
+/// Of the video, else of the whole file; not above 0 if unknown.
+double VideoDecoder::Impl::announced_s() const {
+    return stream->duration > 0 ? static_cast<double>(stream->duration) * av_q2d(stream->time_base)
+                                : static_cast<double>(file->duration) / AV_TIME_BASE;
+}
+
+/// Compares what was read with what the container announces: frames, else their time.
 void VideoDecoder::Impl::check_end() {
     if (errors.next_frame == 0)
         throw InputError(name, "holds no frame; it is damaged or ends too early");
-    const double announced = announced_frames();
-    if (packets >= announced - 1) return;
-    const std::string text = fmt::format("ends after {} of the {:.0f} frames", packets, announced);
-    if (packets < kLeastFractionOfAnnounced * announced)
+    const bool counts = stream->nb_frames > 0;
+    const double announced = counts ? static_cast<double>(stream->nb_frames) : announced_s();
+    const double found = counts ? packets : end_s;
+    const double one_frame = counts ? 1 : end_s / packets;
+    if (found >= announced - 1.5 * one_frame) return;
+    const std::string text =
+        counts
+            ? fmt::format("ends after {} of {} frames", packets, stream->nb_frames)
+            : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, end_s, announced);
+    if (found < kLeastFractionOfAnnounced * announced)
         throw InputError(name, text + "; it is truncated or damaged");
-    shortfall = fmt::format("{}: {} that its container announces", name, text);
+    shortfall = fmt::format("{}: {}; its end may be cut off", name, text);
 }
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {

@@ -98,7 +98,7 @@ bool is_full_range(const AVFrame& frame, Colours colours) {
 }
 
 /// How 16-bit numbers, which are those of `depth` bits times 2^(16 - depth), become 0..1 and, for
-/// the differences of colour, -0.5..0.5. H.273, equations 11 to 19.
+/// the differences of colour, -0.5..0.5. H.273, 8.3.
 struct Scale {
     float black;
     float luma;
@@ -145,8 +145,8 @@ struct VideoPlanes::Impl {
     LumaWeights weights{};
     Scale scale{16, true};
     SourceTraits traits;
-    std::unique_ptr<AVFrame, FrameDeleter> words{
-        av_frame_alloc()};  ///< RGB may be bytes; not turned
+    /// The frame as it is stored below, not turned; RGB may be of bytes.
+    std::unique_ptr<AVFrame, FrameDeleter> words{av_frame_alloc()};
     std::unique_ptr<SwsContext, SwsDeleter> to_words;
 
     void prepare_words(bool deep, const std::string& name);
@@ -203,7 +203,7 @@ void VideoPlanes::Impl::store_rgb_row(int row, std::span<float> planes) const {
     }
 }
 
-/// Of grey or Y'CbCr. H.273, equations 38 to 40.
+/// Of grey or Y'CbCr. H.273, 8.3.
 void VideoPlanes::Impl::store_row(int row, std::span<float> planes) const {
     constexpr float kNoColour = 32768;
     const std::size_t pixels = shape.pixels();
