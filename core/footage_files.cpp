@@ -43,13 +43,13 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
     return entries;
 }
 
-/// The number by which `name` differs from the name before it, and where in it; none if they do not
-/// differ in one number alone.
+/// Two names that differ in one number alone.
 struct Step {
-    std::size_t begin = 0;
-    std::size_t digits = 0;
+    std::size_t begin = 0;   ///< of the number
+    std::size_t digits = 0;  ///< of the first one
     std::int64_t from = 0;
     std::int64_t to = 0;
+    std::string_view after;  ///< the number
 };
 
 std::optional<std::int64_t> whole_number(std::string_view digits) {
@@ -73,33 +73,33 @@ std::optional<Step> step_between(std::string_view before, std::string_view name)
     const auto from = whole_number(before.substr(begin, end_before - begin));
     const auto to = whole_number(name.substr(begin, end - begin));
     if (!from || !to) return {};
-    return Step{begin, end - begin, *from, *to};
+    return Step{begin, end_before - begin, *from, *to, name.substr(end)};
 }
 
-/// Tells of numbers that are missing among names of which some follow each other. Where none do,
-/// the numbers may be times, or every second picture was meant.
+/// Tells of numbers that are missing among names of which at least half follow the one before.
+/// Else the numbers may be times, or every second picture was meant.
 std::string missing_numbers(const fs::path& folder, const std::vector<fs::path>& files) {
     std::int64_t missing = 0;
-    bool any_follow = false;
+    std::size_t follow = 0;
     std::string first;
     for (std::size_t i = 1; i < files.size(); ++i) {
+        constexpr std::int64_t kMostStep = 1'000'000;
+        const std::string before = files[i - 1].filename().string();
         const std::string name = files[i].filename().string();
-        const auto step = step_between(files[i - 1].filename().string(), name);
-        if (!step) continue;
-        any_follow |= step->to == step->from + 1;
-        missing += std::max<std::int64_t>(step->to - step->from - 1, 0);
+        const auto step = step_between(before, name);
+        if (!step || step->to <= step->from || step->to - step->from > kMostStep) continue;
+        if (step->to == step->from + 1) ++follow;
+        missing += step->to - step->from - 1;
         if (first.empty() && missing > 0)
             first = fmt::format("{}{:0{}}{}", name.substr(0, step->begin), step->from + 1,
-                                name[step->begin] == '0' ? step->digits : 1,
-                                name.substr(step->begin + step->digits));
+                                step->digits, step->after);
     }
-    if (!any_follow || missing == 0) return {};
+    if (missing == 0 || 2 * follow < files.size() - 1) return {};
     if (missing == 1)
         return fmt::format("{} is missing: the frames after it move one slot forward",
                            (folder / first).string());
     return fmt::format(
-        "{} and {} more pictures are missing: the frames after them move forward, {} "
-        "slots in all",
+        "{} and {} more are missing: the frames after them move forward, {} slots in all",
         (folder / first).string(), missing - 1, missing);
 }
 

@@ -97,7 +97,7 @@ struct VideoDecoder::Impl {
     [[nodiscard]] double announced_s() const;
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
-                         problem + "; repair or cut the film first");
+                         problem + "; repair or cut the video first");
     }
 };
 

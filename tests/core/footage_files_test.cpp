@@ -92,10 +92,10 @@ std::string warning_of(const Names& names) {
 TEST(FootageFilesTest, NamesTheNumbersThatAFolderSkips) {
     EXPECT_EQ(warning_of({"f000.png", "f001.png", "f002.png", "f004.png", "f005.png"}),
               "f003.png is missing: the frames after it move one slot forward");
-    EXPECT_EQ(
-        warning_of({"f8.png", "f9.png", "f12.png", "f14.png"}),
-        "f10.png and 2 more pictures are missing: the frames after them move forward, 3 slots "
-        "in all");
+    EXPECT_EQ(warning_of({"f7.png", "f8.png", "f9.png", "f12.png", "f14.png"}),
+              "f10.png and 2 more are missing: the frames after them move forward, 3 slots in all");
+    EXPECT_EQ(warning_of({"f07.png", "f08.png", "f10.png"}),
+              "f09.png is missing: the frames after it move one slot forward");
     EXPECT_EQ(warning_of({"f008_b2.png", "f009_b2.png", "f011_b2.png"}),
               "f010_b2.png is missing: the frames after it move one slot forward");
 }
@@ -104,6 +104,7 @@ TEST(FootageFilesTest, TakesAFolderWithoutSkippedNumbersInSilence) {
     EXPECT_EQ(warning_of({"f9.png", "f10.png", "f11.png"}), "");
     EXPECT_EQ(warning_of({"f0.png", "f2.png", "f4.png"}), "");           // every second one
     EXPECT_EQ(warning_of({"t1623.png", "t1656.png", "t1690.png"}), "");  // times
+    EXPECT_EQ(warning_of({"t100.png", "t101.png", "t203.png", "t301.png"}), "");
     EXPECT_EQ(warning_of({"a1.png", "a2.png", "b7.png", "b8.png"}), "");
     EXPECT_EQ(warning_of({"1.png"}), "");
     EXPECT_EQ(warning_of({"one.png", "two.png"}), "");
