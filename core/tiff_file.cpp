@@ -8,8 +8,10 @@
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include "core/error.h"
@@ -211,6 +213,7 @@ struct TiffFile::Impl {
                                             message.empty() ? "" : fmt::format(" ({})", message)));
     }
     bool turn_to(int wanted);
+    void check_imagej_pages() const;
 };
 
 /// The next page is found from this one, any other from the first.
@@ -223,6 +226,22 @@ bool TiffFile::Impl::turn_to(int wanted) {
     return found;
 }
 
+/// Of a stack beyond 4 GB, ImageJ writes the first page, and says in its description how many
+/// follow.
+void TiffFile::Impl::check_imagej_pages() const {
+    const char* text = nullptr;
+    if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &text) != 1) return;
+    const std::string_view description(text);
+    const auto images = description.find("\nimages=");
+    if (!description.starts_with("ImageJ=") || images == std::string_view::npos) return;
+    const int announced = std::atoi(text + images + std::string_view("\nimages=").size());
+    if (announced > pages)
+        throw InputError(name,
+                         fmt::format("announces {} pictures, but its directories hold {}; save it "
+                                     "from ImageJ as an image sequence",
+                                     announced, pages));
+}
+
 TiffFile::TiffFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
     impl_->name = file.string();
     impl_->file_bytes = checked_file_bytes(file);
@@ -233,6 +252,7 @@ TiffFile::TiffFile(const std::filesystem::path& file) : impl_(std::make_unique<I
     TIFFOpenOptionsFree(options);
     if (!impl_->tiff) impl_->fail(impl_->name);
     impl_->pages = static_cast<int>(TIFFNumberOfDirectories(impl_->tiff.get()));
+    impl_->check_imagej_pages();
 }
 
 TiffFile::~TiffFile() = default;

@@ -27,6 +27,7 @@ struct Layout {
     std::uint16_t orientation = ORIENTATION_TOPLEFT;
     std::uint32_t tile = 0;  ///< side of the tiles; 0: strips
     const char* mode = "w";  ///< wb: big endian
+    const char* description = "";
 };
 
 /// What the file holds at a place: all numbers of a page differ.
@@ -71,6 +72,7 @@ void write_page(TIFF* tiff, const Layout& layout) {
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, layout.photometric);
     TIFFSetField(tiff, TIFFTAG_COMPRESSION, layout.compression);
     TIFFSetField(tiff, TIFFTAG_ORIENTATION, layout.orientation);
+    TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, layout.description);
     const bool apart = layout.planar == PLANARCONFIG_SEPARATE;
     if (layout.tile > 0) {
         TIFFSetField(tiff, TIFFTAG_TILEWIDTH, layout.tile);
@@ -202,6 +204,14 @@ TEST_F(TiffFileTest, RefusesOtherKindsByOneError) {
     expect_parts(problem(), {"neither grey nor RGB (photometric interpretation 5)"});
     write({{.orientation = ORIENTATION_BOTLEFT}});
     expect_parts(problem(), {"its rows do not run from the top left (orientation 4)"});
+}
+
+TEST_F(TiffFileTest, RefusesAStackOfImageJThatHasItsFirstPageOnly) {
+    const Layout of_two{.description = "ImageJ=1.54f\nimages=2\nslices=2\n"};
+    write({of_two});
+    expect_parts(problem(), {"f.tif: announces 2 pictures, but its directories hold 1"});
+    write({of_two, of_two});
+    EXPECT_EQ(FootageReader(file_).slots(), 2);
 }
 
 TEST_F(TiffFileTest, NeverCrashesOnADamagedFile) {
