@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/error.h"
 
@@ -89,11 +90,16 @@ struct VideoDecoder::Impl {
     double end_s =
         0;  ///< when the last packet, of any stream if only the file has a duration, ends
     std::string shortfall;
+    std::int64_t last_tick = AV_NOPTS_VALUE;  ///< time of a frame, in units of the stream
+    std::int64_t least_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
+    std::int64_t most_ticks = 0;
 
     void open(const std::filesystem::path& path);
     void send_packet();
     void check_end();
     void count_packet();
+    void note_time(std::int64_t tick);
+    [[nodiscard]] std::string unequal_times() const;
     [[nodiscard]] double announced_s() const;
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
@@ -169,7 +175,28 @@ void VideoDecoder::Impl::check_end() {
             : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, end_s, announced);
     if (found < kLeastFractionOfAnnounced * announced)
         throw InputError(name, text + "; it is truncated or damaged");
-    shortfall = fmt::format("{}: {}; its end may be cut off", name, text);
+    shortfall = fmt::format("{}: {}; frames may be missing", name, text);
+}
+
+void VideoDecoder::Impl::note_time(std::int64_t tick) {
+    if (tick == AV_NOPTS_VALUE) return;
+    if (last_tick != AV_NOPTS_VALUE) {
+        least_ticks = std::min(least_ticks, tick - last_tick);
+        most_ticks = std::max(most_ticks, tick - last_tick);
+    }
+    last_tick = tick;
+}
+
+/// Empty where the frames are equally long but for the rounding of their times.
+std::string VideoDecoder::Impl::unequal_times() const {
+    constexpr std::int64_t kRounding = 2;
+    const std::int64_t allowed = std::max(kRounding, least_ticks / 2);
+    if (most_ticks == 0 || most_ticks - least_ticks <= allowed) return {};
+    const double tick_s = av_q2d(stream->time_base);
+    return fmt::format(
+        "{}: its frames are {:.4g} to {:.4g} s apart, but each becomes one slot; some "
+        "may be missing",
+        name, static_cast<double>(least_ticks) * tick_s, static_cast<double>(most_ticks) * tick_s);
 }
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
@@ -194,6 +221,7 @@ const AVFrame* VideoDecoder::next() {
     if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
         impl_->fail("is damaged: parts of it are missing or made up");
     ++impl_->errors.next_frame;
+    impl_->note_time(frame.best_effort_timestamp);
     complete_colours(frame, *impl_->stream->codecpar);
     return &frame;
 }
@@ -220,7 +248,8 @@ std::vector<std::string> VideoDecoder::warnings() const {
             "{}: the decoder reports {} error{}, the first at frame {}: "
             "frames from there on may be wrong",
             impl_->name, count, count == 1 ? "" : "s", impl_->errors.first_frame.load()));
-    if (!impl_->shortfall.empty()) texts.push_back(impl_->shortfall);
+    for (const std::string& text : {impl_->shortfall, impl_->unequal_times()})
+        if (!text.empty()) texts.push_back(text);
     return texts;
 }
 

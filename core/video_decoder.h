@@ -27,7 +27,7 @@ class VideoDecoder {
     /// Quarters of a turn, counter-clockwise, by which the frames are to be turned to be upright:
     /// 0..3. \throws InputError if they are to be turned by another angle or mirrored.
     [[nodiscard]] int quarter_turns() const;
-    /// Signs of damage that cost no frame, so far.
+    /// Signs, so far, that frames are damaged or missing.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
   private:

@@ -27,7 +27,7 @@ class VideoReader {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] const SourceTraits& traits() const;
-    /// Signs of damage that cost no frame, so far.
+    /// Signs, so far, that frames are damaged or missing.
     [[nodiscard]] std::vector<std::string> warnings() const;
     /// The file and the frame read last, for messages.
     [[nodiscard]] std::string place() const;
