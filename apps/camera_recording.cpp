@@ -188,11 +188,10 @@ nlohmann::ordered_json CameraRecording::json() const {
 
 std::string CameraRecording::text() const {
     const RecordingEnd totals = writer_.totals();
-    std::string text =
-        fmt::format("{}: {}{}, {:.1f} MB", output_.final_path().string(),
-                    counted(totals.frames, "frame"),
-                    rate_.hz() ? fmt::format(", {:.1f} per second", *rate_.hz()) : "",
-                    static_cast<double>(totals.payload_bytes) * 1e-6);
+    std::string text = fmt::format(
+        "{}: {}{}, {:.1f} MB", output_.final_path().string(), counted(totals.frames, "frame"),
+        rate_.hz() ? fmt::format(", {:.1f} per second", *rate_.hz()) : "",
+        static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
     return fmt::format("{}\nlost: {}", text, lost_text(session_.totals()));
 }

@@ -10,6 +10,7 @@
 #include "apps/progress.h"
 #include "apps/quality_json.h"
 #include "apps/read_ahead.h"
+#include "apps/session_report.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "metrics/video_quality.h"
@@ -55,7 +56,14 @@ void compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead&
 
 void compare(const CompareOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    ReadAhead result(options.result, {.luminance = options.footage.luminance, .max_value = {}});
+    ReadAhead result(
+        options.result,
+        {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
+    if (result.gamma_coded())
+        say_warning(
+            fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
+                        "stipple are tone-mapped; compare the .npy or the folder",
+                        options.result));
     ReadAhead reference(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
     QualityMeter meter(reference.shape(), options.quality);
@@ -65,15 +73,18 @@ void compare(const CompareOptions& options, const RunOptions& run) {
         compare_frames(options, result, reference, meter, progress);
         quality = meter.quality();
     }
-    json.write(quality_json(quality));
-    run.say(
-        fmt::format("PSNR        {:7.2f} dB  linear, peak 1.0\n"
-                    "PSNR gamma  {:7.2f} dB  clamped to 0..1, power 1/2.2\n"
-                    "PSNR frames {:7.2f} dB  linear, mean of the frames' values\n"
-                    "PU21-PSNR   {:7.2f} dB  1.0 = {} cd/m2\n"
-                    "SSIM        {:7.4f}     clamped to 0..1, power 1/2.2",
-                    quality.psnr_db, quality.psnr_gamma_db, quality.psnr_frame_mean_db,
-                    quality.pu21_psnr_db, options.quality.peak_cd_per_m2, quality.ssim));
+    auto figures = quality_json(quality);
+    figures["peak"] = options.quality.peak;
+    figures["cd_per_unit"] = options.quality.unit_cd_per_m2;
+    json.write(figures);
+    run.say(fmt::format(
+        "PSNR        {:7.2f} dB  linear, peak {:g}\n"
+        "PSNR gamma  {:7.2f} dB  clamped to 0..1, power 1/2.2\n"
+        "PSNR frames {:7.2f} dB  linear, mean of the frames' values\n"
+        "PU21-PSNR   {:7.2f} dB  1.0 = {:g} cd/m2\n"
+        "SSIM        {:7.4f}     clamped to 0..1, power 1/2.2",
+        quality.psnr_db, options.quality.peak, quality.psnr_gamma_db, quality.psnr_frame_mean_db,
+        quality.pu21_psnr_db, options.quality.unit_cd_per_m2, quality.ssim));
 }
 
 }  // namespace
@@ -87,11 +98,20 @@ void add_compare(Command& app, Action& action) {
         .check(whole_check(0, 1'000'000))
         .type_name("N");
     add_max_value(command, options->quality.max_value);
-    add_footage_arguments(command, options->footage);
+    add_footage_arguments(command, options->footage, "REFERENCE");
+    command
+        .add_option("--peak", options->quality.peak, "light of which PSNR and PU21-PSNR are (1.0)")
+        .check(positive_check())
+        .type_name("LIGHT");
+    command
+        .add_option("--cd-per-unit", options->quality.unit_cd_per_m2,
+                    "luminance of light 1.0 for PU21, in cd/m2 (100)")
+        .check(positive_check())
+        .type_name("L");
     command.footer(
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"
-        "  stipple compare decoded.npy footage.npy --max-value 2 --json figures.json");
+        "  stipple compare decoded.npy footage.npy --max-value 2 --peak 2 --cd-per-unit 1000");
     command.callback([options, &action] {
         action = [options](const RunOptions& run) { compare(*options, run); };
     });

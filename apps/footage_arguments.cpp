@@ -7,13 +7,14 @@
 
 namespace stipple {
 
-void add_footage_arguments(Command& command, FootageOptions& options) {
+void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
-        .add_choice("--transfer", options.transfer,
-                    {{"linear", Transfer::kLinear},
-                     {"gamma22", Transfer::kGamma22},
-                     {"srgb", Transfer::kSrgb}},
-                    "how the numbers of the footage map to light (linear)")
+        .add_choice<std::optional<Transfer>>(
+            "--transfer", options.transfer,
+            {{"linear", Transfer::kLinear},
+             {"gamma22", Transfer::kGamma22},
+             {"srgb", Transfer::kSrgb}},
+            "how the numbers of " + footage + " map to light (linear)")
         .type_name("linear|gamma22|srgb");
     command.add_flag("--luminance", options.luminance, "Rec. 709 luminance of colour footage");
 }
@@ -25,7 +26,8 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
 }
 
 void check_recording_options(const std::string& recording, const FootageOptions& options) {
-    if (options.transfer != Transfer::kLinear || options.luminance || options.max_value)
+    if (options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear || options.luminance ||
+        options.max_value)
         throw InputError(recording,
                          "is a recording of a camera, whose numbers are linear: --transfer, "
                          "--luminance and --max-value are for other footage");

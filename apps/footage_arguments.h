@@ -8,8 +8,9 @@
 
 namespace stipple {
 
-/// `--transfer` and `--luminance`.
-void add_footage_arguments(Command& command, FootageOptions& options);
+/// `--transfer`, of the footage that its help names, and `--luminance`.
+void add_footage_arguments(Command& command, FootageOptions& options,
+                           const std::string& footage = "the footage");
 
 /// `--max-value V`: positive and finite.
 void add_max_value(Command& command, std::optional<double>& max_value);

@@ -20,9 +20,9 @@ namespace {
 
 /// The regular files of footage, in the order in which they are read; none of a pipe.
 std::vector<fs::path> files_of(const fs::path& footage) {
-    if (fs::is_directory(footage)) return images_in_folder(footage);
+    if (fs::is_directory(footage)) return images_in_folder(footage).files;
     if (fs::is_regular_file(footage)) return {footage};
-    return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage);
+    return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage).files;
 }
 
 std::string sha256_of(const std::vector<fs::path>& files) {

@@ -71,9 +71,9 @@ int main(int argc, char** argv) {
         STIPPLE_VERSION);
     Command root = line.root();
     root.footer(kExamples);
-    for (const auto add : {add_synth, add_emulate, add_decode, add_compare, add_info, add_recover,
-                           add_schedule, add_timing, add_characterize, add_capture, add_demo,
-                           add_list})
+    for (const auto add :
+         {add_synth, add_emulate, add_decode, add_compare, add_info, add_recover, add_schedule,
+          add_timing, add_characterize, add_capture, add_demo, add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, options);
     switch (line.parse(argc, argv)) {

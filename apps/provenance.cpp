@@ -65,7 +65,7 @@ const char* name_of(Transfer transfer) {
 
 toml::table footage_table(const FootageOrigin& footage) {
     toml::table table{{"name", footage.name},
-                      {"transfer", name_of(footage.reading.transfer)},
+                      {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
                       {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "apps/footage_arguments.h"
+#include "apps/session_report.h"
 
 namespace stipple {
 namespace {
@@ -21,7 +22,18 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
 
 ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options)
     : reader_(open_footage(source, options)), current_(shape().sites()), coming_(shape().sites()) {
+    say_warnings();
     start_reading();
+}
+
+void ReadAhead::say_warnings() {
+    if (auto* const footage = std::get_if<FootageReader>(&reader_))
+        for (const std::string& warning : footage->take_warnings()) say_warning(warning);
+}
+
+bool ReadAhead::gamma_coded() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage != nullptr && footage->gamma_coded();
 }
 
 FrameShape ReadAhead::shape() const {
@@ -53,7 +65,9 @@ void ReadAhead::start_reading() {
 }
 
 std::span<const float> ReadAhead::next() {
-    if (!reading_.valid() || !reading_.get()) return {};
+    const bool has_frame = reading_.valid() && reading_.get();
+    say_warnings();
+    if (!has_frame) return {};
     std::swap(current_, coming_);
     start_reading();
     return current_;

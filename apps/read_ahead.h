@@ -12,7 +12,7 @@
 namespace stipple {
 
 /// Footage, or a recording of a camera, whose next frame is read in the background while one is
-/// worked on.
+/// worked on. What its reader warns of goes to standard error.
 class ReadAhead {
   public:
     /// \throws InputError as FootageReader and RecordingFootage; if a recording shall have another
@@ -28,6 +28,8 @@ class ReadAhead {
     [[nodiscard]] std::optional<double> film_hz() const;
     /// Whose mosaic the frames are; of a recording only.
     [[nodiscard]] ColourFilter filter() const;
+    /// As FootageReader::gamma_coded; a recording is not.
+    [[nodiscard]] bool gamma_coded() const;
 
     /// The next frame, valid until the next call, or an empty span at the end.
     /// \throws InputError as FootageReader::read and RecordingFootage::read.
@@ -37,6 +39,7 @@ class ReadAhead {
     [[nodiscard]] const RecordingFootage* recording() const;
 
   private:
+    void say_warnings();
     void start_reading();
 
     std::variant<FootageReader, RecordingFootage> reader_;

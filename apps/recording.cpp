@@ -54,16 +54,15 @@ double Recording::light_throughput() const {
 nlohmann::ordered_json recording_json(const Recording& recording,
                                       std::optional<double> slots_per_s) {
     const ReadoutStats& stats = recording.stats();
-    nlohmann::ordered_json json{
-        {"slots", stats.slots},
-        {"samples", recording.samples()},
-        {"payload_bits", recording.payload_bits()},
-        {"compression_ratio", recording.compression_ratio()},
-        {"light_throughput", recording.light_throughput()},
-        {"light_read", recording.light_read()},
-        {"saturated_fraction", recording.saturated_fraction()},
-        {"slots_per_second", nullptr},
-        {"samples_per_second", nullptr}};
+    nlohmann::ordered_json json{{"slots", stats.slots},
+                                {"samples", recording.samples()},
+                                {"payload_bits", recording.payload_bits()},
+                                {"compression_ratio", recording.compression_ratio()},
+                                {"light_throughput", recording.light_throughput()},
+                                {"light_read", recording.light_read()},
+                                {"saturated_fraction", recording.saturated_fraction()},
+                                {"slots_per_second", nullptr},
+                                {"samples_per_second", nullptr}};
     if (slots_per_s) {
         json["slots_per_second"] = *slots_per_s;
         json["samples_per_second"] =

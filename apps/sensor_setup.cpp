@@ -26,12 +26,22 @@ std::vector<std::string> settings_of(const SensorChoice& choice, std::string_vie
     return settings;
 }
 
+/// \throws InputError for a file without keys, which would be taken for all the defaults.
+Config open_config(std::string_view kind, const std::string& name,
+                   const std::vector<std::string>& settings) {
+    const auto file = find_config(kind, name);
+    Config config(file, settings);
+    if (config.file_is_empty())
+        throw InputError(file.string(), fmt::format("holds no keys; config/{} has examples", kind));
+    return config;
+}
+
 Config sensor_config(const SensorChoice& choice) {
-    return {find_config("sensors", choice.sensor), settings_of(choice, "")};
+    return open_config("sensors", choice.sensor, settings_of(choice, ""));
 }
 
 Config schedule_config(const SensorChoice& choice) {
-    return {find_config("schedules", choice.schedule), settings_of(choice, "schedule.")};
+    return open_config("schedules", choice.schedule, settings_of(choice, "schedule."));
 }
 
 /// True for a compiled schedule (docs/sequencer_program.md).

@@ -5,6 +5,7 @@
 #include "apps/coded_frames.h"
 #include "apps/footage_arguments.h"
 #include "apps/names_of.h"
+#include "apps/session_report.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
@@ -14,6 +15,11 @@ namespace stipple {
 namespace {
 
 constexpr double kFramesPerS = 25;
+
+void say_warnings_of_footage(const ServedSourceChoice& choice) {
+    FootageReader reader(choice.path, choice.reading);
+    for (const std::string& warning : reader.take_warnings()) say_warning(warning);
+}
 
 std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
     const PixelFormat* format = nullptr;
@@ -31,6 +37,7 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
+    if (choice.mode == "coded" || !is_recording(choice.path)) say_warnings_of_footage(choice);
     if (choice.mode == "coded")
         return std::make_unique<CodedFrames>(choice.path, choice.reading, choice.sensor,
                                              choice.frames_per_s);

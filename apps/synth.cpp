@@ -13,6 +13,7 @@
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
 #include "core/frame_writer.h"
+#include "core/video_reader.h"
 #include "scenes/scene.h"
 
 namespace stipple {
@@ -46,8 +47,10 @@ void synth(const SynthOptions& options, const RunOptions& run) {
                 {"cols", shape.cols},
                 {"planes", shape.planes},
                 {"slots_per_second", rate}});
-    run.say(fmt::format("{}: {} of {} x {}, linear light, {} frames/s", options.output,
-                        counted(progress.done(), "frame"), shape.cols, shape.rows, rounded(rate)));
+    run.say(fmt::format("{}: {} of {} x {}, {}, {} frames/s", options.output,
+                        counted(progress.done(), "frame"), shape.cols, shape.rows,
+                        is_video_name(options.output) ? "tone-mapped to 8 bits" : "linear light",
+                        rounded(rate)));
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ void add_synth(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple synth pan -o scene\n"
-        "  stipple synth dice -o dice.mp4 --frames 200 --size 640x480 --seed 7");
+        "  stipple synth dice -o dice.npy --frames 200 --size 640x480 --seed 7");
     command.callback([options, &action] {
         action = [options](const RunOptions& run) { synth(*options, run); };
     });

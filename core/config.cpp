@@ -145,6 +145,10 @@ Config::Config(const std::vector<std::string>& overrides) : impl_(std::make_uniq
     for (const std::string& assignment : overrides) impl_->set(assignment);
 }
 
+bool Config::file_is_empty() const {
+    return impl_->tables.empty() || impl_->tables.front().empty();
+}
+
 Config::~Config() = default;
 Config::Config(Config&&) noexcept = default;
 Config& Config::operator=(Config&&) noexcept = default;

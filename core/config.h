@@ -43,6 +43,9 @@ class Config {
     /// Whether the key is given; asking does not make it known.
     [[nodiscard]] bool contains(std::string_view key) const;
 
+    /// Whether the file has no keys.
+    [[nodiscard]] bool file_is_empty() const;
+
     /// A list of texts; empty if absent.
     [[nodiscard]] std::vector<std::string> texts(std::string_view key);
 

@@ -11,49 +11,59 @@
 #include "core/opencv_quiet.h"
 #include "core/output_file.h"
 #include "core/png_chunks.h"
-#include "core/tiff_pages.h"
+#include "core/tiff_file.h"
 
 namespace stipple {
 namespace {
 
-/// The bytes of a picture that is fit to be decoded.
-std::vector<std::uint8_t> checked_bytes(const std::filesystem::path& file) {
-    const std::string place = file.string();
-    const ImageFormat format = image_format(file);
-    if (format == ImageFormat::kPng) return critical_png_chunks(read_file(file), place).file;
-    if (format != ImageFormat::kTiff)
-        throw InputError(place, "is no image of digital numbers; give PNG or TIFF");
-    auto bytes = read_file(file);
-    check_single_tiff_page(bytes, place);
-    return bytes;
+[[noreturn]] void fail_kind(const std::string& place) {
+    throw InputError(place, "is not grey with 8 or 16 bits");
 }
 
-cv::Mat decoded(const std::vector<std::uint8_t>& bytes, const std::string& place) {
+/// Row after row, each number as it is.
+template <typename Sample>
+DnImage dn_image(FrameShape shape, const void* samples) {
+    const auto* const first = static_cast<const Sample*>(samples);
+    return {shape, {first, first + shape.pixels()}};
+}
+
+DnImage read_dn_png(const std::string& place) {
     cv::Mat image;
     try {
-        if (!bytes.empty()) image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+        image =
+            cv::imdecode(critical_png_chunks(read_file(place), place).file, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception&) {
         image.release();
     }
     if (image.empty())
         throw InputError(place, "cannot be decoded; it is damaged or ends too early");
-    if (image.type() != CV_8UC1 && image.type() != CV_16UC1)
-        throw InputError(place, "is not grey with 8 or 16 bits");
-    return image.isContinuous() ? image : image.clone();
+    if (!image.isContinuous()) image = image.clone();
+    const FrameShape shape{.rows = image.rows, .cols = image.cols, .planes = 1};
+    if (image.type() == CV_16UC1) return dn_image<std::uint16_t>(shape, image.data);
+    if (image.type() != CV_8UC1) fail_kind(place);
+    return dn_image<std::uint8_t>(shape, image.data);
+}
+
+DnImage read_dn_tiff(const std::filesystem::path& file) {
+    const TiffPixels pixels = read_single_tiff(file);
+    if (pixels.channels != 1 || pixels.sample == TiffPixels::Sample::kF32) fail_kind(file.string());
+    if (pixels.sample == TiffPixels::Sample::kU16)
+        return dn_image<std::uint16_t>(pixels.shape, pixels.bytes.data());
+    return dn_image<std::uint8_t>(pixels.shape, pixels.bytes.data());
 }
 
 }  // namespace
 
 DnImage read_dn_image(const std::filesystem::path& file) {
     silence_opencv();
-    const cv::Mat image = decoded(checked_bytes(file), file.string());
-    DnImage result{{.rows = image.rows, .cols = image.cols, .planes = 1},
-                   std::vector<std::uint16_t>(image.total())};
-    if (image.depth() == CV_16U)
-        std::copy_n(image.ptr<std::uint16_t>(), image.total(), result.dn.begin());
-    else
-        std::copy_n(image.ptr<std::uint8_t>(), image.total(), result.dn.begin());
-    return result;
+    switch (image_format(file)) {
+        case ImageFormat::kPng:
+            return read_dn_png(file.string());
+        case ImageFormat::kTiff:
+            return read_dn_tiff(file);
+        default:
+            throw InputError(file.string(), "is no image of digital numbers; give PNG or TIFF");
+    }
 }
 
 void write_dn_png(const std::filesystem::path& file, FrameShape shape,

@@ -28,6 +28,8 @@ std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
     std::vector<std::string> names;
     if (has("R") && has("G") && has("B")) {
         names = {"R", "G", "B"};
+    } else if (has("X") && has("Y") && has("Z")) {
+        throw InputError(place, "holds CIE XYZ colour; convert it to RGB or to luminance Y alone");
     } else if (has("Y") && !has("RY") && !has("BY")) {
         names = {"Y"};
     } else {
@@ -36,6 +38,11 @@ std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
         if (names.size() != 1)
             throw InputError(place, fmt::format("holds the channels {}; give R, G, B or Y alone",
                                                 joined(names)));
+        if (names.front() == "Z" || names.front() == "depth")
+            throw InputError(place,
+                             fmt::format("holds distances (channel {}), no light; give R, G, "
+                                         "B or Y",
+                                         names.front()));
     }
     for (const auto& name : names) {
         const Imf::Channel& channel = channels[name.c_str()];
@@ -67,6 +74,8 @@ std::uint64_t side(int low, int high) {
 void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {
     const Imath::Box2i window = checked_window(input.header(), place);
     const auto names = picture_channels(input.header().channels(), place);
+    picture.traits = {.floating = true,
+                      .has_alpha = input.header().channels().findChannel("A") != nullptr};
     picture.resize(checked_shape(side(window.min.y, window.max.y), side(window.min.x, window.max.x),
                                  names.size(), place));
     Imf::FrameBuffer planes;

@@ -11,7 +11,7 @@
 namespace stipple {
 
 /// Reads an OpenEXR picture (half or float) into `picture`: its channels R, G, B, else Y, else the
-/// only one there is. Alpha and further channels are left out; nothing is scaled.
+/// only one there is, but no depth. Alpha and further channels are left out; nothing is scaled.
 /// \throws InputError naming the file if it is unreadable, truncated, holds none of these
 /// channels, or stores another rectangle than it displays.
 void read_exr(const std::filesystem::path& file, Picture& picture);

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 
@@ -41,6 +43,66 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
     return entries;
 }
 
+/// Two names that differ in one number alone.
+struct Step {
+    std::size_t begin = 0;   ///< of the number
+    std::size_t digits = 0;  ///< of the first one
+    std::int64_t from = 0;
+    std::int64_t to = 0;
+    std::string_view after;  ///< the number
+};
+
+std::optional<std::int64_t> whole_number(std::string_view digits) {
+    std::int64_t number = 0;
+    const auto [last, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (digits.empty() || error != std::errc() || last != digits.data() + digits.size()) return {};
+    return number;
+}
+
+std::optional<Step> step_between(std::string_view before, std::string_view name) {
+    auto begin = static_cast<std::size_t>(std::ranges::mismatch(before, name).in1 - before.begin());
+    while (begin > 0 && is_digit(name[begin - 1])) --begin;
+    const auto end_of_digits = [begin](std::string_view text) {
+        const auto end = text.find_first_not_of("0123456789", begin);
+        return end == std::string_view::npos ? text.size() : end;
+    };
+    const std::size_t end = end_of_digits(name);
+    const std::size_t end_before = end_of_digits(before);
+    if (name.substr(end) != before.substr(end_before)) return {};
+    const auto from = whole_number(before.substr(begin, end_before - begin));
+    const auto to = whole_number(name.substr(begin, end - begin));
+    if (!from || !to) return {};
+    return Step{begin, end_before - begin, *from, *to, name.substr(end)};
+}
+
+/// Tells of numbers that are missing among names of which at least half follow the one before.
+/// Else the numbers may be times, or every second picture was meant.
+std::string missing_numbers(const fs::path& folder, const std::vector<fs::path>& files) {
+    std::int64_t missing = 0;
+    std::size_t follow = 0;
+    std::string first;
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        constexpr std::int64_t kMostStep = 1'000'000;
+        const std::string before = files[i - 1].filename().string();
+        const std::string name = files[i].filename().string();
+        const auto step = step_between(before, name);
+        if (!step || step->to <= step->from || step->to - step->from > kMostStep) continue;
+        if (step->to == step->from + 1) ++follow;
+        missing += step->to - step->from - 1;
+        if (first.empty() && missing > 0)
+            first = fmt::format("{}{:0{}}{}", name.substr(0, step->begin), step->from + 1,
+                                step->digits, step->after);
+    }
+    if (missing == 0 || 2 * follow < files.size() - 1) return {};
+    if (missing == 1)
+        return fmt::format("{} is missing: the frames after it move one slot forward",
+                           (folder / first).string());
+    return fmt::format(
+        "{} and {} more are missing: the frames after them move forward, {} slots in all",
+        (folder / first).string(), missing - 1, missing);
+}
+
 /// A file name with one %d or %0Nd.
 struct Pattern {
     std::string before;
@@ -48,8 +110,8 @@ struct Pattern {
     std::size_t digits = 1;  ///< numbers are padded with zeros to this width
 
     explicit Pattern(const fs::path& path);
-    /// The number in `name`, or -1 if it is not what printf would have written.
-    [[nodiscard]] std::int64_t number_of(std::string_view name) const;
+    /// The number in `name`, if it is one of digits between `before` and `after`.
+    [[nodiscard]] std::optional<std::int64_t> number_of(std::string_view name) const;
     [[nodiscard]] std::string name_of(std::int64_t number) const {
         return fmt::format("{}{:0{}}{}", before, number, digits, after);
     }
@@ -72,15 +134,12 @@ Pattern::Pattern(const fs::path& path) {
     if (!width.empty()) digits = static_cast<std::size_t>(width[1] - '0');
 }
 
-std::int64_t Pattern::number_of(std::string_view name) const {
-    if (!name.starts_with(before) || !name.ends_with(after)) return -1;
-    if (name.size() <= before.size() + after.size()) return -1;
-    const char* begin = name.data() + before.size();
-    const char* end = name.data() + name.size() - after.size();
-    std::int64_t number = -1;
-    const auto [last, error] = std::from_chars(begin, end, number);
-    if (error != std::errc() || last != end || number < 0) return -1;
-    return name_of(number) == name ? number : -1;
+std::optional<std::int64_t> Pattern::number_of(std::string_view name) const {
+    if (name.size() <= before.size() + after.size()) return {};
+    if (!name.starts_with(before) || !name.ends_with(after)) return {};
+    name.remove_prefix(before.size());
+    name.remove_suffix(after.size());
+    return is_digit(name.front()) ? whole_number(name) : std::nullopt;
 }
 
 }  // namespace
@@ -116,7 +175,7 @@ bool numerically_before(std::string_view a, std::string_view b) {
     return whole_a < whole_b;  // differ in leading zeros only
 }
 
-std::vector<fs::path> images_in_folder(const fs::path& folder) {
+ImageFiles images_in_folder(const fs::path& folder) {
     auto files = list_folder(folder);
     std::erase_if(files, [](const fs::path& file) {
         return file.filename().string().starts_with('.') ||
@@ -132,28 +191,41 @@ std::vector<fs::path> images_in_folder(const fs::path& folder) {
                 folder.string(),
                 fmt::format("mixes formats: \"{}\" and \"{}\"; keep one",
                             files.front().filename().string(), file.filename().string()));
-    return files;
+    std::string warning = missing_numbers(folder, files);
+    return {std::move(files), std::move(warning)};
 }
 
-std::vector<fs::path> images_of_pattern(const fs::path& pattern) {
+ImageFiles images_of_pattern(const fs::path& pattern) {
     const Pattern names(pattern);
     if (image_format(pattern) == ImageFormat::kNone)
         throw InputError(pattern.string(), "a pattern stands for PNG, TIFF or EXR pictures");
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::map<std::int64_t, fs::path> found;
+    std::vector<std::string> left_out;
     for (const fs::path& file : list_folder(folder)) {
-        const std::int64_t number = names.number_of(file.filename().string());
-        if (number >= 0) found.emplace(number, file);
+        const std::string name = file.filename().string();
+        const auto number = names.number_of(name);
+        if (!number) continue;
+        if (names.name_of(*number) == name)
+            found.emplace(*number, file);
+        else
+            left_out.push_back(name);
     }
     if (found.empty()) throw InputError(pattern.string(), "no file matches this pattern");
-    std::vector<fs::path> files;
+    ImageFiles images;
     for (std::int64_t next = found.begin()->first; const auto& [number, file] : found) {
         if (number != next++)
             throw InputError((folder / names.name_of(next - 1)).string(),
                              "is missing from the sequence");
-        files.push_back(file);
+        images.files.push_back(file);
     }
-    return files;
+    if (!left_out.empty())
+        images.warning = fmt::format(
+            "{}: takes {} to {}; left out {} of other digits: {}", pattern.string(),
+            images.files.front().filename().string(), images.files.back().filename().string(),
+            left_out.size() == 1 ? "is 1 picture" : fmt::format("are {} pictures", left_out.size()),
+            *std::ranges::min_element(left_out, numerically_before));
+    return images;
 }
 
 }  // namespace stipple

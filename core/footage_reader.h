@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/geometry.h"
 
@@ -17,7 +19,7 @@ enum class Transfer {
 };
 
 struct FootageOptions {
-    Transfer transfer = Transfer::kLinear;
+    std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
     bool luminance = false;           ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
     std::optional<double> max_value;  ///< clip light to this value
 };
@@ -25,7 +27,8 @@ struct FootageOptions {
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.
 /// Sources: a folder or a printf pattern of PNG, TIFF or EXR files (in numeric order of names), a
-/// video file, or a .npy of shape (T,H,W) or (T,H,W,3) with dtype u1, u2, f2, f4 or f8.
+/// TIFF file of one or more pages, a video file, or a .npy of shape (T,H,W) or (T,H,W,3) with dtype
+/// u1, u2, f2, f4 or f8.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.
@@ -41,6 +44,10 @@ class FootageReader {
 
     /// Frames a second at which a video file plays, if it tells.
     [[nodiscard]] std::optional<double> film_hz() const;
+    /// Whether the numbers are no linear light by what the source declares or by its kind.
+    [[nodiscard]] bool gamma_coded() const;
+    /// What the user should know of the source and of its reading that is new since the last call.
+    [[nodiscard]] std::vector<std::string> take_warnings();
 
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,

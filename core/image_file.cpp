@@ -1,7 +1,5 @@
 #include "core/image_file.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
@@ -17,70 +15,70 @@
 #include "core/opencv_quiet.h"
 #include "core/output_file.h"
 #include "core/png_chunks.h"
-#include "core/tiff_pages.h"
 #include "core/tone_map.h"
 
 namespace stipple {
 namespace {
 
-/// `flags` as in cv::imdecode. \throws InputError if the picture cannot be decoded.
-cv::Mat decode(const std::vector<std::uint8_t>& bytes, int flags, const std::string& place) {
+/// \throws InputError if the picture cannot be decoded.
+cv::Mat decode(const PngChunks& png, const std::string& place) {
     silence_opencv();
+    const int layout = png.grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR;
     cv::Mat image;
     try {
-        if (!bytes.empty()) image = cv::imdecode(bytes, flags);
+        image = cv::imdecode(png.file, layout | cv::IMREAD_ANYDEPTH);
     } catch (const cv::Exception&) {
         image.release();
     }
     if (image.empty())
         throw InputError(place, "cannot be decoded; it is damaged or ends too early");
-    return image;
-}
-
-void copy_planes(const cv::Mat& image, const std::string& place, Picture& picture) {
-    const int channels = image.channels();
-    const int planes = channels == 4 ? 3 : channels;
-    picture.resize(checked_shape(static_cast<std::uint64_t>(image.rows),
-                                 static_cast<std::uint64_t>(image.cols),
-                                 static_cast<std::uint64_t>(planes), place));
-    const cv::Mat packed = image.isContinuous() ? image : image.clone();
-    const std::span bytes(packed.data, packed.total() * packed.elemSize());
-    const auto split = [&]<typename Sample>(Sample, auto to_float) {
-        split_planes<Sample>(std::as_bytes(bytes), {channels, true}, planes, picture.values,
-                             to_float);
-    };
-    switch (image.depth()) {
-        case CV_8U:
-            return split(std::uint8_t{}, UnitScale());
-        case CV_16U:
-            return split(std::uint16_t{}, UnitScale());
-        case CV_32F:
-            return split(float{}, [](float value) { return value; });
-        default:
-            throw InputError(place, "give 8- or 16-bit integers or 32-bit floats");
-    }
+    return image.isContinuous() ? image : image.clone();
 }
 
 void read_png(const std::string& place, Picture& picture) {
     const PngChunks png = critical_png_chunks(read_file(place), place);
-    const int layout = png.grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR;
-    copy_planes(decode(png.file, layout | cv::IMREAD_ANYDEPTH, place), place, picture);
-}
-
-void read_tiff(const std::string& place, Picture& picture) {
-    const auto bytes = read_file(place);
-    check_single_tiff_page(bytes, place);
-    copy_planes(decode(bytes, cv::IMREAD_UNCHANGED, place), place, picture);
+    const cv::Mat image = decode(png, place);
+    const int planes = image.channels();
+    picture.resize(checked_shape(static_cast<std::uint64_t>(image.rows),
+                                 static_cast<std::uint64_t>(image.cols),
+                                 static_cast<std::uint64_t>(planes), place));
+    picture.traits = {.gamma_coded = png.gamma_coded, .has_alpha = png.has_alpha};
+    const auto bytes = std::as_bytes(std::span(image.data, image.total() * image.elemSize()));
+    const InterleavedOrder order{planes, true};
+    if (image.depth() == CV_16U)
+        split_planes<std::uint16_t>(bytes, order, planes, picture.values, UnitScale());
+    else
+        split_planes<std::uint8_t>(bytes, order, planes, picture.values, UnitScale());
 }
 
 }  // namespace
+
+void to_picture(const TiffPixels& pixels, Picture& picture) {
+    using Sample = TiffPixels::Sample;
+    const int planes = pixels.shape.planes;
+    picture.resize(pixels.shape);
+    picture.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
+                      .floating = pixels.sample == Sample::kF32,
+                      .has_alpha = pixels.channels > planes};
+    const auto split = [&]<typename Stored>(Stored, auto to_float) {
+        split_planes<Stored>(pixels.bytes, {pixels.channels}, planes, picture.values, to_float);
+    };
+    switch (pixels.sample) {
+        case Sample::kU8:
+            return split(std::uint8_t{}, UnitScale());
+        case Sample::kU16:
+            return split(std::uint16_t{}, UnitScale());
+        case Sample::kF32:
+            return split(float{}, [](float value) { return value; });
+    }
+}
 
 void read_image(const std::filesystem::path& file, Picture& picture) {
     switch (image_format(file)) {
         case ImageFormat::kPng:
             return read_png(file.string(), picture);
         case ImageFormat::kTiff:
-            return read_tiff(file.string(), picture);
+            return to_picture(read_single_tiff(file), picture);
         case ImageFormat::kExr:
             return read_exr(file, picture);
         case ImageFormat::kNone:

@@ -1,15 +1,26 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/geometry.h"
 
 namespace stipple {
 
+/// What a picture or a video says of its numbers.
+struct SourceTraits {
+    bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
+    bool floating = false;
+    bool has_alpha = false;  ///< which is left out
+    std::string hdr_curve =
+        {};  ///< of HDR video that declares it: "smpte2084" (PQ), "arib-std-b67"
+};
+
 /// One decoded picture, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),
 /// floating-point values are as the file holds them, unchecked.
 struct Picture {
     FrameShape shape;
+    SourceTraits traits;
     std::vector<float> values;
 
     /// Takes the shape and makes room for its values.

@@ -14,6 +14,7 @@ constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '
 constexpr std::size_t kChunkFrame = 12;  // length, type and CRC, 4 bytes each
 constexpr std::size_t kHeaderBytes = 13;
 constexpr std::uint32_t kMaxLength = 0x7FFFFFFF;
+constexpr std::uint32_t kLinearGamma = 100000;  // 1.0 in a gAMA chunk
 
 /// Table of the CRC-32 of ISO 3309 (reflected polynomial 0xEDB88320), byte by byte.
 constexpr std::array<std::uint32_t, 256> crc_table() {
@@ -74,7 +75,13 @@ PngChunks critical_png_chunks(std::span<const std::uint8_t> bytes, std::string_v
                 throw InputError(place, "offset 8: the PNG header is missing");
             const std::uint8_t colour_type = chunk[8 + 9];
             result.grey = colour_type == 0 || colour_type == 4;
+            result.has_alpha = colour_type == 4 || colour_type == 6;
+            result.gamma_coded = !result.grey && chunk[8 + 8] <= 8;
         }
+        if (is_type(chunk, "tRNS")) result.has_alpha = true;
+        if (is_type(chunk, "sRGB")) result.gamma_coded = true;
+        if (is_type(chunk, "gAMA") && chunk.size() == kChunkFrame + 4)
+            result.gamma_coded = big_endian(chunk.subspan(8)) != kLinearGamma;
         const bool critical = (chunk[4] & 0x20U) == 0;
         if (critical) result.file.insert(result.file.end(), chunk.begin(), chunk.end());
         if (is_type(chunk, "IEND")) return result;

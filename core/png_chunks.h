@@ -12,6 +12,8 @@ namespace stipple {
 struct PngChunks {
     std::vector<std::uint8_t> file;  ///< signature and critical chunks
     bool grey = false;               ///< greyscale, with or without alpha
+    bool has_alpha = false;          ///< or a transparent colour
+    bool gamma_coded = false;        ///< by its sRGB or gAMA chunk, else if 8-bit colour
 };
 
 /// Checks the lengths and CRCs of a PNG file and drops its ancillary chunks (colour profiles,

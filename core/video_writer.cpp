@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/opencv_quiet.h"
 #include "core/tone_map.h"
+#include "core/video_decoder.h"
 
 namespace stipple {
 
@@ -34,9 +35,12 @@ struct VideoWriter::Impl {
     }
     /// Frames that can be decoded from the file.
     [[nodiscard]] int readable_frames() const {
-        cv::VideoCapture capture(file, cv::CAP_FFMPEG);
         int count = 0;
-        while (capture.isOpened() && capture.grab()) ++count;
+        try {
+            for (VideoDecoder written(file); written.next() != nullptr;) ++count;
+        } catch (const InputError&) {
+            // The file is cut: those that were read count.
+        }
         return count;
     }
 };

@@ -48,9 +48,11 @@ QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
         throw InputError("margin", fmt::format("{} is negative", options.margin));
     if (options.max_value && !(*options.max_value > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *options.max_value));
-    if (!(options.peak_cd_per_m2 > 0))
-        throw InputError("peak_cd_per_m2",
-                         fmt::format("{} is not above 0", options.peak_cd_per_m2));
+    if (!(options.peak > 0))
+        throw InputError("peak", fmt::format("{} is not above 0", options.peak));
+    if (!(options.unit_cd_per_m2 > 0))
+        throw InputError("unit_cd_per_m2",
+                         fmt::format("{} is not above 0", options.unit_cd_per_m2));
 }
 
 QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
@@ -70,7 +72,7 @@ QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
         sum += {square(x - y),
                 square(static_cast<double>(result_gamma_[i]) -
                        static_cast<double>(reference_gamma_[i])),
-                square(pu21(x * options_.peak_cd_per_m2) - pu21(y * options_.peak_cd_per_m2))};
+                square(pu21(x * options_.unit_cd_per_m2) - pu21(y * options_.unit_cd_per_m2))};
     }
     return sum;
 }
@@ -105,12 +107,13 @@ VideoQuality QualityMeter::quality() const {
     VideoQuality quality;
     for (const FrameQuality& frame : counted) {
         errors += frame.errors;
-        quality.psnr_frame_mean_db += psnr(1, frame.errors.linear / sites) / frames;
+        quality.psnr_frame_mean_db += psnr(options_.peak, frame.errors.linear / sites) / frames;
         quality.ssim += frame.ssim / (frames * shape_.planes);
     }
-    quality.psnr_db = psnr(1, errors.linear / (frames * sites));
+    quality.psnr_db = psnr(options_.peak, errors.linear / (frames * sites));
     quality.psnr_gamma_db = psnr(1, errors.gamma / (frames * sites));
-    quality.pu21_psnr_db = psnr(pu21(options_.peak_cd_per_m2), errors.pu21 / (frames * sites));
+    quality.pu21_psnr_db =
+        psnr(pu21(options_.peak * options_.unit_cd_per_m2), errors.pu21 / (frames * sites));
     return quality;
 }
 

@@ -11,16 +11,17 @@ namespace stipple {
 struct QualityOptions {
     int margin = 0;                        ///< frames left out at each end
     std::optional<double> max_value = {};  ///< clamp both sides to it first
-    double peak_cd_per_m2 = 100;           ///< luminance of 1.0 for PU21
+    double peak = 1;                       ///< light, of linear PSNR and, as luminance, of PU21
+    double unit_cd_per_m2 = 100;           ///< luminance of light 1.0, for PU21
 };
 
 /// Quality of a video against its reference; all in dB except `ssim` (up to 1). Identical videos
 /// have infinite PSNR.
 struct VideoQuality {
-    double psnr_db = 0;             ///< peak 1.0, pooled over everything, linear, not clamped
+    double psnr_db = 0;             ///< pooled over everything, linear, not clamped
     double psnr_gamma_db = 0;       ///< after clamping to 0..1 and the power 1/2.2
     double psnr_frame_mean_db = 0;  ///< mean of per-frame linear PSNR
-    double pu21_psnr_db = 0;        ///< PU21 of each plane, peak = PU21(peak_cd_per_m2)
+    double pu21_psnr_db = 0;        ///< PU21 of each plane, its peak that of `peak`
     double ssim = 0;                ///< clamped, 1/2.2; mean over frames and planes; see ssim.h
 };
 
@@ -28,8 +29,8 @@ struct VideoQuality {
 /// any thread count.
 class QualityMeter {
   public:
-    /// \throws InputError if the shape is empty, the margin negative, or `max_value` or
-    /// `peak_cd_per_m2` not above 0.
+    /// \throws InputError if the shape is empty, the margin negative, or `max_value`,
+    /// `peak` or `unit_cd_per_m2` not above 0.
     QualityMeter(FrameShape shape, const QualityOptions& options);
 
     /// Adds one frame of each; both hold shape.sites() finite floats, order (plane, row, col).

@@ -162,7 +162,7 @@ class PipelineTest(ProgramTest):
         self.assertAlmostEqual(figures["psnr_gamma_db"], -10 * math.log10(sum(gamma) / 2), places=4)
         self.assertLess(figures["ssim"], 1)
         self.assertEqual(set(figures), {"psnr_db", "psnr_gamma_db", "psnr_frame_mean_db",
-                                        "pu21_psnr_db", "ssim"})
+                                        "pu21_psnr_db", "ssim", "peak", "cd_per_unit"})
         figures = self.figures("compare", result, reference, "--max-value", "0.5")
         self.assertIsNone(figures["psnr_db"], "no difference is left; JSON has no infinity")
         self.assertAlmostEqual(figures["ssim"], 1)

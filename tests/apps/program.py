@@ -69,14 +69,16 @@ class ProgramTest(unittest.TestCase):
         self.succeed("emulate", self.write_flat("light.npy", slots, **flat), "-o", name)
         return name
 
-    def write_png(self, name, values):
-        """8-bit grey."""
+    def write_png(self, name, values, chunks=()):
+        """8-bit grey, or by a last axis of 2 to 4 grey with alpha, RGB, RGB with alpha; with further
+        chunks, (kind, data)."""
         values = np.asarray(values, np.uint8)
         rows = b"".join(b"\0" + row.tobytes() for row in values)
-        head = struct.pack(">IIBBBBB", values.shape[1], values.shape[0], 8, 0, 0, 0, 0)
+        colour_type = {1: 0, 2: 4, 3: 2, 4: 6}[values.shape[2] if values.ndim == 3 else 1]
+        head = struct.pack(">IIBBBBB", values.shape[1], values.shape[0], 8, colour_type, 0, 0, 0)
         chunks = b"".join(
             struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-            for kind, data in [(b"IHDR", head), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")])
+            for kind, data in [(b"IHDR", head), *chunks, (b"IDAT", zlib.compress(rows)), (b"IEND", b"")])
         path = self.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunks)

@@ -270,6 +270,13 @@ class ServeTest(ProgramTest):
             self.fails(USAGE, ["--serial", f"{len(serial)} bytes"], "capture", "serve", scene,
                        "--serial", serial)
 
+    def test_footage_that_looks_coded_is_told(self):
+        colour = self.write_png("f.png", np.full((8, 8, 3), 99))
+        for mode in ("frames", "coded"):
+            errors = self.run_program("capture", "serve", colour, "--mode", mode, "--address",
+                                      "nowhere").stderr
+            self.assertIn("f.png: looks gamma-coded: add --transfer srgb", errors)
+
     def test_options_of_another_mode_are_refused(self):
         serve = ("capture", "serve", self.scene())
         for option, value in (("--sensor", "ideal"), ("--schedule", "tiled"), ("--seed", 3),

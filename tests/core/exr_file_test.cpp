@@ -63,7 +63,7 @@ TEST_F(ExrFileTest, ReadsHalfAndFloatColourAsPlanes) {
 }
 
 TEST_F(ExrFileTest, ReadsASingleChannelAsMono) {
-    for (const char* name : {"Y", "R", "depth"}) {
+    for (const char* name : {"Y", "R", "light"}) {
         write_channels(file_, {name, "A"}, Imf::HALF);
         EXPECT_EQ(read().shape, (FrameShape{2, 3, 1}));
         EXPECT_EQ(read().values, (Floats{0, 1, 2, 3, 4, 5}));
@@ -73,6 +73,10 @@ TEST_F(ExrFileTest, ReadsASingleChannelAsMono) {
 TEST_F(ExrFileTest, RefusesChannelsThatAreNeitherMonoNorColour) {
     write_channels(file_, {"R", "G"}, Imf::HALF);
     expect_parts(problem(), {"f.exr: holds the channels G, R; give R, G, B or Y alone"});
+    write_channels(file_, {"X", "Y", "Z"}, Imf::HALF);
+    expect_parts(problem(), {"f.exr: holds CIE XYZ colour"});
+    write_channels(file_, {"Z", "A"}, Imf::FLOAT);
+    expect_parts(problem(), {"f.exr: holds distances (channel Z), no light"});
     write_channels(file_, {"A"}, Imf::HALF);
     expect_parts(problem(), {"f.exr: holds the channels ;"});
 }

@@ -109,10 +109,10 @@ TEST_F(FootageErrorsTest, SaysWhereAPngIsDamaged) {
     }
 }
 
-TEST_F(FootageErrorsTest, NamesATiffWithSeveralPages) {
+TEST_F(FootageErrorsTest, NamesATiffWithSeveralPagesAmongPictures) {
     const std::vector<cv::Mat> pages(2, cv::Mat(2, 2, CV_8UC1, cv::Scalar(5)));
-    cv::imwritemulti((folder_ / "f.tiff").string(), pages);
-    expect_parts(error_of(folder_ / "f.tiff"), {"f.tiff: holds more than one picture"});
+    cv::imwritemulti((folder_ / "f1.tiff").string(), pages);
+    expect_parts(error_of(folder_.path()), {"f1.tiff: holds 2 pictures"});
 }
 
 TEST_F(FootageErrorsTest, NamesThePictureThatDiffersInSizeOrPlanes) {

@@ -1,5 +1,6 @@
 #include "core/footage_files.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -11,9 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-Names names_of(const std::vector<fs::path>& files) {
+Names names_of(const ImageFiles& images) {
     Names names;
-    for (const auto& file : files) names.push_back(file.filename().string());
+    for (const auto& file : images.files) names.push_back(file.filename().string());
     return names;
 }
 
@@ -52,7 +53,7 @@ TEST(FootageFilesTest, RefusesMixedFormats) {
     const TemporaryFolder tiffs;  // two spellings of one format
     write_text(tiffs / "f1.tif", "");
     write_text(tiffs / "f2.tiff", "");
-    EXPECT_EQ(images_in_folder(tiffs.path()).size(), 2U);
+    EXPECT_EQ(images_in_folder(tiffs.path()).files.size(), 2U);
 }
 
 TEST(FootageFilesTest, RefusesAFolderWithoutPictures) {
@@ -77,6 +78,46 @@ TEST(FootageFilesTest, NamesTheMissingPictureOfAPattern) {
     for (const char* name : {"f1.png", "f2.png", "f4.png", "f6.png"}) write_text(folder / name, "");
     expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / "f%d.png"); }),
                  {"/f3.png: is missing from the sequence"});
+}
+
+/// The warning about a folder of these pictures, without the folder's name.
+std::string warning_of(const Names& names) {
+    const TemporaryFolder folder;
+    for (const std::string& name : names) write_text(folder / name, "");
+    const std::string warning = images_in_folder(folder.path()).warning;
+    const std::string place = folder.path().string() + "/";
+    return warning.starts_with(place) ? warning.substr(place.size()) : warning;
+}
+
+TEST(FootageFilesTest, NamesTheNumbersThatAFolderSkips) {
+    EXPECT_EQ(warning_of({"f000.png", "f001.png", "f002.png", "f004.png", "f005.png"}),
+              "f003.png is missing: the frames after it move one slot forward");
+    EXPECT_EQ(warning_of({"f7.png", "f8.png", "f9.png", "f12.png", "f14.png"}),
+              "f10.png and 2 more are missing: the frames after them move forward, 3 slots in all");
+    EXPECT_EQ(warning_of({"f07.png", "f08.png", "f10.png"}),
+              "f09.png is missing: the frames after it move one slot forward");
+    EXPECT_EQ(warning_of({"f008_b2.png", "f009_b2.png", "f011_b2.png"}),
+              "f010_b2.png is missing: the frames after it move one slot forward");
+}
+
+TEST(FootageFilesTest, TakesAFolderWithoutSkippedNumbersInSilence) {
+    EXPECT_EQ(warning_of({"f9.png", "f10.png", "f11.png"}), "");
+    EXPECT_EQ(warning_of({"f0.png", "f2.png", "f4.png"}), "");           // every second one
+    EXPECT_EQ(warning_of({"t1623.png", "t1656.png", "t1690.png"}), "");  // times
+    EXPECT_EQ(warning_of({"t100.png", "t101.png", "t203.png", "t301.png"}), "");
+    EXPECT_EQ(warning_of({"a1.png", "a2.png", "b7.png", "b8.png"}), "");
+    EXPECT_EQ(warning_of({"1.png"}), "");
+    EXPECT_EQ(warning_of({"one.png", "two.png"}), "");
+    EXPECT_EQ(warning_of({"f99999999999999999998.png", "f99999999999999999999.png"}), "");
+}
+
+TEST(FootageFilesTest, SaysWhichNumbersAPatternLeavesOut) {
+    const TemporaryFolder folder;
+    for (int i = 7; i <= 12; ++i) write_text(folder / fmt::format("f{}.png", i), "");
+    expect_parts(images_of_pattern(folder / "f%02d.png").warning,
+                 {"f%02d.png: takes f10.png to f12.png; left out are 3 pictures of other digits: "
+                  "f7.png"});
+    EXPECT_EQ(images_of_pattern(folder / "f%d.png").warning, "");
 }
 
 TEST(FootageFilesTest, RefusesMalformedPatternsAndEmptyMatches) {

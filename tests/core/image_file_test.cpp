@@ -65,7 +65,7 @@ TEST(ImageFileTest, RefusesAnotherPixelTypeOrFormat) {
     Picture picture;
     write_flat(folder / "f.tiff", 2, 1, CV_64FC1, 7.25);
     expect_parts(message_of<InputError>([&] { read_image(folder / "f.tiff", picture); }),
-                 {"f.tiff: give 8- or 16-bit integers"});
+                 {"f.tiff: holds samples of 64 bits (float); give 8- or 16-bit"});
     expect_parts(message_of<InputError>([&] { read_image(folder / "f.jpg", picture); }),
                  {"f.jpg: is not a picture that can be read"});
 }

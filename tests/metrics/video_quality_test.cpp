@@ -45,6 +45,15 @@ TEST(VideoQualityTest, AnErrorOfATenthIs20Db) {
     EXPECT_NEAR(quality.psnr_frame_mean_db, 20, kToleranceDb);
 }
 
+TEST(VideoQualityTest, APeakOfTwoAddsSixDecibels) {
+    const auto quality = flat_quality({0.6F}, {0.5F}, {.peak = 2});
+    EXPECT_NEAR(quality.psnr_db, 20 + 20 * std::log10(2.0), kToleranceDb);
+    EXPECT_NEAR(quality.psnr_frame_mean_db, quality.psnr_db, kToleranceDb);
+    EXPECT_EQ(quality.psnr_gamma_db, flat_quality({0.6F}, {0.5F}).psnr_gamma_db);
+    const double error = pu21(60) - pu21(50);
+    EXPECT_NEAR(quality.pu21_psnr_db, 20 * std::log10(pu21(200) / error), 1e-3);
+}
+
 TEST(VideoQualityTest, PoolsErrorsButAveragesFrameValues) {
     // Mean squares 1e-2 and 1e-4.
     const auto quality = flat_quality({0.6F, 0.51F}, {0.5F, 0.5F});
@@ -67,7 +76,7 @@ TEST(VideoQualityTest, GammaPsnrIsTakenAfterTheCurve) {
 
 TEST(VideoQualityTest, Pu21PsnrTakesThePeakLuminanceAsItsPeak) {
     for (const double peak : {100.0, 4000.0}) {
-        const auto quality = flat_quality({0.5F}, {1}, {.peak_cd_per_m2 = peak});
+        const auto quality = flat_quality({0.5F}, {1}, {.unit_cd_per_m2 = peak});
         const double expected = 20 * std::log10(pu21(peak) / (pu21(peak) - pu21(peak / 2)));
         EXPECT_NEAR(quality.pu21_psnr_db, expected, kToleranceDb);
     }
@@ -143,7 +152,8 @@ TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
     EXPECT_THROW(QualityMeter({}, {}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.margin = -1}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
-    EXPECT_THROW(QualityMeter(kShape, {.peak_cd_per_m2 = 0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.peak = 0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = 0}), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// The pixels of a TIFF page as they are stored, but interleaved: by row, column and channel.
+struct TiffPixels {
+    enum class Sample { kU8, kU16, kF32 };
+
+    FrameShape shape;
+    Sample sample = Sample::kU8;
+    int channels = 1;  ///< the planes, and alpha
+    std::vector<std::byte> bytes;
+
+    [[nodiscard]] std::size_t sample_bytes() const;
+};
+
+/// A TIFF file (6.0 or BigTIFF) of grey or RGB pages, in strips or tiles, its channels together or
+/// apart. Nothing is written to standard error.
+class TiffFile {
+  public:
+    /// \throws InputError if the file is missing, unreadable or no TIFF.
+    explicit TiffFile(const std::filesystem::path& file);
+    ~TiffFile();
+    TiffFile(TiffFile&&) noexcept;
+    TiffFile& operator=(TiffFile&&) noexcept;
+
+    [[nodiscard]] int pages() const;
+    /// Page 0, 1, ... < pages(). \throws InputError naming the file, and the page of several, if it
+    /// is damaged or of a kind that is not read.
+    void read(int page, TiffPixels& pixels);
+    /// The file, and the page of several, for messages.
+    [[nodiscard]] std::string place(int page) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The only page of a file. \throws InputError as TiffFile, or if there are more.
+[[nodiscard]] TiffPixels read_single_tiff(const std::filesystem::path& file);
+
+}  // namespace stipple

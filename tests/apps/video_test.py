@@ -1,0 +1,217 @@
+"""Video files of all depths, matrices and ranges, written by ffmpeg, against what it was given."""
+
+import shutil
+import subprocess
+import unittest
+
+import numpy as np
+from program import INPUT, OK, ProgramTest
+
+COLOUR = (0xC0, 0x30, 0x60)
+HINT = "looks gamma-coded: add --transfer srgb"
+
+
+@unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+class VideoTest(ProgramTest):
+    def ffmpeg(self, *arguments, data=None):
+        done = subprocess.run(["ffmpeg", "-v", "error", "-y", *map(str, arguments)], input=data,
+                              cwd=self.folder, capture_output=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def write_raw(self, name, frames, pixels, *options):
+        """Frames (slot, row, col, ...) of a pixel format of ffmpeg, without loss."""
+        self.ffmpeg("-f", "rawvideo", "-pix_fmt", pixels, "-s",
+                    f"{frames.shape[2]}x{frames.shape[1]}", "-i", "-", "-c:v", "ffv1", *options, name,
+                    data=frames.tobytes())
+        return name
+
+    def write_moving(self, name, *options, seconds=1):
+        self.ffmpeg("-f", "lavfi", "-i", f"testsrc2=size=64x48:rate=30:duration={seconds}", *options,
+                    name)
+        return name
+
+    def write_flat_colour(self, name, rows, matrix, scale, pixels, *options):
+        """The colour, turned into Y'CbCr by ffmpeg."""
+        declared = ["-colorspace", matrix] if matrix else []
+        self.ffmpeg("-f", "lavfi", "-i", "color=c=0x%02x%02x%02x:s=16x%d:d=0.04" % (*COLOUR, rows),
+                    "-vf", f"format=gbrp16le,scale={scale},format={pixels}", *declared, *options,
+                    name)
+        return name
+
+    def emulate(self, video, *options):
+        """The light that was emulated, and what was said of it."""
+        done = self.run_program("emulate", video, "-o", "clip.stipple", "--truth", "light.npy",
+                                "--force", "-q", *options)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        return self.array("light.npy"), done.stderr
+
+    def shown(self, video, shape):
+        """The frames as ffmpeg shows them, in 8 bits."""
+        frames = self.ffmpeg("-i", video, "-sws_flags",
+                             "bicubic+accurate_rnd+full_chroma_int+full_chroma_inp", "-f", "rawvideo",
+                             "-pix_fmt", "rgb24", "-")
+        return np.frombuffer(frames, np.uint8).reshape(shape)
+
+    def test_grey_stays_one_plane_at_its_own_depth(self):
+        for depth in (8, 10, 12, 16):
+            most = 2 ** depth - 1
+            levels = np.arange(4096).reshape(1, 64, 64) % (most + 1) * (most // min(most, 4095))
+            pixels = "gray" if depth == 8 else f"gray{depth}le"
+            self.write_raw("grey.mkv", levels.astype(np.uint8 if depth == 8 else "<u2"), pixels)
+            light, _ = self.emulate("grey.mkv")
+            with self.subTest(depth=depth):
+                self.assertEqual(light.shape, levels.shape)
+                self.assertEqual(len(np.unique(light)), min(4096, most + 1))
+                np.testing.assert_allclose(light, levels / most, atol=1e-7)  # float32
+
+    def test_grey_of_limited_range_runs_from_16_to_235(self):
+        levels = np.arange(256, dtype=np.uint8).reshape(1, 16, 16)
+        self.write_raw("grey.mkv", levels, "gray", "-color_range", "tv")
+        light, _ = self.emulate("grey.mkv")
+        np.testing.assert_allclose(light, np.clip((levels - 16.0) / 219, 0, 1), atol=1e-6)
+
+    def test_rgb_is_exact_at_all_depths(self):
+        random = np.random.default_rng(1)
+        for pixels, most in (("rgb24", 255), ("bgra", 255), ("rgb48le", 65535)):
+            values = random.integers(0, most + 1, (2, 9, 7, len(pixels.rstrip("1234567890le"))))
+            values = values.astype(np.uint8 if most == 255 else "<u2")
+            name = self.write_raw("rgb.mkv", values, pixels)
+            light, said = self.emulate(name)
+            expected = values[..., 2::-1] if pixels == "bgra" else values
+            with self.subTest(pixels=pixels):
+                np.testing.assert_allclose(light, expected / most, atol=1e-7)
+                self.assertEqual("its alpha channel is left out" in said, pixels == "bgra")
+
+    def test_the_matrix_and_the_range_are_those_that_the_file_declares(self):
+        lossless = {"yuv420p": ["-c:v", "libx264", "-qp", "0"], "yuv444p12le": ["-c:v", "ffv1"],
+                    "yuv422p10le": ["-c:v", "ffv1"]}
+        for rows, matrix, scaled in ((48, "bt709", "bt709"), (720, "smpte170m", "bt601"),
+                                     (48, "bt2020nc", "bt2020"), (718, None, "bt601"),
+                                     (720, None, "bt709")):
+            for span in ("tv", "pc"):
+                for pixels, codec in lossless.items():
+                    name = self.write_flat_colour(
+                        "flat.mkv", rows, matrix, f"out_color_matrix={scaled}:out_range={span}",
+                        pixels, "-color_range", span, *codec)
+                    light, _ = self.emulate(name)
+                    with self.subTest(rows=rows, matrix=matrix, span=span, pixels=pixels):
+                        np.testing.assert_allclose(light[0, 20, 9] * 255, COLOUR, atol=2)
+
+    def test_prores_keeps_ten_bits(self):
+        ramp = np.broadcast_to(np.arange(64, 940, dtype="<u2")[:768], (1, 64, 768))
+        neutral = np.full((1, 64, 384), 512, "<u2")
+        data = b"".join(plane.tobytes() for plane in (ramp, neutral, neutral))
+        self.ffmpeg("-f", "rawvideo", "-pix_fmt", "yuv422p10le", "-s", "768x64", "-i", "-", "-c:v",
+                    "prores_ks", "-profile:v", "hq", "ramp.mov", data=data)
+        light, _ = self.emulate("ramp.mov")
+        expected = (ramp[0, 0] - 64.0) / 876
+        # Lossy, but finer than 8 bits, whose steps are 4: two of ten bits at most.
+        self.assertLess(np.abs(light[0, :, :, 1].mean(axis=0) - expected).max(), 2 / 876)
+        self.assertGreater(len(np.unique(light[0, :, :, 1])), 400)
+
+    def test_chroma_is_upsampled_as_by_ffmpeg(self):
+        self.write_moving("film.mp4", "-pix_fmt", "yuv420p", "-c:v", "libx264", seconds=0.2)
+        light, _ = self.emulate("film.mp4")
+        # Theirs rounds light and colour to 8 bits, of which one of colour is 1.8 of blue.
+        np.testing.assert_allclose(light * 255, self.shown("film.mp4", light.shape), atol=3.5)
+
+    def test_turned_video_is_set_upright(self):
+        self.write_moving("film.mp4", "-pix_fmt", "yuv444p", "-c:v", "libx264", seconds=0.2)
+        for degrees in (90, 180, 270):
+            self.ffmpeg("-i", "film.mp4", "-c", "copy", "-metadata:s:v:0", f"rotate={degrees}",
+                        "turned.mp4")
+            light, _ = self.emulate("turned.mp4")
+            self.assertEqual(light.shape[1:3], (48, 64) if degrees == 180 else (64, 48))
+            np.testing.assert_allclose(light * 255, self.shown("turned.mp4", light.shape), atol=3.5)
+
+    def test_odd_sizes(self):
+        planes = [np.full(size, value, np.uint8)
+                  for size, value in (((21, 35), 126), ((11, 18), 128), ((11, 18), 128))]
+        self.ffmpeg("-f", "rawvideo", "-pix_fmt", "yuv420p", "-s", "35x21", "-i", "-", "-c:v", "ffv1",
+                    "odd.mkv", data=b"".join(plane.tobytes() for plane in planes))
+        light, _ = self.emulate("odd.mkv")
+        self.assertEqual(light.shape, (1, 21, 35, 3))
+        np.testing.assert_allclose(light, 110 / 219, atol=1e-6)
+
+    def refuse(self, video, *parts):
+        message = self.fails(INPUT, [video, *parts], "emulate", video, "-o", "clip.stipple",
+                             "--transfer", "srgb")
+        self.assertEqual(message.count("\n"), 1, message)
+
+    def test_a_truncated_file_is_refused(self):
+        for name, codec in (("film.mkv", "libx264"), ("film.avi", "mpeg4"),
+                            ("film.mov", "prores_ks")):
+            self.write_moving(name, "-c:v", codec)
+            whole = (self.folder / name).read_bytes()
+            for percent in (1, 30, 60, 85):
+                (self.folder / name).write_bytes(whole[:len(whole) * percent // 100])
+                with self.subTest(name=name, percent=percent):
+                    self.refuse(name, "damaged")
+
+    def test_a_truncated_file_with_sound_is_refused(self):
+        self.write_moving("film.mkv", "-f", "lavfi", "-i", "sine=duration=1", "-c:v", "ffv1", "-c:a",
+                          "flac")
+        self.assertEqual(self.emulate("film.mkv", "--transfer", "srgb")[1], "")
+        whole = (self.folder / "film.mkv").read_bytes()
+        (self.folder / "cut.mkv").write_bytes(whole[:len(whole) // 2])
+        (self.folder / "clip.stipple").unlink()
+        self.refuse("cut.mkv", "damaged")
+
+    def test_a_cut_end_is_told(self):
+        self.write_moving("film.mkv", "-c:v", "ffv1")
+        whole = (self.folder / "film.mkv").read_bytes()
+        (self.folder / "film.mkv").write_bytes(whole[:len(whole) * 94 // 100])
+        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.assertLess(len(light), 30)
+        self.assertIn(f"film.mkv: ends after {len(light)} frames, at {len(light) / 30:.3f} of 1.000 s; "
+                      "frames may be missing", said)
+
+    def test_frames_that_last_unequally_long_are_told(self):
+        self.write_moving("film.mkv", "-c:v", "ffv1", "-vf", "setpts=N*N/300/TB", "-fps_mode", "vfr")
+        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.assertGreater(len(light), 20)  # ffmpeg leaves out some that would be shown at once
+        self.assertRegex(said, r"^stipple: film.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each "
+                         r"becomes one slot; some may be missing\n$")
+        for rate in (24, 59.94, 240, 700):  # times in whole milliseconds
+            self.write_moving("film.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
+            self.assertEqual(self.emulate("film.mkv", "--transfer", "srgb")[1], "")
+
+    def test_a_damaged_frame_is_refused_by_its_number(self):
+        self.write_moving("film.mkv", "-c:v", "libx264", "-g", "10")
+        film = bytearray((self.folder / "film.mkv").read_bytes())
+        for at in range(len(film) // 2, len(film) // 2 + 40):
+            film[at] ^= 0xFF
+        (self.folder / "film.mkv").write_bytes(film)
+        self.refuse("film.mkv", ": frame ", "damaged")
+
+    def test_errors_that_the_decoder_only_logs_are_counted(self):
+        self.write_moving("film.mkv", "-c:v", "ffv1", "-slicecrc", "1")
+        film = bytearray((self.folder / "film.mkv").read_bytes())
+        film[len(film) // 2] ^= 0xFF
+        (self.folder / "film.mkv").write_bytes(film)
+        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.assertEqual(len(light), 30)
+        self.assertRegex(said, r"film.mkv: the decoder reports \d+ errors?, the first at frame \d+")
+
+    def test_pixels_that_are_no_such_numbers_are_refused(self):
+        self.write_flat_colour("flat.mkv", 48, "ycgco", "out_color_matrix=bt709", "yuv444p", "-c:v",
+                               "ffv1")
+        self.refuse("flat.mkv", 'the matrix "ycgco"', "BT.709")
+
+    def test_coded_video_is_hinted_at_and_linear_video_is_not(self):
+        self.write_moving("film.mp4", "-c:v", "libx264", seconds=0.2)
+        for options, hinted in (([], True), (["--transfer", "linear"], False),
+                                (["--transfer", "srgb"], False)):
+            _, said = self.emulate("film.mp4", *options)
+            self.assertEqual(HINT in said, hinted, options)
+        grey = np.zeros((1, 8, 8), "<u2")
+        self.assertEqual(self.emulate(self.write_raw("deep.mkv", grey, "gray16le"))[1], "")
+        declared = self.write_raw("film.mkv", grey.astype(np.uint8), "gray", "-color_trc", "linear")
+        self.assertEqual(self.emulate(declared)[1], "")
+        _, said = self.emulate(self.write_raw("hdr.mkv", grey, "gray16le", "-color_trc", "smpte2084"))
+        self.assertIn("hdr.mkv: is HDR video in the curve smpte2084", said)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,37 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "core/error.h"
+#include "core/tiff_file.h"
+#include "tests/fuzz/memory_file.h"
+
+namespace stipple {
+namespace {
+
+/// A page that passes has all its bytes.
+void read_pages(const std::string& path) {
+    constexpr int kMostPages = 4;
+    try {
+        TiffFile tiff(path);
+        TiffPixels pixels;
+        for (int page = 0; page < tiff.pages() && page < kMostPages; ++page) {
+            tiff.read(page, pixels);
+            if (pixels.bytes.size() != pixels.shape.pixels() * pixels.sample_bytes() *
+                                           static_cast<std::size_t>(pixels.channels))
+                std::abort();
+        }
+    } catch (const InputError&) {
+    }
+}
+
+}  // namespace
+}  // namespace stipple
+
+/// Input: a TIFF file.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const stipple::MemoryFile file(std::string(reinterpret_cast<const char*>(data), size));
+    stipple::read_pages(file.path());
+    return 0;
+}
