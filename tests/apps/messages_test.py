@@ -53,7 +53,7 @@ class UsageTest(ProgramTest):
         self.fails(USAGE, ["18446744073709551615 is the most"], "synth", "pan", "-o", "x", "--seed", 2**64)
         self.fails(USAGE, ["--timeout", "--follow"], "decode", "a", "-o", "x", "--timeout", 3)
         self.fails(USAGE, ["--json", "is empty"], "info", "a", "--json", "")
-        self.fails(USAGE, ["STREAM", "/dev/stdin"], "info", "-")
+        self.fails(USAGE, ["FILE", "/dev/stdin"], "info", "-")
         self.fails(USAGE, ["--output", "standard output"], "synth", "pan", "-o", "-")
         self.fails(USAGE, ["--name", "64"], "schedule", "import", "a.npy", "-o", "x", "--name", "n" * 65)
 
@@ -90,8 +90,8 @@ class InputTest(ProgramTest):
         self.fails(INPUT, [stream, "stipple decode"], "emulate", stream, "-o", "x")
         self.succeed("capture", "record", "replay:light.npy", "-o", "b.strec", "--set",
                      "AcquisitionFrameRate=0")
-        for line in (["info", "b.strec"], ["decode", "b.strec", "-o", "x.npy"]):
-            self.fails(INPUT, ["b.strec", "recording of a camera", "capture replay"], *line)
+        self.fails(INPUT, ["b.strec", "recording of a camera", "capture replay"],
+                   "decode", "b.strec", "-o", "x.npy")
 
     def test_a_file_that_may_not_be_read_is_an_input_error(self):
         folder = self.folder / "locked"

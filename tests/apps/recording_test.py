@@ -68,7 +68,7 @@ class RecordingTest(ProgramTest):
         record = ("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST, "--frames", 1,
                   "--force")
         self.assertIsNone(self.figures(*record)["frames_per_s"])
-        self.assertIn("1 frames, 0.0 MB", self.succeed(*record))
+        self.assertIn("1 frame, 0.0 MB", self.succeed(*record))
         live = ("capture", "live", "replay:light.npy", "-o", "a.stipple", *FAST, "--frames", 1)
         figures = self.figures(*live)
         for key in ("slots_per_second", "samples_per_second", "frames_hz"):
@@ -92,7 +92,7 @@ class RecordingTest(ProgramTest):
 
     def test_the_emulator_says_that_a_film_has_another_rate_than_slots(self):
         self.succeed("synth", "pan", "-o", "film.mp4", "--size", "32x32", "--frames", 4)
-        emulate = ("emulate", "film.mp4", "-o", "a.stipple", "--force", "-q")
+        emulate = ("emulate", "film.mp4", "-o", "a.stipple", "--force", "-q", "--transfer", "srgb")
         done = self.run_program(*emulate)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)

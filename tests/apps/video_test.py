@@ -12,6 +12,11 @@ HINT = "looks gamma-coded: add --transfer srgb"
 
 
 @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+def but_the_rate(said):
+    """Without the warning that the film plays at another rate than that of the slots."""
+    return "".join(line for line in said.splitlines(True) if ": plays " not in line)
+
+
 class VideoTest(ProgramTest):
     def ffmpeg(self, *arguments, data=None):
         done = subprocess.run(["ffmpeg", "-v", "error", "-y", *map(str, arguments)], input=data,
@@ -44,7 +49,7 @@ class VideoTest(ProgramTest):
         done = self.run_program("emulate", video, "-o", "clip.stipple", "--truth", "light.npy",
                                 "--force", "-q", *options)
         self.assertEqual(done.returncode, OK, done.stderr)
-        return self.array("light.npy"), done.stderr
+        return self.array("light.npy"), but_the_rate(done.stderr)
 
     def shown(self, video, shape):
         """The frames as ffmpeg shows them, in 8 bits."""
@@ -137,7 +142,7 @@ class VideoTest(ProgramTest):
     def refuse(self, video, *parts):
         message = self.fails(INPUT, [video, *parts], "emulate", video, "-o", "clip.stipple",
                              "--transfer", "srgb")
-        self.assertEqual(message.count("\n"), 1, message)
+        self.assertEqual(but_the_rate(message).count("\n"), 1, message)
 
     def test_a_truncated_file_is_refused(self):
         for name, codec in (("film.mkv", "libx264"), ("film.avi", "mpeg4"),
