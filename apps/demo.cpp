@@ -72,7 +72,7 @@ void demo(const DemoOptions& options, const RunOptions& run) {
     run.say(
         fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
                     "In {}:\n"
-                    "  side_by_side_1.png ...  4x | 1x | naive | decoded | truth, tone-mapped\n"
+                    "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
                     "  decoded.mp4             decoded video, tone-mapped\n"
                     "  decoded/                the same as EXR, linear light\n"
                     "  random.stipple          the recording it was made of",

@@ -15,6 +15,7 @@ nlohmann::ordered_json trials_json(const std::vector<TrialResult>& results) {
     for (const TrialResult& result : results) {
         nlohmann::ordered_json entry{{"name", result.name},
                                      {"schedule", result.schedule},
+                                     {"text", result.text},
                                      {"compression_ratio", result.size.compression_ratio},
                                      {"payload_bits", result.size.payload_bits},
                                      {"megabits_per_second", result.size.megabits_per_second}};
@@ -40,6 +41,8 @@ std::string trials_table(const std::vector<TrialResult>& results) {
             number(result.size.megabits_per_second, 1), number(result.quality.psnr_db, 2),
             number(result.quality.psnr_gamma_db, 2), number(result.quality.pu21_psnr_db, 2),
             number(result.quality.ssim, 3));
+    for (const TrialResult& result : results)
+        text += fmt::format("{:<16}{}\n", result.name, result.text);
     const auto read = std::ranges::find_if(
         results, [](const TrialResult& result) { return result.size.payload_bits > 0; });
     if (read != results.end())
@@ -47,8 +50,7 @@ std::string trials_table(const std::vector<TrialResult>& results) {
                             read->size.megabits_per_second * read->size.compression_ratio);
     return text + fmt::format(
                       "Light is compared up to {:.1f}.\n"
-                      "Decoded by the method fast; \"stipple decode\" alone takes best, which is "
-                      "slower and better.",
+                      "\"stipple decode\" alone takes the method best, which is slower and better.",
                       kBrightestLight);
 }
 

@@ -12,6 +12,7 @@ namespace stipple {
 struct TrialResult {
     std::string name;
     std::string schedule;
+    std::string text;  ///< what it is
     RecordingSize size;
     VideoQuality quality;
 };

@@ -18,11 +18,18 @@ struct Trial {
     const char* name;
     const char* schedule;
     DecodeMethod method;
+    const char* text;  ///< what it is
 };
-constexpr std::array<Trial, 4> kTrials = {{{"4x exposure", "full4x", DecodeMethod::kNaive},
-                                           {"1x exposure", "full1x", DecodeMethod::kNaive},
-                                           {"coded, naive", "random", DecodeMethod::kNaive},
-                                           {"coded, decoded", "random", DecodeMethod::kFast}}};
+constexpr std::array<Trial, 5> kTrials = {
+    {{"4x exposure", "full4x", DecodeMethod::kNaive,
+      "a conventional camera that exposes 4 slots together, its frames held"},
+     {"1x exposure", "full1x", DecodeMethod::kNaive,
+      "a conventional camera that exposes 1 slot in 4, its frames interpolated in time"},
+     {"1x, decoded", "full1x", DecodeMethod::kFast,
+      "the same frames, denoised and interpolated along motion by the method fast"},
+     {"coded, naive", "random", DecodeMethod::kNaive,
+      "coded exposures, each pixel by its own nearest samples"},
+     {"coded, decoded", "random", DecodeMethod::kFast, "the same samples by the method fast"}}};
 
 /// A slot of which a picture is left.
 struct ShownSlot {
@@ -53,7 +60,7 @@ std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& fold
     FrameWriter film(folder / "decoded.mp4", truth.shape(), {.force = run.force});
     std::vector<TrialResult> results;
     for (std::size_t i = 0; i < kTrials.size(); ++i) {
-        const auto& [name, schedule, method] = kTrials[i];
+        const auto& [name, schedule, method, text] = kTrials[i];
         const fs::path file = folder / fmt::format("{}.stipple", schedule);
         const bool recorded = i > 0 && results.back().schedule == schedule;
         const RecordingSize size =
@@ -67,7 +74,7 @@ std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& fold
             return true;
         };
         results.push_back(
-            {name, schedule, size, decode_and_compare(file, method, truth, take, run)});
+            {name, schedule, text, size, decode_and_compare(file, method, truth, take, run)});
     }
     frames.finish();
     film.finish();

@@ -51,8 +51,8 @@ std::span<const SamplePacket> SlotEmulator::what_fits(const SlotAccount& slot) {
         return std::span(packets_).first(1);
     }
     packets_[1] = {whole.slot, slot.end_row, whole.rows - slot.end_row, SamplePacket::kDropped, {}};
-    dropped_light_ += light_due(setup_.schedule.schedule, filters_, whole.slot, slot.end_row,
-                                whole.rows, setup_.shape.cols);
+    dropped_light_ += light_due(setup_.schedule.schedule, filters_,
+                                {whole.slot, slot.end_row, whole.rows, setup_.shape.cols});
     whole.rows = slot.end_row;
     whole.dn.resize(slot.counts.samples);
     return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);

@@ -7,7 +7,9 @@ namespace {
 
 double transmittance(const CalibrationTile& tile, int row, int col) {
     if (tile.pixels.empty()) return 1;
-    return tile.pixels[static_cast<std::size_t>(row % tile.rows * tile.cols + col % tile.cols)]
+    return tile
+        .pixels[static_cast<std::size_t>(row % tile.rows) * static_cast<std::size_t>(tile.cols) +
+                static_cast<std::size_t>(col % tile.cols)]
         .responsivity;
 }
 
@@ -28,11 +30,11 @@ double light_throughput(const ExposureSchedule& schedule, const CalibrationTile&
     return light / (schedule.period_slots() * static_cast<double>(shape.pixels()));
 }
 
-double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile, std::int64_t slot,
-                 int first_row, int end_row, int cols) {
+double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
+                 const SlotRows& rows) {
     double light = 0;
-    for (int row = first_row; row < end_row; ++row)
-        visit_due_pixels(schedule, slot, row, cols, [&](int col, const DuePixel& pixel) {
+    for (int row = rows.first_row; row < rows.end_row; ++row)
+        visit_due_pixels(schedule, rows.slot, row, rows.cols, [&](int col, const DuePixel& pixel) {
             light += pixel.light_slots * transmittance(tile, row, col);
         });
     return light;
@@ -46,8 +48,8 @@ double light_due_in_clip(const ExposureSchedule& schedule, const CalibrationTile
     for (std::int64_t slot = 0; slot < std::min(slots, steady + period); ++slot) {
         // From `steady` on, slots of the same phase are alike.
         const std::int64_t times = slot < steady ? 1 : 1 + (slots - 1 - slot) / period;
-        light +=
-            static_cast<double>(times) * light_due(schedule, tile, slot, 0, shape.rows, shape.cols);
+        light += static_cast<double>(times) *
+                 light_due(schedule, tile, {slot, 0, shape.rows, shape.cols});
     }
     return light;
 }

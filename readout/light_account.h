@@ -14,10 +14,18 @@ namespace stipple {
 [[nodiscard]] double light_throughput(const ExposureSchedule& schedule, const CalibrationTile& tile,
                                       FrameShape shape);
 
-/// Light that the samples of `slot` hold in rows [first_row, end_row), each of `cols` columns,
-/// where a slot of light 1.0 on a pixel without filter is 1.
+/// Rows [first_row, end_row) of an array in a slot.
+struct SlotRows {
+    std::int64_t slot = 0;
+    int first_row = 0;
+    int end_row = 0;
+    int cols = 0;
+};
+
+/// Light that the samples of these rows hold, where a slot of light 1.0 on a pixel without filter
+/// is 1.
 [[nodiscard]] double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
-                               std::int64_t slot, int first_row, int end_row, int cols);
+                               const SlotRows& rows);
 
 /// The same of all samples of the slots 0 .. `slots` - 1. Exposures that begin before or end after
 /// them are not read, so it is less than light_throughput * slots * pixels.

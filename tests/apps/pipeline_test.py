@@ -212,7 +212,8 @@ class PipelineTest(ProgramTest):
         demo = ["demo", "--frames", "20", "--size", "48x40", "-o", "shown"]
         trials = self.figures(*demo)["trials"]
         self.assertEqual([trial["name"] for trial in trials],
-                         ["4x exposure", "1x exposure", "coded, naive", "coded, decoded"])
+                         ["4x exposure", "1x exposure", "1x, decoded", "coded, naive", "coded, decoded"])
+        self.assertGreater(trials[2]["psnr_db"], trials[1]["psnr_db"])  # denoised, along motion
         for trial in trials:
             self.assertGreater(trial["psnr_db"], 0)
             self.assertAlmostEqual(trial["megabits_per_second"],
@@ -225,6 +226,8 @@ class PipelineTest(ProgramTest):
         text = self.succeed(*demo, "--force")
         self.assertIn("In shown:", text)
         self.assertRegex(text, r"coded, decoded +\d+\.\d\d : 1")
+        for trial in trials:
+            self.assertRegex(text, f"{trial['name']} +{trial['text']}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include "scenes/scene.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 
 namespace stipple {
@@ -44,6 +48,60 @@ TEST_P(SceneQualityTest, FastBeatsConventionalCamerasOfTheSameBandwidth) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneQualityTest,
                          testing::Values("pan", "roll", "pencils", "dice", "still"),
                          [](const auto& test) { return test.param; });
+
+/// A sensor, its settings, and a factor of its light.
+struct SensorCase {
+    std::string sensor;
+    std::vector<std::string> settings;
+    double light = 1;
+};
+
+class SensorQualityTest : public testing::TestWithParam<SensorCase> {};
+
+// The decoders hold on any sensor and in any light, not only on the paper's.
+TEST_P(SensorQualityTest, FastAndBestAreBetterThanNaive) {
+    const auto& [name, settings, light] = GetParam();
+    const SensorParams sensor = sensor_of(name, settings, light);
+    const SceneOptions options{
+        .slots = 28, .shape = {.rows = 48, .cols = 64, .planes = 1}, .time_samples = 2};
+    const Scene scene(SceneName::kDice, options);
+    FluxVideo video(options.slots, options.shape);
+    const auto brightest = static_cast<float>(std::min(2.0, clipping_light(sensor)));
+    for (int slot = 0; slot < options.slots; ++slot) {
+        scene.render(slot, video.frame(slot));
+        for (float& value : video.frame(slot)) value = std::min(value, brightest);
+    }
+    const TemporaryFolder folder;
+    write_recording(video, schedule_of("random", video.shape()), sensor, folder / "a.stipple");
+    const auto quality = [&](DecodeMethod method) {
+        return quality_of(read_recording(folder / "a.stipple", method), video);
+    };
+    const VideoQuality naive = quality(DecodeMethod::kNaive);
+    const VideoQuality fast = quality(DecodeMethod::kFast);
+    const VideoQuality best = quality(DecodeMethod::kBest);
+    EXPECT_GT(fast.psnr_db, naive.psnr_db + 0.5);
+    EXPECT_GT(fast.psnr_gamma_db, naive.psnr_gamma_db + 0.5);
+    EXPECT_GT(best.psnr_db, fast.psnr_db - 0.1);
+    EXPECT_GT(best.psnr_gamma_db, fast.psnr_gamma_db - 0.1);
+}
+
+std::vector<SensorCase> sensor_cases() {
+    std::vector<SensorCase> cases;
+    for (const double light : {1.0, 4.0, 0.1}) {
+        for (const char* name : {"paper", "lux1310", "grasshopper", "t6"})
+            cases.push_back({name, {}, light});
+        cases.push_back({"paper", {"bit_depth=10", "full_well_e=1800"}, light});
+    }
+    return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, SensorQualityTest, testing::ValuesIn(sensor_cases()),
+                         [](const auto& test) {
+                             const SensorCase& it = test.param;
+                             const std::string light = std::to_string(std::lround(it.light * 10));
+                             return it.sensor + (it.settings.empty() ? "" : "_well") + "_light_" +
+                                    light + "_tenths";
+                         });
 
 }  // namespace
 }  // namespace stipple
