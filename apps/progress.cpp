@@ -96,7 +96,7 @@ std::string Progress::pace() const {
     const double done = done_;
     if (done <= 0) return {};
     const double rate = done / done_at_s_;
-    const std::string text = fmt::format(", {} frames/s", rounded(rate));
+    std::string text = fmt::format(", {} frames/s", rounded(rate));
     if (!total_) return text;
     const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();
     if (left_s < 0) return text;  // this step takes longer than those before it
