@@ -54,10 +54,21 @@ void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExp
     }
 }
 
-/// Squared changes of light at the voxels, and where they are known.
+/// Slots in which no site collects light.
+std::vector<bool> closed_slots(const Measurements& m) {
+    std::vector<bool> closed(index(m.slots));
+    for (std::size_t slot = 0; slot < closed.size(); ++slot)
+        closed[slot] = std::ranges::none_of(
+            std::span(m.state).subspan(slot * m.shape.sites(), m.shape.sites()),
+            [](std::uint8_t state) { return (state & Measurements::kOpen) != 0; });
+    return closed;
+}
+
+/// Squared changes of light at the voxels, where they are known, and the slots that nobody sees.
 struct Changes {
     std::vector<float> squared;
     std::vector<float> known;  ///< 0 or 1
+    std::vector<bool> closed_slots;
 
     void raise(std::size_t voxel, float value) {
         squared[voxel] = known[voxel] == 0 ? value : std::max(squared[voxel], value);
@@ -141,6 +152,7 @@ class SitePresumption {
             const std::size_t i = voxel(site, slot);
             if ((m_.state[i] & Measurements::kOpen) != 0) continue;
             const bool within = next != exposures_.end() && next->first_slot < slot;
+            if (within && !changes_.closed_slots[index(slot)]) continue;
             closed = closed || within;
             make_sample(i, within ? Measurements::kSecond : std::uint8_t{0});
         }
@@ -236,7 +248,7 @@ PresumedSamples::PresumedSamples(Measurements& measurements, const FluxVideo& ne
                                  const SampleNoise& noise)
     : measurements_(measurements), interleaved_(measurements.interleaved) {
     Changes changes{std::vector<float>(measurements.voxels()),
-                    std::vector<float>(measurements.voxels())};
+                    std::vector<float>(measurements.voxels()), closed_slots(measurements)};
     const FrameShape shape = measurements.shape;
     std::vector<SitePresumption> rows(index(shape.planes * shape.rows),
                                       SitePresumption(measurements, nearest, noise, changes));

@@ -11,10 +11,12 @@ class SampleNoise;
 struct Measurements;
 
 /// While it lives, measurements hold what the samples of a site say of its light where none of
-/// them knows it: in slots outside
-/// all exposures, in their closed slots, and in saturated exposures. Without that the prior alone
-/// decides there, and small bright things sink to the light around them.
-///  - A voxel in no sample becomes a sample of its own, but at the ends only if the site has gaps.
+/// them knows it: in slots outside all exposures, in their closed slots, and in saturated
+/// exposures. Without that the prior alone decides there, and small bright things sink to the light
+/// around them.
+///  - A voxel in no sample becomes a sample of its own; at the ends only if the site has gaps, and
+///    within an exposure only if all sites are closed in that slot, for else those around it that
+///    are open know more.
 ///  - A saturated sample becomes one like others if its neighbours in time that are not saturated
 ///    are brighter than its bound; if all are saturated, its bound becomes the highest of them.
 /// The light is that of `nearest` (nearest_samples.h). The variance is that of a sample, and a

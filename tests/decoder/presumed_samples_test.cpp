@@ -101,6 +101,15 @@ TEST(PresumedSamplesTest, ClosedSlotsOfAnExposureAreNotItsOwn) {
     EXPECT_FLOAT_EQ(m.sum[4], 1.5F);
 }
 
+TEST(PresumedSamplesTest, ClosedSlotsInWhichOthersAreOpenAreLeftToThePrior) {
+    const FrameShape two{.rows = 1, .cols = 2, .planes = 1};
+    const Measurements before =
+        hand_made(5, two,
+                  {{.site = 0, .first_slot = 0, .open_slots = 0b10101, .light = 1.5F},
+                   {.site = 1, .first_slot = 0, .open_slots = 0b11011, .light = 2}});
+    EXPECT_EQ(presumed(before).state, before.state);
+}
+
 // Light to twice what a sample of one slot holds, so that all kinds of bounds are met.
 TEST(PresumedSamplesTest, NothingOfItStays) {
     const FrameShape shape{.rows = 20, .cols = 24, .planes = 1};
