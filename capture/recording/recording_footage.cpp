@@ -22,7 +22,7 @@ RecordingFootage::RecordingFootage(const std::filesystem::path& file,
       light_((has_coming_ ? coming_.record.layout
                           : throw InputError(file.string(), "holds no frame that can be used")),
              options.black_level_dn) {
-    to_hold_ = 0;  // nothing stands in for what came before the first frame
+    to_hold_ = missing_ = 0;  // nothing stands in for what came before the first frame
     gaps_.clear();
 }
 

@@ -69,13 +69,13 @@ class RecordingFootage {
     CapturedFrame coming_;
     std::int64_t slots_ = 0;  ///< that were read
     std::vector<RecordingGap> gaps_;
-    bool has_coming_;  ///< initialised by `advance`, which uses what stands before
-    FrameLight light_;
-    std::vector<float> last_;    ///< light of the frame before; empty before the first
     std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing
     std::uint64_t held_ = 0;
     std::uint64_t missing_ = 0;
     FrameRate rate_;
+    bool has_coming_;  ///< initialised by `advance`, which uses what stands before
+    FrameLight light_;
+    std::vector<float> last_;  ///< light of the frame before; empty before the first
 };
 
 }  // namespace stipple
