@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """What passed on this machine, by the content that was checked: a check of the same content with the
 same tools need not run again.
 

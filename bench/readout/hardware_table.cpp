@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <utility>
 #include <vector>
 
@@ -184,14 +186,15 @@ void draw(const std::vector<Point>& points, const std::string& file) {
     for (std::size_t i = 0; i < points.size(); ++i)
         data += fmt::format("{} {} {} \"{}\"\n", i, points[i].random_db, points[i].arranged_db,
                             points[i].size);
-    draw_chart(file, {.width = 720, .height = 420},
-               "$points << END\n" + data +
-                   "END\n"
-                   "set xlabel 'group, columns x rows'\n"
-                   "set ylabel 'decoded PSNR against random, dB'\n"
-                   "set grid ytics\nset key bottom left\nset offsets 0.3, 0.3, 0.3, 0.3\n"
-                   "plot $points using 1:2:xtic(4) with linespoints pt 7 title 'random groups', "
-                   "$points using 1:3 with linespoints pt 7 title 'hardware_tiled'\n");
+    std::ofstream(file, std::ios::binary) << draw_chart(
+        std::filesystem::path(file).extension().string(), {.width = 720, .height = 420},
+        "$points << END\n" + data +
+            "END\n"
+            "set xlabel 'group, columns x rows'\n"
+            "set ylabel 'decoded PSNR against random, dB'\n"
+            "set grid ytics\nset key bottom left\nset offsets 0.3, 0.3, 0.3, 0.3\n"
+            "plot $points using 1:2:xtic(4) with linespoints pt 7 title 'random groups', "
+            "$points using 1:3 with linespoints pt 7 title 'hardware_tiled'\n");
 }
 
 }  // namespace
