@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "decoder/measurements.h"
+#include "decoder/site_exposures.h"
 #include "decoder/unsampled_sites.h"
 
 namespace stipple {
@@ -18,38 +19,13 @@ constexpr std::array<float, 17> kCloseness = {
     1.0F,           5.13417119e-1F, 2.63597138e-1F, 1.35335283e-1F, 6.94834512e-2F, 3.56739933e-2F,
     1.83156389e-2F, 9.40356255e-3F, 4.82794999e-3F, 2.47875218e-3F, 1.27263380e-3F, 6.53391981e-4F,
     3.35462628e-4F, 1.72232257e-4F, 8.84270376e-5F, 4.53999298e-5F, 2.33091012e-5F};
-constexpr float kShortest = 0.3F;
+/// 1 / (0.3 + n) for n open slots, up to 64.
+constexpr std::array<float, 65> kWeight = [] {
+    std::array<float, 65> weight{};
+    for (std::size_t n = 0; n < weight.size(); ++n) weight[n] = 1 / (0.3F + static_cast<float>(n));
+    return weight;
+}();
 constexpr int kNearSlots = 8;
-
-/// An exposure of one site.
-struct SiteExposure {
-    int first_slot;
-    int last_slot;
-    int open_slots;
-    bool saturated;
-    std::uint8_t chain;  ///< 0, or Measurements::kSecond
-    float light_per_slot;
-    float weight;
-};
-
-void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
-    list.clear();
-    SiteExposure chains[2] = {};  // where exposures interleave, two are under way at once
-    for (int slot = 0; slot < m.slots; ++slot) {
-        const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
-        const auto chain = static_cast<std::uint8_t>(m.state[i] & Measurements::kSecond);
-        SiteExposure& e = chains[chain != 0 ? 1 : 0];
-        if ((m.state[i] & Measurements::kFirst) != 0) e = {slot, slot, 0, false, chain, 0, 0};
-        e.open_slots += m.state[i] & Measurements::kOpen;
-        if ((m.state[i] & Measurements::kLast) == 0) continue;
-        e.saturated = (m.state[i] & Measurements::kSaturated) != 0;
-        const auto n = static_cast<float>(e.open_slots);
-        e.last_slot = slot;
-        e.light_per_slot = m.sum[i] / n;
-        e.weight = 1 / (kShortest + n);
-        list.push_back(e);
-    }
-}
 
 /// What the exposures of a site say of one slot; `own` is the exposure that the slot is in, or
 /// none.
@@ -67,8 +43,9 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
         }
         near = near || distance <= kNearSlots;
         const auto i = std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1);
-        light += e.weight * kCloseness[i] * e.light_per_slot;
-        weight += e.weight * kCloseness[i];
+        const float own_weight = kWeight[static_cast<std::size_t>(e.open_slots)];
+        light += own_weight * kCloseness[i] * e.light_per_slot;
+        weight += own_weight * kCloseness[i];
     }
     if (weight == 0 || (bound > 0 && !near)) return bound;
     return own != nullptr && own->saturated ? std::max(light / weight, own->light_per_slot)

@@ -12,6 +12,7 @@
 #include "decoder/box_blur.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
+#include "decoder/site_exposures.h"
 
 namespace stipple {
 namespace {
@@ -22,36 +23,6 @@ constexpr float kSaturatedDoubt = 0.7F;
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
-}
-
-/// An exposure of a site.
-struct SiteExposure {
-    int first_slot = 0;
-    int last_slot = 0;
-    int open_slots = 0;
-    bool saturated = false;
-    float light_per_slot = 0;     ///< at least, if saturated
-    float variance_per_slot = 0;  ///< of that
-};
-
-/// Those of a site, in the order of their ends.
-void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
-    list.clear();
-    SiteExposure chains[2];
-    for (int slot = 0; slot < m.slots; ++slot) {
-        const std::size_t i = index(slot) * m.shape.sites() + site;
-        const std::uint8_t state = m.state[i];
-        SiteExposure& e = chains[(state & Measurements::kSecond) != 0 ? 1 : 0];
-        if ((state & Measurements::kFirst) != 0) e = {.first_slot = slot};
-        if ((state & Measurements::kOpen) != 0) ++e.open_slots;
-        if ((state & Measurements::kLast) == 0) continue;
-        const auto n = static_cast<float>(e.open_slots);
-        e.last_slot = slot;
-        e.saturated = (state & Measurements::kSaturated) != 0;
-        e.light_per_slot = m.sum[i] / n;
-        e.variance_per_slot = m.variance[i] / (n * n);
-        list.push_back(e);
-    }
 }
 
 /// Slots in which no site collects light.
