@@ -63,7 +63,7 @@ void write_dn_png(const std::filesystem::path& file, FrameShape shape,
                     .bytes_a_sample = 2,
                     .bytes = std::vector<std::uint8_t>(dn.size_bytes())};
     std::memcpy(image.bytes.data(), dn.data(), dn.size_bytes());
-    write_png_file(file, image, 1);
+    write_png_file(file, image);
 }
 
 }  // namespace stipple

@@ -77,7 +77,7 @@ void write_png(const std::filesystem::path& file, FrameShape shape, std::span<co
                      .channels = shape.planes,
                      .bytes = std::vector<std::uint8_t>(shape.sites())};
     tone_map_frame(frame, shape, pixels.bytes);
-    write_png_file(file, pixels, kFastPng);
+    write_png_file(file, pixels);
 }
 
 }  // namespace stipple

@@ -19,9 +19,6 @@ struct PngPixels {
     std::vector<std::uint8_t> bytes;  ///< row after row; samples of 2 bytes as the machine has them
 };
 
-/// A compression for which speed counts most.
-constexpr int kFastPng = -1;
-
 enum class PngLayout { kAsStored, kGrey, kColour };
 
 struct FilmFormat {
@@ -39,8 +36,7 @@ using FilmFrames = std::function<void(std::span<std::uint8_t>)>;
 struct LateOpenCv {
     /// Nothing if the file cannot be decoded.
     PngPixels (*decode_png)(std::span<const std::uint8_t> file, PngLayout layout);
-    /// `compression` is zlib's level, or kFastPng.
-    std::vector<std::uint8_t> (*encode_png)(PngPixels& pixels, int compression);
+    std::vector<std::uint8_t> (*encode_png)(PngPixels& pixels);
     /// Nothing if no codec can write such a film there.
     FilmFrames (*create_film)(const std::string& file, const FilmFormat& format);
     /// Dense flow from image to image by TV-L1: (x, y) in pixels for each pixel.

@@ -21,9 +21,9 @@ PngPixels decode_png(const PngChunks& png, PngLayout layout, const std::string& 
     return pixels;
 }
 
-void write_png_file(const std::filesystem::path& file, PngPixels& pixels, int compression) {
+void write_png_file(const std::filesystem::path& file, PngPixels& pixels) {
     silence_opencv();
-    const std::vector<std::uint8_t> bytes = late_opencv().encode_png(pixels, compression);
+    const std::vector<std::uint8_t> bytes = late_opencv().encode_png(pixels);
     OutputFile output(file, file.string());
     output.write(std::as_bytes(std::span(bytes)));
     output.close();

@@ -13,6 +13,6 @@ namespace stipple {
                                    const std::string& place);
 
 /// \throws DeviceError if the file cannot be written.
-void write_png_file(const std::filesystem::path& file, PngPixels& pixels, int compression);
+void write_png_file(const std::filesystem::path& file, PngPixels& pixels);
 
 }  // namespace stipple

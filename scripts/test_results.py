@@ -1,23 +1,31 @@
-"""test_summary.py FOLDER: counts the test cases of the results (JUnit XML) in FOLDER, ctest.xml and one
-NAME.xml for each GoogleTest program or case that ctest ran as NAME, and names the skipped ones with the
-reason."""
+"""The cases in a folder of test results (JUnit XML): ctest.xml and one NAME.xml for each GoogleTest
+program or case that ctest ran as NAME."""
 
-import sys
+import re
 from collections import Counter
-from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 
+class Case(NamedTuple):
+    """A case of a GoogleTest program, or an entry of ctest that is no such program."""
+    entry: str
+    passed: bool
+    skipped: str | None  # why
+
+
 def cases(folder):
-    """The reason for skipping it, or None, for each case that was run or skipped."""
+    """All cases that were run or skipped."""
     files = {file.relative_to(folder).with_suffix("").as_posix(): file for file in folder.rglob("*.xml")}
     for name, file in files.items():
         for case in ElementTree.parse(file).iter("testcase"):
-            skipped = case.find("skipped")
-            counted_elsewhere = name == "ctest" and case.get("name") in files
+            entry = case.get("name") if name == "ctest" else name
             filtered_out = name != "ctest" and case.get("status") == "notrun"
-            if not counted_elsewhere and not filtered_out:
-                yield None if skipped is None else reason(skipped.get("message") or "")
+            if filtered_out or (name == "ctest" and entry in files):
+                continue
+            skipped = case.find("skipped")
+            yield Case(entry, case.find("failure") is None and skipped is None,
+                       None if skipped is None else reason(skipped.get("message") or ""))
 
 
 def reason(message):
@@ -25,13 +33,21 @@ def reason(message):
     return " ".join(line for line in message.splitlines() if not line.startswith("/"))
 
 
-def main(folder):
-    reasons = list(cases(Path(folder)))
-    skipped = Counter(why for why in reasons if why is not None)
-    print(f"{len(reasons)} test cases, {sum(skipped.values())} skipped")
-    for why, count in skipped.most_common():
-        print(f"  {count} skipped: {why}")
+def passed_whole(folder):
+    """Names of the entries that passed with all their cases: none failed, none was skipped."""
+    whole = set()
+    for entry in ElementTree.parse(folder / "ctest.xml").iter("testcase"):
+        output = entry.findtext("system-out") or ""
+        skips_inside = re.search(r"^OK \(.*skipped=", output, re.MULTILINE)  # Python's unittest
+        if entry.get("status") == "run" and not skips_inside:
+            whole.add(entry.get("name"))
+    return whole - {case.entry for case in cases(folder) if not case.passed}
 
 
-if __name__ == "__main__":
-    main(sys.argv[1])
+def summary(folder):
+    """How many cases, which were skipped, and why."""
+    found = list(cases(folder))
+    skipped = Counter(case.skipped for case in found if case.skipped is not None)
+    entries = len({case.entry for case in found})
+    lines = [f"{len(found)} test cases in {entries} entries, {sum(skipped.values())} skipped"]
+    return "\n".join(lines + [f"  {count} skipped: {why}" for why, count in skipped.most_common()])
