@@ -97,7 +97,7 @@ function(stipple_test module)
         math(EXPR index "${shard} - 1")
         add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${arg_APART}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}"
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_SHARDS}  # long ones first
             ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index};${reads}")
     endforeach()
 endfunction()

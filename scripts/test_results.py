@@ -1,5 +1,4 @@
-"""The cases in a folder of test results (JUnit XML): ctest.xml and one NAME.xml for each GoogleTest
-program or case that ctest ran as NAME."""
+"""The cases in the results (JUnit XML) of ctest and of the GoogleTest programs that it ran."""
 
 import re
 from collections import Counter
@@ -14,18 +13,17 @@ class Case(NamedTuple):
     skipped: str | None  # why
 
 
-def cases(folder):
-    """All cases that were run or skipped."""
-    files = {file.relative_to(folder).with_suffix("").as_posix(): file for file in folder.rglob("*.xml")}
-    for name, file in files.items():
-        for case in ElementTree.parse(file).iter("testcase"):
-            entry = case.get("name") if name == "ctest" else name
-            filtered_out = name != "ctest" and case.get("status") == "notrun"
-            if filtered_out or (name == "ctest" and entry in files):
-                continue
+def cases(results, programs):
+    """All cases that were run or skipped: of the entries of ctest in `results`, of which `programs` names
+    the results of those that are GoogleTest programs."""
+    for entry in ElementTree.parse(results).iter("testcase"):
+        name = entry.get("name")
+        written = name in programs and programs[name].is_file()
+        for case in ElementTree.parse(programs[name]).iter("testcase") if written else [entry]:
             skipped = case.find("skipped")
-            yield Case(entry, case.find("failure") is None and skipped is None,
-                       None if skipped is None else reason(skipped.get("message") or ""))
+            if not written or case.get("status") != "notrun":  # filtered out
+                yield Case(name, case.find("failure") is None and skipped is None,
+                           None if skipped is None else reason(skipped.get("message") or ""))
 
 
 def reason(message):
@@ -33,20 +31,20 @@ def reason(message):
     return " ".join(line for line in message.splitlines() if not line.startswith("/"))
 
 
-def passed_whole(folder):
+def passed_whole(results, programs):
     """Names of the entries that passed with all their cases: none failed, none was skipped."""
     whole = set()
-    for entry in ElementTree.parse(folder / "ctest.xml").iter("testcase"):
+    for entry in ElementTree.parse(results).iter("testcase"):
         output = entry.findtext("system-out") or ""
         skips_inside = re.search(r"^OK \(.*skipped=", output, re.MULTILINE)  # Python's unittest
         if entry.get("status") == "run" and not skips_inside:
             whole.add(entry.get("name"))
-    return whole - {case.entry for case in cases(folder) if not case.passed}
+    return whole - {case.entry for case in cases(results, programs) if not case.passed}
 
 
-def summary(folder):
+def summary(results, programs):
     """How many cases, which were skipped, and why."""
-    found = list(cases(folder))
+    found = list(cases(results, programs))
     skipped = Counter(case.skipped for case in found if case.skipped is not None)
     entries = len({case.entry for case in found})
     lines = [f"{len(found)} test cases in {entries} entries, {sum(skipped.values())} skipped"]

@@ -51,7 +51,8 @@ class RunTestsTest(unittest.TestCase):
         self.write(f"bin/{name}", PROGRAM.format(
             **{"name": name, "results": "", "output": "", "status": 0} | program))
         self.lists += [
-            f"add_test(NAME {name} COMMAND ${{CMAKE_SOURCE_DIR}}/bin/{name} --flag)",
+            f"add_test(NAME {name} COMMAND ${{CMAKE_SOURCE_DIR}}/bin/{name} --flag "
+            f"--gtest_output=xml:${{CMAKE_BINARY_DIR}}/test_results/{name}.xml)",
             f"set_tests_properties({name} PROPERTIES SKIP_RETURN_CODE 77)"]
         if reads is not None:
             paths = f"${{CMAKE_SOURCE_DIR}}/config:${{CMAKE_SOURCE_DIR}}/{reads}"
