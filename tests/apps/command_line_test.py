@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest, project_path
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
-LONGER = ["synth", "still", "--frames", "9", "--size", "320x240"]
+LONGER = ["synth", "still", "--frames", "9", "--size", "240x180"]
 CLEAR = "\r\x1b[K"
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
 
