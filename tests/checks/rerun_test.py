@@ -71,25 +71,25 @@ class RunTestsTest(unittest.TestCase):
         return sorted(self.ran.read_text().split()), done.stdout
 
     def test_what_passed_runs_again_only_when_its_program_or_what_it_reads_changes(self):
-        self.entry("one", reads="golden/one")
-        self.entry("two", reads="pages/page.md")
+        self.entry("test_one", reads="golden/one")
+        self.entry("test_two", reads="pages/page.md")
         self.entry("check", reads=None)
         for name in ("golden/one/a", "golden/one/deep/b", "pages/page.md", "pages/other.md", "config/c"):
             self.write(name, "text")
         self.configure()
-        self.assertEqual(self.run_tests()[0], ["check", "one", "two"])
+        self.assertEqual(self.run_tests()[0], ["check", "test_one", "test_two"])
         ran, printed = self.run_tests()
         self.assertEqual(ran, ["check"])
         self.assertIn("1 test cases in 1 entries, 0 skipped\n2 of 3 entries skipped", printed)
-        self.assertTrue(printed.endswith(": one, two\n"), printed)
-        for name, again in {"pages/other.md": [], "bin/one": ["one"], "golden/one/a": ["one"],
-                            "golden/one/deep/b": ["one"], "golden/one/new": ["one"],
-                            "pages/page.md": ["two"], "config/c": ["one", "two"]}.items():
+        self.assertTrue(printed.endswith(": test_{one,two}\n"), printed)
+        for name, again in {"pages/other.md": [], "bin/test_one": ["test_one"], "golden/one/a": ["test_one"],
+                            "golden/one/deep/b": ["test_one"], "golden/one/new": ["test_one"],
+                            "pages/page.md": ["test_two"], "config/c": ["test_one", "test_two"]}.items():
             with open(self.root / name, "a", encoding="utf-8") as file:
                 file.write("\n")
             self.assertEqual(self.run_tests()[0], ["check", *again], name)
             self.assertEqual(self.run_tests()[0], ["check"], name)
-        self.assertEqual(self.run_tests("--all")[0], ["check", "one", "two"])
+        self.assertEqual(self.run_tests("--all")[0], ["check", "test_one", "test_two"])
 
     def test_what_failed_or_was_skipped_in_part_runs_again(self):
         self.entry("passes")
@@ -104,19 +104,19 @@ class RunTestsTest(unittest.TestCase):
         self.assertIn("4 test cases in 4 entries, 2 skipped", printed)
 
     def test_another_setting_footage_or_command_runs_all_again(self):
-        self.entry("one")
+        self.entry("test_one")
         self.configure()
         self.run_tests()
         self.assertEqual(self.run_tests()[0], [])
         self.environment["GTEST_SHUFFLE"] = "1"
-        self.assertEqual(self.run_tests()[0], ["one"])
+        self.assertEqual(self.run_tests()[0], ["test_one"])
         clip = Path(self.environment["STIPPLE_FOOTAGE"]) / "clip/1.png"
         clip.parent.mkdir(parents=True)
         clip.write_text("picture")
-        self.assertEqual(self.run_tests()[0], ["one"])
+        self.assertEqual(self.run_tests()[0], ["test_one"])
         self.lists = [line.replace("--flag", "--other") for line in self.lists]
         self.configure()
-        self.assertEqual(self.run_tests()[0], ["one"])
+        self.assertEqual(self.run_tests()[0], ["test_one"])
         self.assertEqual(self.run_tests()[0], [])
 
 
