@@ -55,18 +55,33 @@ function(stipple_verify_headers)
     target_link_libraries(stipple_inner_headers INTERFACE ${arg_LIBS})
 endfunction()
 
-# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] file_test.cpp ...): one executable
-# MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of their own
-# match the GoogleTest filter APART: each is a ctest entry.
+# stipple_reads(OUT [path ...]): for a test's ENVIRONMENT, what the test reads of the project, relative to
+# it, or runs of the build. scripts/run_tests takes it for what the test depends on. All may read config/
+# and load libstipple_opencv.so.
+function(stipple_reads out)
+    set(paths)
+    foreach(path config ${CMAKE_BINARY_DIR}/libstipple_opencv.so ${ARGN})
+        cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+        list(APPEND paths ${path})
+    endforeach()
+    list(JOIN paths ":" paths)
+    set(${out} "STIPPLE_READS=${paths}" PARENT_SCOPE)
+endfunction()
+
+# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] file_test.cpp ... [READS path ...]): one
+# executable MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of
+# their own match the GoogleTest filter APART: each is a ctest entry. READS as in stipple_reads.
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "SHARDS;APART;LABEL" "" ${ARGN})
+    cmake_parse_arguments(arg "" "SHARDS;APART;LABEL" "READS" ${ARGN})
+    stipple_reads(reads ${arg_READS})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
     target_precompile_headers(${module}_test REUSE_FROM stipple_test_main)
-    set(results ${CMAKE_BINARY_DIR}/test_results)  # what tests/support/test_summary.py counts
+    set(results ${CMAKE_BINARY_DIR}/test_results)  # what scripts/test_results.py counts
     if(arg_APART)
         gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}"
-                             XML_OUTPUT_DIR ${results} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}")
+                             XML_OUTPUT_DIR ${results}
+                             PROPERTIES TIMEOUT 600 ENVIRONMENT "${reads}" LABELS "${arg_LABEL}")
     endif()
     if(arg_APART STREQUAL "*")
         return()
@@ -82,8 +97,8 @@ function(stipple_test module)
         math(EXPR index "${shard} - 1")
         add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${arg_APART}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}"
-            ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_SHARDS}  # long ones first
+            ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index};${reads}")
     endforeach()
 endfunction()
 
@@ -95,6 +110,7 @@ function(stipple_fuzz name source)
     if(NOT arg_SECONDS)
         set(arg_SECONDS 5)
     endif()
+    stipple_reads(reads)
     set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     add_executable(fuzz_${name} ${source})
     target_link_libraries(fuzz_${name} PRIVATE stipple_test_support ${arg_LIBS})
@@ -105,11 +121,12 @@ function(stipple_fuzz name source)
         add_test(NAME fuzz_${name}_finds_nothing
                  COMMAND fuzz_${name} -max_total_time=${arg_SECONDS} -timeout=10 -rss_limit_mb=2048
                          -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
-        set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz)
+        set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz ENVIRONMENT "${reads}")
     else()
         target_sources(fuzz_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_corpus.cpp)
         add_test(NAME fuzz_${name}_replays_its_corpus COMMAND fuzz_${name} ${corpus})
-        set_tests_properties(fuzz_${name}_replays_its_corpus PROPERTIES LABELS fuzz TIMEOUT 120)
+        set_tests_properties(fuzz_${name}_replays_its_corpus PROPERTIES LABELS fuzz TIMEOUT 120
+                                                                           ENVIRONMENT "${reads}")
     endif()
 endfunction()
 
@@ -122,6 +139,7 @@ function(stipple_bench name source)
     if(STIPPLE_TESTS)
         add_test(NAME bench_${name}_runs COMMAND bench_${name} --benchmark_min_time=0.001
                  --benchmark_filter=${arg_TESTED})
-        set_tests_properties(bench_${name}_runs PROPERTIES LABELS bench TIMEOUT 300)
+        stipple_reads(reads)
+        set_tests_properties(bench_${name}_runs PROPERTIES LABELS bench TIMEOUT 300 ENVIRONMENT "${reads}")
     endif()
 endfunction()

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <opencv2/imgcodecs.hpp>
+#include <cstring>
 #include <string>
 
 #include "core/error.h"
 #include "core/footage_files.h"
 #include "core/input_file.h"
-#include "core/opencv_quiet.h"
-#include "core/output_file.h"
-#include "core/png_chunks.h"
+#include "core/png_file.h"
 #include "core/tiff_file.h"
 
 namespace stipple {
@@ -28,20 +26,12 @@ DnImage dn_image(FrameShape shape, const void* samples) {
 }
 
 DnImage read_dn_png(const std::string& place) {
-    cv::Mat image;
-    try {
-        image =
-            cv::imdecode(critical_png_chunks(read_file(place), place).file, cv::IMREAD_UNCHANGED);
-    } catch (const cv::Exception&) {
-        image.release();
-    }
-    if (image.empty())
-        throw InputError(place, "cannot be decoded; it is damaged or ends too early");
-    if (!image.isContinuous()) image = image.clone();
+    const PngPixels image =
+        decode_png(critical_png_chunks(read_file(place), place), PngLayout::kAsStored, place);
+    if (image.channels != 1) fail_kind(place);
     const FrameShape shape{.rows = image.rows, .cols = image.cols, .planes = 1};
-    if (image.type() == CV_16UC1) return dn_image<std::uint16_t>(shape, image.data);
-    if (image.type() != CV_8UC1) fail_kind(place);
-    return dn_image<std::uint8_t>(shape, image.data);
+    if (image.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, image.bytes.data());
+    return dn_image<std::uint8_t>(shape, image.bytes.data());
 }
 
 DnImage read_dn_tiff(const std::filesystem::path& file) {
@@ -55,7 +45,6 @@ DnImage read_dn_tiff(const std::filesystem::path& file) {
 }  // namespace
 
 DnImage read_dn_image(const std::filesystem::path& file) {
-    silence_opencv();
     switch (image_format(file)) {
         case ImageFormat::kPng:
             return read_dn_png(file.string());
@@ -69,14 +58,12 @@ DnImage read_dn_image(const std::filesystem::path& file) {
 void write_dn_png(const std::filesystem::path& file, FrameShape shape,
                   std::span<const std::uint16_t> dn) {
     assert(dn.size() == shape.pixels());
-    silence_opencv();
-    cv::Mat image(shape.rows, shape.cols, CV_16UC1);
-    std::ranges::copy(dn, image.ptr<std::uint16_t>());
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});
-    OutputFile output(file, file.string());
-    output.write(std::as_bytes(std::span(bytes)));
-    output.close();
+    PngPixels image{.rows = shape.rows,
+                    .cols = shape.cols,
+                    .bytes_a_sample = 2,
+                    .bytes = std::vector<std::uint8_t>(dn.size_bytes())};
+    std::memcpy(image.bytes.data(), dn.data(), dn.size_bytes());
+    write_png_file(file, image);
 }
 
 }  // namespace stipple

@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <cstdint>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -12,40 +11,24 @@
 #include "core/input_file.h"
 #include "core/interleaved.h"
 #include "core/light.h"
-#include "core/opencv_quiet.h"
-#include "core/output_file.h"
-#include "core/png_chunks.h"
+#include "core/png_file.h"
 #include "core/tone_map.h"
 
 namespace stipple {
 namespace {
 
-/// \throws InputError if the picture cannot be decoded.
-cv::Mat decode(const PngChunks& png, const std::string& place) {
-    silence_opencv();
-    const int layout = png.grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR;
-    cv::Mat image;
-    try {
-        image = cv::imdecode(png.file, layout | cv::IMREAD_ANYDEPTH);
-    } catch (const cv::Exception&) {
-        image.release();
-    }
-    if (image.empty())
-        throw InputError(place, "cannot be decoded; it is damaged or ends too early");
-    return image.isContinuous() ? image : image.clone();
-}
-
 void read_png(const std::string& place, Picture& picture) {
     const PngChunks png = critical_png_chunks(read_file(place), place);
-    const cv::Mat image = decode(png, place);
-    const int planes = image.channels();
-    picture.resize(checked_shape(static_cast<std::uint64_t>(image.rows),
-                                 static_cast<std::uint64_t>(image.cols),
+    const PngPixels pixels =
+        decode_png(png, png.grey ? PngLayout::kGrey : PngLayout::kColour, place);
+    const int planes = pixels.channels;
+    picture.resize(checked_shape(static_cast<std::uint64_t>(pixels.rows),
+                                 static_cast<std::uint64_t>(pixels.cols),
                                  static_cast<std::uint64_t>(planes), place));
     picture.traits = {.gamma_coded = png.gamma_coded, .has_alpha = png.has_alpha};
-    const auto bytes = std::as_bytes(std::span(image.data, image.total() * image.elemSize()));
+    const auto bytes = std::as_bytes(std::span(pixels.bytes));
     const InterleavedOrder order{planes, true};
-    if (image.depth() == CV_16U)
+    if (pixels.bytes_a_sample == 2)
         split_planes<std::uint16_t>(bytes, order, planes, picture.values, UnitScale());
     else
         split_planes<std::uint8_t>(bytes, order, planes, picture.values, UnitScale());
@@ -89,14 +72,12 @@ void read_image(const std::filesystem::path& file, Picture& picture) {
 
 void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame) {
     assert(frame.size() == shape.sites());
-    silence_opencv();
-    cv::Mat image(shape.rows, shape.cols, shape.planes == 1 ? CV_8UC1 : CV_8UC3);
-    tone_map_frame(frame, shape, {image.data, shape.sites()});
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(".png", image, bytes);
-    OutputFile output(file, file.string());
-    output.write(std::as_bytes(std::span(bytes)));
-    output.close();
+    PngPixels pixels{.rows = shape.rows,
+                     .cols = shape.cols,
+                     .channels = shape.planes,
+                     .bytes = std::vector<std::uint8_t>(shape.sites())};
+    tone_map_frame(frame, shape, pixels.bytes);
+    write_png_file(file, pixels);
 }
 
 }  // namespace stipple

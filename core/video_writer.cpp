@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string>
 
 #include "core/error.h"
+#include "core/late_opencv.h"
 #include "core/opencv_quiet.h"
 #include "core/tone_map.h"
 #include "core/video_decoder.h"
@@ -19,7 +19,7 @@ struct VideoWriter::Impl {
     std::string file;
     std::string place;
     FrameShape shape;
-    cv::VideoWriter video;
+    FilmFrames film;
     cv::Mat pixels;  ///< as tone-mapped
     cv::Mat colour;  ///< as encoded: BGR
     int frames = 0;
@@ -27,11 +27,6 @@ struct VideoWriter::Impl {
     /// Even, and at least four columns: FFmpeg 5.1 converts narrower frames beyond their memory.
     [[nodiscard]] cv::Size encoded_size() const {
         return {std::max(shape.cols + shape.cols % 2, 4), shape.rows + shape.rows % 2};
-    }
-    bool open(const char (&fourcc)[5], double frames_per_second) {
-        return video.open(file, cv::CAP_FFMPEG,
-                          cv::VideoWriter::fourcc(fourcc[0], fourcc[1], fourcc[2], fourcc[3]),
-                          frames_per_second, encoded_size());
     }
     /// Frames that can be decoded from the file.
     [[nodiscard]] int readable_frames() const {
@@ -54,8 +49,11 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, std::string_view pla
     impl_->shape = shape;
     impl_->pixels.create(shape.rows, shape.cols, shape.planes == 1 ? CV_8UC1 : CV_8UC3);
     try {
-        if (impl_->open("avc1", frames_per_second) || impl_->open("mp4v", frames_per_second))
-            return;
+        const cv::Size size = impl_->encoded_size();
+        impl_->film = late_opencv().create_film(
+            impl_->file,
+            {.rows = size.height, .cols = size.width, .frames_per_second = frames_per_second});
+        if (impl_->film) return;
     } catch (const cv::Exception&) {
         // Reported below: OpenCV's own text names no cause that a user could act on.
     }
@@ -77,7 +75,7 @@ void VideoWriter::write(std::span<const float> frame) {
         const cv::Size size = impl_->encoded_size();
         cv::copyMakeBorder(colour, impl_->colour, 0, size.height - shape.rows, 0,
                            size.width - shape.cols, cv::BORDER_REPLICATE);
-        impl_->video.write(impl_->colour);
+        impl_->film({impl_->colour.data, impl_->colour.total() * impl_->colour.elemSize()});
     } catch (const cv::Exception& e) {
         throw DeviceError(impl_->place, fmt::format("cannot be written: {}", e.err));
     }
@@ -85,7 +83,7 @@ void VideoWriter::write(std::span<const float> frame) {
 }
 
 void VideoWriter::finish() {
-    impl_->video.release();
+    impl_->film = {};
     const int readable = impl_->readable_frames();
     if (readable != impl_->frames)
         throw DeviceError(impl_->place,

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <opencv2/optflow.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/late_opencv.h"
 #include "core/light.h"
 #include "core/parallel.h"
 #include "decoder/motion.h"
@@ -44,6 +44,14 @@ struct Flows {
     }
 };
 
+void tv_l1_flow(cv::Mat from, cv::Mat to, cv::Mat& flow) {
+    const auto plane = [](cv::Mat& image) {
+        return PlaneView(image.ptr<float>(), image.rows, image.cols);
+    };
+    flow.create(from.size(), CV_32FC2);
+    late_opencv().tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
+}
+
 Flows tv_l1_flows(const FluxVideo& video, const KeepGoing& keep_going) {
     constexpr int kBatch = 8;
     Flows flows{std::vector<cv::Mat>(count(video.slots())),
@@ -54,10 +62,9 @@ Flows tv_l1_flows(const FluxVideo& video, const KeepGoing& keep_going) {
         parallel_for(2 * begin, 2 * end, [&](int i) {
             const int slot = i / 2;
             const bool forth = i % 2 == 0;
-            const auto method = cv::optflow::DualTVL1OpticalFlow::create();
-            method->calc(flow_image(video, forth ? slot : slot + 1),
-                         flow_image(video, forth ? slot + 1 : slot),
-                         forth ? flows.forth[count(slot)] : flows.back[count(slot + 1)]);
+            tv_l1_flow(flow_image(video, forth ? slot : slot + 1),
+                       flow_image(video, forth ? slot + 1 : slot),
+                       forth ? flows.forth[count(slot)] : flows.back[count(slot + 1)]);
         });
         if (!keep_going(static_cast<double>(end) / pairs)) break;
     }

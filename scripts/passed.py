@@ -9,6 +9,7 @@ of the project, hold now; `record` notes that it has. Packages of Debian that th
 as content too. The notes lie in $XDG_CACHE_HOME/stipple/passed; without that folder all runs again."""
 
 import datetime
+import functools
 import hashlib
 import os
 import subprocess
@@ -35,6 +36,12 @@ def package_versions():
     return subprocess.run(command, check=False, capture_output=True).stdout
 
 
+@functools.cache
+def digest(name):
+    """Of a file of the project, or of any whose path is absolute, as it was when first asked for."""
+    return hashlib.sha256((ROOT / name).read_bytes()).digest()
+
+
 class Passed:
     """The notes on one check."""
 
@@ -47,7 +54,7 @@ class Passed:
         for text in extra:
             content.update(text.encode() + b"\0")
         for name in files:
-            content.update(name.encode() + b"\0" + hashlib.sha256((ROOT / name).read_bytes()).digest())
+            content.update(name.encode() + b"\0" + digest(name))
         return NOTES / f"{self._name}-{content.hexdigest()[:32]}"
 
     def when(self, files, *extra):

@@ -8,12 +8,11 @@ import subprocess
 import termios
 import unittest
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest, project_path
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
-LONGER = ["synth", "still", "--frames", "9", "--size", "320x240"]
+LONGER = ["synth", "still", "--frames", "9", "--size", "240x180"]
 CLEAR = "\r\x1b[K"
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
 
@@ -65,7 +64,7 @@ class CommandLineTest(ProgramTest):
             self.assertEqual([line.split(maxsplit=1) for line in lines],
                              [[entry["name"], entry["text"]] for entry in names])
             self.assertTrue(all(entry["text"] and "docs/" not in entry["text"] for entry in names))
-        folder = Path(__file__).parents[2] / "config"
+        folder = project_path("config")
         for kind in ("sensors", "schedules"):
             self.assertEqual([entry["name"] for entry in self.figures("list", kind)[kind]],
                              sorted(path.stem for path in (folder / kind).glob("*.toml")))

@@ -51,7 +51,7 @@ class OutputsTest(ProgramTest):
         self.succeed("emulate", "light.npy", "-o", "paper", "--sensor", "paper")  # a name, no file
 
     def test_an_output_whose_name_was_taken_meanwhile_is_kept_under_another(self):
-        run = self.start_program("synth", "roll", "--frames", 400, "--size", "128x96", "-o", "out.npy")
+        run = self.start_program("synth", "roll", "--frames", 80, "--size", "128x96", "-o", "out.npy")
         self.addCleanup(run.kill)
         while run.poll() is None and not list(self.folder.glob(".out.*")):
             pass
@@ -59,7 +59,7 @@ class OutputsTest(ProgramTest):
         message = run.communicate(timeout=100)[1]
         self.assertEqual(run.returncode, DEVICE)
         self.assertIn("out_2.npy", message)
-        self.assertEqual(self.array("out_2.npy").shape, (400, 96, 128, 3))
+        self.assertEqual(self.array("out_2.npy").shape, (80, 96, 128, 3))
         self.assertEqual((self.folder / "out.npy").read_text(), "precious")
 
     def test_a_folder_with_other_things_in_it_is_kept_even_if_forced(self):

@@ -8,12 +8,11 @@ import subprocess
 import sys
 import time
 import unittest
-from pathlib import Path
 
 import numpy as np
-from program import DEVICE, INPUT, PROGRAM, STOPPED, ProgramTest
+from program import DEVICE, INPUT, PROGRAM, STOPPED, ProgramTest, project_path
 
-DOCUMENT = Path(__file__).parents[2] / "docs/recording_format.md"
+DOCUMENT = project_path("docs/recording_format.md")
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
 
 

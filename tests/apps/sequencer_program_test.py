@@ -5,11 +5,10 @@ import struct
 import subprocess
 import tomllib
 import unittest
-from pathlib import Path
 
 import numpy as np
 
-from program import INPUT, ProgramTest
+from program import INPUT, ProgramTest, project_path
 
 TILES = {"tiled": ["--set", "tile_rows=5", "--set", "tile_cols=7"],
          "full1x": [], "pixel_flutter": [], "two_bucket": []}
@@ -73,7 +72,7 @@ class SequencerProgramTest(ProgramTest):
         figures = self.figures_of(f"{name}.mem")
         parameters = {"ROWS": "tile_rows", "COLS": "tile_cols", "PERIOD": "period_slots",
                       "BITS": "bits_per_pixel"}
-        source = Path(__file__).with_name("sequencer.v")
+        source = project_path("tests/apps/sequencer.v")
         subprocess.run(["iverilog", "-o", "chip", source]
                        + [f"-Psequencer.{p}={figures[key]}" for p, key in parameters.items()],
                        cwd=self.folder, check=True)

@@ -101,10 +101,11 @@ TEST(Portz2013Test, SaturatedRegionsAreNotDraggedDown) {
 }
 
 TEST(Portz2013Test, TakesAnyScheduleAndColour) {
-    const FluxVideo video = square(32, {12, 14, 3});
+    const FrameShape shape{9, 14, 3};
     for (const ExposureSchedule& schedule :
          {gapped_schedule(5, 7, 31, 4), interleaved_schedule(5, 7, 9, 4),
-          random_schedule(12, 14, kPaperExposureSlots, 1)}) {
+          random_schedule(9, 14, kPaperExposureSlots, 1)}) {
+        const FluxVideo video = square(schedule.period_slots() + 6, shape);
         const Measurements m = measure(video, schedule);
         const FluxVideo x = decode_portz2013(m, quick()).value();
         EXPECT_LT(middle_error(x, video), middle_error(nearest_samples(m), video));

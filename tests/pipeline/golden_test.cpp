@@ -42,7 +42,7 @@ void expect_golden(const std::string& name, const std::filesystem::path& stream,
                    DecodeMethod method) {
     const FluxVideo decoded = read_recording(stream, method);
     const std::string golden_file =
-        (source_folder() / "tests/golden/decoder" / (name + ".fnv1a")).string();
+        (project_path("tests/golden/decoder") / (name + ".fnv1a")).string();
     if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
         std::ofstream(golden_file) << std::hex << hash_of(decoded.data()) << '\n';
     std::uint64_t golden = 0;

@@ -65,7 +65,7 @@ TEST_P(MemoryTest, IsAtMost64BytesAVoxelOfABlockWhateverTheLengthOfTheClip) {
     if (!reset_peak()) GTEST_SKIP() << "/proc/self/clear_refs cannot be written here";
     return_freed_arrays();
     decode_scene(8, {64, 64, 3}, GetParam());  // so that the program code it takes is in memory
-    for (const FrameShape shape : {FrameShape{200, 320, 1}, FrameShape{120, 160, 3}}) {
+    for (const FrameShape shape : {FrameShape{120, 200, 1}, FrameShape{80, 100, 3}}) {
         // Three blocks, the second with a halo on both sides.
         const auto bytes =
             static_cast<double>(decode_scene(2 * kCoreSlots + kRestSlots + 1, shape, GetParam()));

@@ -38,8 +38,7 @@ FluxVideo scene(FrameShape shape) {
 
 std::vector<std::string> names() {
     std::vector<std::string> names;
-    for (const auto& file :
-         std::filesystem::directory_iterator(source_folder() / "config/schedules"))
+    for (const auto& file : std::filesystem::directory_iterator(project_path("config/schedules")))
         names.push_back(file.path().stem().string());
     std::ranges::sort(names);
     return names;

@@ -221,7 +221,7 @@ TEST(CodedSensorTest, KeepsTheRecordedBits) {
     Fnv1a hash;
     for (const auto& slot : expose_all(video, schedule))
         for (const std::uint16_t dn : slot) hash.add(dn, 2);
-    const auto folder = source_folder() / "tests/golden/readout";
+    const auto folder = project_path("tests/golden/readout");
     std::uint64_t golden = 0;
     std::ifstream(folder / "coded_sensor_dn.fnv1a") >> std::hex >> golden;
     EXPECT_EQ(hash.hash(), golden) << std::hex << hash.hash();

@@ -101,7 +101,7 @@ TEST(ReadoutRateTest, NoScheduleThatReadsEveryRowBeatsTheBound) {
 // codes made for the hardware come nearest to the bound.
 TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
     int tested = 0;
-    for (const auto& file : std::filesystem::directory_iterator(source_folder() / "config/sensors"))
+    for (const auto& file : std::filesystem::directory_iterator(project_path("config/sensors")))
         for (const auto kind :
              {ColumnAddressing::Kind::kSkipChannel, ColumnAddressing::Kind::kGroup}) {
             Config config(file.path(), {});
@@ -112,7 +112,7 @@ TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
             for (const FrameShape shape : {FrameShape{128, 128, 1}, FrameShape{64, 320, 1}})
                 for (const char* name : {"random", "tiled", "hardware_tiled"}) {
                     Config schedule(
-                        source_folder() / "config/schedules" / (std::string(name) + ".toml"), {});
+                        project_path("config/schedules") / (std::string(name) + ".toml"), {});
                     const auto made = read_schedule(schedule, shape, 1, timing->addressing);
                     if (!reads_every_row(*timing, made.schedule, shape)) continue;
                     const auto rate = rate_of(*timing, made.schedule, shape);

@@ -23,7 +23,7 @@ constexpr std::uint64_t kSeed = 5;
 
 NamedSchedule read(const std::string& name, const std::vector<std::string>& overrides = {},
                    FrameShape shape = kShape) {
-    const auto folder = source_folder() / "config/schedules";
+    const auto folder = project_path("config/schedules");
     Config config(folder / (name + ".toml"), overrides);
     NamedSchedule schedule = read_schedule(config, shape, kSeed);
     config.reject_unknown_keys();
@@ -105,7 +105,7 @@ TEST(ScheduleCatalogueTest, ReadsEveryKey) {
 }
 
 TEST(ScheduleCatalogueTest, HardwareTiledSuitsTheSensorUnlessTheFileSaysElse) {
-    const auto folder = source_folder() / "config/schedules";
+    const auto folder = project_path("config/schedules");
     const ColumnAddressing sensor{ColumnAddressing::Kind::kGroup, 16, 8, 2};
     const auto made = [&](const std::vector<std::string>& overrides) {
         Config config(folder / "hardware_tiled.toml", overrides);

@@ -14,7 +14,7 @@ namespace stipple {
 /// The timing of a sensor of config/sensors, changed by `overrides` ("timing.channels=8").
 inline ReadoutTiming sensor_timing(const std::string& name,
                                    const std::vector<std::string>& overrides = {}) {
-    const auto folder = source_folder() / "config/sensors";
+    const auto folder = project_path("config/sensors");
     Config config(folder / (name + ".toml"), overrides);
     const SensorParams params = read_sensor(config);
     const auto timing = read_timing(config, params.bit_depth);

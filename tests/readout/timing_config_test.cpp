@@ -13,7 +13,7 @@ namespace stipple {
 namespace {
 
 TEST(TimingConfigTest, ASensorWithoutTheSectionHasNoTiming) {
-    Config config((source_folder() / "config/sensors/paper.toml").string(), {});
+    Config config(project_path("config/sensors/paper.toml").string(), {});
     EXPECT_FALSE(read_timing(config, 8).has_value());
 }
 

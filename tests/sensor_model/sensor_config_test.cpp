@@ -13,7 +13,7 @@ namespace {
 
 SensorParams read(const std::vector<std::string>& overrides = {},
                   const std::string& name = "paper") {
-    const auto folder = source_folder() / "config/sensors";
+    const auto folder = project_path("config/sensors");
     const auto file = folder / (name + ".toml");
     Config config(file, overrides);
     const SensorParams params = read_sensor(config);

@@ -13,7 +13,7 @@ namespace {
 
 /// Lines between "```hex" and "```" in docs/stream_format.md.
 std::vector<std::string> hex_lines() {
-    std::istringstream document(read_text(source_folder() / "docs/stream_format.md"));
+    std::istringstream document(read_text(project_path("docs/stream_format.md")));
     std::vector<std::string> lines;
     std::string line;
     while (std::getline(document, line) && line != "```hex") continue;

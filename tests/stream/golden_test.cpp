@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::filesystem::path kFolder = source_folder() / "tests/golden/stream";
+const std::filesystem::path kFolder = project_path("tests/golden/stream");
 
 bool updating() {
     return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;

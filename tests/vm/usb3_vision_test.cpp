@@ -236,9 +236,8 @@ TEST_F(Usb3VisionTest, ASecondProgramIsToldThatTheCameraIsTaken) {
 
 TEST_F(Usb3VisionTest, TheProgramRecordsItBitExactly) {
     const auto file = std::filesystem::temp_directory_path() / "usb.strec";
-    const std::string command = (build_folder() / "stipple").string() + " capture record " +
-                                kAddress + " -o " + file.string() +
-                                " --frames 20 --stall 5000 --force";
+    const std::string command = built_program("stipple").string() + " capture record " + kAddress +
+                                " -o " + file.string() + " --frames 20 --stall 5000 --force";
     ASSERT_EQ(std::system(command.c_str()), 0);
     RecordingReader reader(file);
     int frames = 0;

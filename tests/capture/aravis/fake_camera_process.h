@@ -25,7 +25,7 @@ class FakeCameraProcess {
     /// `options` as in the head of fake_gige_camera.cpp.
     explicit FakeCameraProcess(std::vector<std::string> options = {},
                                std::string program = "fake_gige_camera")
-        : options_(std::move(options)), program_((build_folder() / program).string()) {
+        : options_(std::move(options)), program_(built_program(program).string()) {
         start();
     }
     ~FakeCameraProcess() {

@@ -1,0 +1,124 @@
+"""scripts/run_tests skips a test that passed, and runs it again when its program or what it reads has
+changed: on a small project, whose programs are scripts that note that they ran."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+PRESETS = {"version": 6,
+           "configurePresets": [{"name": "p", "generator": "Ninja", "binaryDir": "${sourceDir}/build/p"}],
+           "testPresets": [{"name": "p", "configurePreset": "p"}]}
+# A program that notes that it ran, writes GoogleTest's results, if any, and its output, and ends with a
+# status.
+PROGRAM = """#!/bin/sh
+echo {name} >>"$RAN"
+mkdir -p test_results
+[ -z '{results}' ] || echo '{results}' >test_results/{name}.xml
+echo '{output}'
+exit {status}
+"""
+SKIPPED_CASE = '<testsuites><testcase name="A" status="run"><skipped message="why"/></testcase></testsuites>'
+
+
+class RunTestsTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="stipple_")
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name) / "project"
+        self.ran = Path(folder.name) / "ran"
+        self.environment = os.environ | {"XDG_CACHE_HOME": f"{folder.name}/cache", "RAN": str(self.ran),
+                                         "STIPPLE_FOOTAGE": f"{folder.name}/footage"}
+        for name in ("run_tests", "passed.py", "test_results.py", "packages.txt"):
+            (self.root / "scripts").mkdir(parents=True, exist_ok=True)
+            shutil.copy(SCRIPTS / name, self.root / "scripts")
+        self.write("CMakePresets.json", json.dumps(PRESETS))
+        self.lists = ["cmake_minimum_required(VERSION 3.25)", "project(p LANGUAGES NONE)", "enable_testing()"]
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(0o755)
+
+    def entry(self, name, reads="config", **program):
+        """A test of a program of its own, which reads a file or folder, or may read all if that is None."""
+        self.write(f"bin/{name}", PROGRAM.format(
+            **{"name": name, "results": "", "output": "", "status": 0} | program))
+        self.lists += [
+            f"add_test(NAME {name} COMMAND ${{CMAKE_SOURCE_DIR}}/bin/{name} --flag "
+            f"--gtest_output=xml:${{CMAKE_BINARY_DIR}}/test_results/{name}.xml)",
+            f"set_tests_properties({name} PROPERTIES SKIP_RETURN_CODE 77)"]
+        if reads is not None:
+            paths = f"${{CMAKE_SOURCE_DIR}}/config:${{CMAKE_SOURCE_DIR}}/{reads}"
+            self.lists += [f'set_tests_properties({name} PROPERTIES ENVIRONMENT "STIPPLE_READS={paths}")']
+
+    def configure(self):
+        self.write("CMakeLists.txt", "\n".join(self.lists) + "\n")
+        subprocess.run(["cmake", "--preset", "p"], cwd=self.root, check=True, capture_output=True)
+
+    def run_tests(self, *options):
+        """Names of the tests that ran, and what was printed."""
+        self.ran.write_text("")
+        done = subprocess.run([sys.executable, "-B", "scripts/run_tests", "p", *options], cwd=self.root,
+                              env=self.environment, text=True, capture_output=True, check=False)
+        self.assertNotIn("Traceback", done.stderr)
+        return sorted(self.ran.read_text().split()), done.stdout
+
+    def test_what_passed_runs_again_only_when_its_program_or_what_it_reads_changes(self):
+        self.entry("test_one", reads="golden/one")
+        self.entry("test_two", reads="pages/page.md")
+        self.entry("check", reads=None)
+        for name in ("golden/one/a", "golden/one/deep/b", "pages/page.md", "pages/other.md", "config/c"):
+            self.write(name, "text")
+        self.configure()
+        self.assertEqual(self.run_tests()[0], ["check", "test_one", "test_two"])
+        ran, printed = self.run_tests()
+        self.assertEqual(ran, ["check"])
+        self.assertIn("1 test cases in 1 entries, 0 skipped\n2 of 3 entries skipped", printed)
+        self.assertTrue(printed.endswith(": test_{one,two}\n"), printed)
+        for name, again in {"pages/other.md": [], "bin/test_one": ["test_one"], "golden/one/a": ["test_one"],
+                            "golden/one/deep/b": ["test_one"], "golden/one/new": ["test_one"],
+                            "pages/page.md": ["test_two"], "config/c": ["test_one", "test_two"]}.items():
+            with open(self.root / name, "a", encoding="utf-8") as file:
+                file.write("\n")
+            self.assertEqual(self.run_tests()[0], ["check", *again], name)
+            self.assertEqual(self.run_tests()[0], ["check"], name)
+        self.assertEqual(self.run_tests("--all")[0], ["check", "test_one", "test_two"])
+
+    def test_what_failed_or_was_skipped_in_part_runs_again(self):
+        self.entry("passes")
+        self.entry("fails", status=1)
+        self.entry("is_skipped", status=77)
+        self.entry("skips_a_case", results=SKIPPED_CASE)
+        self.entry("skips_in_python", output=5000 * "x" + "\n\nOK (skipped=1)")
+        self.configure()
+        self.run_tests()
+        again, printed = self.run_tests()
+        self.assertEqual(again, ["fails", "is_skipped", "skips_a_case", "skips_in_python"])
+        self.assertIn("4 test cases in 4 entries, 2 skipped", printed)
+
+    def test_another_setting_footage_or_command_runs_all_again(self):
+        self.entry("test_one")
+        self.configure()
+        self.run_tests()
+        self.assertEqual(self.run_tests()[0], [])
+        self.environment["GTEST_SHUFFLE"] = "1"
+        self.assertEqual(self.run_tests()[0], ["test_one"])
+        clip = Path(self.environment["STIPPLE_FOOTAGE"]) / "clip/1.png"
+        clip.parent.mkdir(parents=True)
+        clip.write_text("picture")
+        self.assertEqual(self.run_tests()[0], ["test_one"])
+        self.lists = [line.replace("--flag", "--other") for line in self.lists]
+        self.configure()
+        self.assertEqual(self.run_tests()[0], ["test_one"])
+        self.assertEqual(self.run_tests()[0], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
