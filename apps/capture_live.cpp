@@ -50,12 +50,11 @@ void add_capture_live(Command& capture, Action& action) {
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
         "  stipple capture live v4l2:/dev/video0 -o clip.stipple --preview now.png\n"
         "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, live, [command, options] {
         if (options->preview.file.empty())
             command.refuse({"--preview-method", "--preview-size"},
                            "there is no preview; add --preview FILE or leave it out");
         check_session_arguments(command, options->camera);
-        action = [options](const RunOptions& run) { live(*options, run); };
     });
 }
 

@@ -110,9 +110,7 @@ void add_capture_replay(Command& capture, Action& action) {
         "Examples:\n"
         "  stipple capture replay clip.strec -o light.npy --black-level 64\n"
         "  stipple emulate clip.strec -o clip.stipple        without a file in between");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { replay(*options, run); };
-    });
+    set_action(command, action, options, replay);
 }
 
 }  // namespace stipple

@@ -117,10 +117,9 @@ void add_capture_serve(Command& capture, Action& action) {
         "Examples:\n"
         "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, serve, [command, options] {
         check_mode(command, options->source);
         check_faults(command, options->server.faults);
-        action = [options](const RunOptions& run) { serve(*options, run); };
     });
 }
 

@@ -106,6 +106,11 @@ void characterize_images(const CharacterizeOptions& options, const RunOptions& r
     report(camera, failure, json, run);
 }
 
+void characterize(const CharacterizeOptions& options, const RunOptions& run) {
+    options.descriptor.empty() ? characterize_sensor(options, run)
+                               : characterize_images(options, run);
+}
+
 }  // namespace
 
 void add_characterize(Command& app, Action& action) {
@@ -134,13 +139,9 @@ void add_characterize(Command& app, Action& action) {
         "  stipple characterize --sensor grasshopper -o series\n"
         "  stipple characterize --sensor t6 --set temperature_c=60 -o warm --json figures.json\n"
         "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
-    command.callback([options, &action] {
+    set_action(command, action, options, characterize, [options] {
         if (options->descriptor.empty() && options->output.empty())
             throw UsageError("--output", "a folder for the series is required, or --evaluate");
-        action = [options](const RunOptions& run) {
-            options->descriptor.empty() ? characterize_sensor(*options, run)
-                                        : characterize_images(*options, run);
-        };
     });
 }
 

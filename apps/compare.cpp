@@ -112,9 +112,7 @@ void add_compare(Command& app, Action& action) {
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"
         "  stipple compare decoded.npy footage.npy --max-value 2 --peak 2 --cd-per-unit 1000");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { compare(*options, run); };
-    });
+    set_action(command, action, options, compare);
 }
 
 }  // namespace stipple

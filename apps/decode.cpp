@@ -69,10 +69,9 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, decode_file, [command, options] {
         if (!options->follow)
             command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
-        action = [options](const RunOptions& run) { decode_file(*options, run); };
     });
 }
 

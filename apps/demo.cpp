@@ -96,8 +96,7 @@ void add_demo(Command& app, Action& action) {
         "Examples:\n"
         "  stipple demo\n"
         "  stipple demo -o dice_demo --scene dice --frames 32 --size 160x120");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { demo(*options, run); }; });
+    set_action(command, action, options, demo);
 }
 
 }  // namespace stipple

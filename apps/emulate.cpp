@@ -98,9 +98,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set read_noise_e=5 --set bit_depth=10 --set schedule.tile_rows=8");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { emulate(*options, run); };
-    });
+    set_action(command, action, options, emulate);
 }
 
 }  // namespace stipple

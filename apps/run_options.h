@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -19,9 +18,6 @@ struct RunOptions {
     /// \throws std::system_error if it cannot be written.
     void say(std::string_view text) const;
 };
-
-/// What the chosen subcommand does.
-using Action = std::function<void(const RunOptions&)>;
 
 void add_run_options(Command& command, RunOptions& run);
 

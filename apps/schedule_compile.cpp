@@ -58,9 +58,7 @@ void add_schedule_compile(Command& schedule, Action& action) {
         "  stipple schedule compile tiled -o tiled.mem\n"
         "  stipple schedule compile tiled -o tiled.mem --set tile_rows=8 --seed 7\n"
         "  stipple emulate scene -o clip.stipple --schedule tiled.mem");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { compile(*options, run); };
-    });
+    set_action(command, action, options, compile);
 }
 
 }  // namespace stipple

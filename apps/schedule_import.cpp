@@ -78,9 +78,7 @@ void add_schedule_import(Command& schedule, Action& action) {
         "  stipple schedule import masks.npy -o masks.toml\n"
         "  stipple schedule import lengths.npy -o lengths.toml --lengths --period 16\n"
         "  stipple emulate scene -o clip.stipple --schedule masks.toml");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { import(*options, run); };
-    });
+    set_action(command, action, options, import);
 }
 
 }  // namespace stipple

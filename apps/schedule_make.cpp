@@ -41,8 +41,7 @@ void add_schedule_make(Command& schedule, Action& action) {
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"
         "  stipple schedule make random -o tile.toml --size 32x32 --seed 7");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { make(*options, run); }; });
+    set_action(command, action, options, make);
 }
 
 }  // namespace stipple

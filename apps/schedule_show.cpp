@@ -56,8 +56,7 @@ void add_schedule_show(Command& schedule, Action& action) {
         "Examples:\n"
         "  stipple schedule show random\n"
         "  stipple schedule show two_bucket -o two_bucket.png --pixels 16");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { show(*options, run); }; });
+    set_action(command, action, options, show);
 }
 
 }  // namespace stipple

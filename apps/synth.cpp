@@ -70,9 +70,7 @@ void add_synth(Command& app, Action& action) {
         "Examples:\n"
         "  stipple synth pan -o scene\n"
         "  stipple synth dice -o dice.npy --frames 200 --size 640x480 --seed 7");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { synth(*options, run); };
-    });
+    set_action(command, action, options, synth);
 }
 
 }  // namespace stipple
