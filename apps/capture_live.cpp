@@ -45,6 +45,7 @@ void add_capture_live(Command& capture, Action& action) {
                     "a packet is late so many slots after its frame (2)")
         .check(positive_check())
         .type_name("N");
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"

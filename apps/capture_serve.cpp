@@ -90,7 +90,7 @@ void check_mode(const Command& command, const ServedSourceChoice& source) {
     if (source.mode == "coded")
         command.refuse({"--format"}, "is of --mode frames; leave it out");
     else
-        command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun"},
+        command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},
                        "is of the sensor of --mode coded; add that or leave this out");
 }
 
@@ -113,6 +113,7 @@ void add_capture_serve(Command& capture, Action& action) {
         .type_name("TEXT");
     command.add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
     add_fault_arguments(command, options->server);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"

@@ -125,11 +125,13 @@ void add_characterize(Command& app, Action& action) {
     const auto seed = command.add_option("--seed", options->sensor.seed, "of the noise (1)")
                           .check(whole_check(0))
                           .type_name("S");
+    const auto threads = add_threads(command, action.options);
     command.add_option("--evaluate", options->descriptor, "images that exist: their descriptor")
         .type_name("FILE")
         .excludes(sensor)
         .excludes(set)
         .excludes(seed)
+        .excludes(threads)
         .input();
     command.add_option("-o,--output", options->output, "folder for images, descriptor and charts")
         .type_name("DIR")

@@ -108,6 +108,7 @@ void add_compare(Command& app, Action& action) {
                     "luminance of light 1.0 for PU21, in cd/m2 (100)")
         .check(positive_check())
         .type_name("L");
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"

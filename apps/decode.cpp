@@ -62,6 +62,7 @@ void add_decode(Command& app, Action& action) {
                   "=fix goes on with that shift")
         .type_name("[=fix]")
         .one_of({"true", "fix"});
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple decode clip.stipple -o decoded\n"

@@ -92,6 +92,7 @@ void add_demo(Command& app, Action& action) {
         .one_of(names_of(scenes()))
         .type_name("NAME");
     add_scene_arguments(command, options->rendering);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple demo\n"

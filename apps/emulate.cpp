@@ -92,6 +92,7 @@ void add_emulate(Command& app, Action& action) {
         .type_name("OUT")
         .output();
     add_waveform_arguments(command, options->waveform);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"

@@ -66,6 +66,7 @@ void add_synth(Command& app, Action& action) {
         .required()
         .output();
     add_scene_arguments(command, options->rendering);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple synth pan -o scene\n"

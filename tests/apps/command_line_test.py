@@ -13,6 +13,11 @@ from pathlib import Path
 from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
+SPREAD = [[name] for name in ("synth", "emulate", "decode", "compare", "characterize", "demo")] + [
+    ["capture", "live"], ["capture", "serve"]]
+UNSPREAD = [[name] for name in ("list", "info", "recover", "timing")] + [
+    ["capture", name] for name in ("list", "doctor", "record", "replay")] + [
+    ["schedule", name] for name in ("make", "show", "check", "compile", "import")]
 LONGER = ["synth", "still", "--frames", "9", "--size", "320x240"]
 CLEAR = "\r\x1b[K"
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
@@ -34,8 +39,16 @@ class CommandLineTest(ProgramTest):
         for command in COMMANDS:
             text = self.succeed(command, "--help")
             self.assertIn(f"Examples:\n  stipple {command}", text)
-            for option in ("--json", "--threads", "--force", "--quiet"):
+            for option in ("--json", "--force", "--quiet"):
                 self.assertIn(option, text)
+
+    def test_threads_are_of_commands_that_spread_their_work(self):
+        for commands, offered in ((SPREAD, True), (UNSPREAD, False)):
+            for command in commands:
+                self.assertEqual("--threads" in self.succeed(*command, "--help"), offered, command)
+        self.fails(USAGE, ["--threads is no option of stipple info"], "info", "a", "--threads", 2)
+        self.fails(USAGE, ["--threads excludes --evaluate"], "characterize", "--evaluate", "a",
+                   "--threads", 2)
 
     def test_help_has_several_names(self):
         self.assertEqual(self.succeed("help"), self.succeed("--help"))

@@ -280,7 +280,7 @@ class ServeTest(ProgramTest):
     def test_options_of_another_mode_are_refused(self):
         serve = ("capture", "serve", self.scene())
         for option, value in (("--sensor", "ideal"), ("--schedule", "tiled"), ("--seed", 3),
-                              ("--set", "bit_depth=8"), ("--overrun", "stretch")):
+                              ("--set", "bit_depth=8"), ("--overrun", "stretch"), ("--threads", 1)):
             self.fails(USAGE, [option, "--mode coded"], *serve, option, value)
         self.fails(USAGE, ["--format", "--mode frames"], *serve, "--mode", "coded", "--format",
                    "Mono8")
