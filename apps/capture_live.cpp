@@ -4,6 +4,7 @@
 #include "apps/json_file.h"
 #include "apps/live_emulation.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_arguments.h"
 
@@ -29,7 +30,7 @@ void add_capture_live(Command& capture, Action& action) {
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kStreamName);
     add_capture_limits(command, options->limits);
     add_sensor_arguments(command, options->sensor, "--sensor-set");
     add_preview_arguments(command, options->preview);

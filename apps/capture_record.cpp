@@ -2,6 +2,7 @@
 #include "apps/camera_recording.h"
 #include "apps/capture_commands.h"
 #include "apps/coded_recording.h"
+#include "apps/output_names.h"
 #include "apps/session_arguments.h"
 
 namespace stipple {
@@ -35,8 +36,10 @@ void add_capture_record(Command& capture, Action& action) {
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
         "      --set PixelFormat=Mono12p --set ExposureTime=2000");
-    set_action(command, action, options, record,
-               [command, options] { check_session_arguments(command, options->camera); });
+    set_action(command, action, options, record, [command, options] {
+        check_session_arguments(command, options->camera);
+        check_extension("--output", options->output, options->coded ? kStreamName : kRecordingName);
+    });
 }
 
 }  // namespace stipple

@@ -7,6 +7,7 @@
 #include "apps/decode_file.h"
 #include "apps/names_of.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/subcommands.h"
 #include "core/joined.h"
 #include "decoder/reconstruct.h"
@@ -29,7 +30,7 @@ void add_decode(Command& app, Action& action) {
                     "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
         .type_name("OUT")
         .required()
-        .output();
+        .output(kVideoName);
     command.add_option("--method", options->method, method_help())
         .one_of(names_of(decode_methods()))
         .type_name("NAME");

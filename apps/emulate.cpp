@@ -8,6 +8,8 @@
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
+#include "apps/output_names.h"
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
 #include "apps/read_ahead.h"
@@ -83,14 +85,14 @@ void add_emulate(Command& app, Action& action) {
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kStreamName);
     add_sensor_arguments(command, options->sensor);
     add_footage_arguments(command, options->reading);
     add_max_value(command, options->reading.max_value);
     command
         .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
         .type_name("OUT")
-        .output();
+        .output(kVideoName);
     add_waveform_arguments(command, options->waveform);
     add_threads(command, action.options);
     command.footer(

@@ -9,6 +9,7 @@
 #include "apps/chart.h"
 #include "apps/text_file.h"
 #include "core/error.h"
+#include "core/footage_files.h"
 
 namespace stipple {
 namespace {
@@ -123,13 +124,15 @@ std::string commands_of(const ScheduleDiagram& diagram, const Drawing& drawing) 
 }  // namespace
 
 void draw_schedule(const std::filesystem::path& file, bool force, const ScheduleDiagram& diagram) {
-    if (file.extension() != ".png" && file.extension() != ".svg")
+    const std::string extension = lower_extension(file);
+    if (extension != ".png" && extension != ".svg")
         throw InputError(file.string(), "a diagram is a .png or a .svg");
     Drawing drawing;
     for (std::size_t i = 0; i < diagram.pixels.size(); ++i) add_pixel(drawing, diagram, i);
     PendingOutput pending(file, force);
-    const int height = 140 + 34 * static_cast<int>(diagram.pixels.size());
-    write_text(pending, draw_chart(file.extension().string(), {.width = 1000, .height = height},
+    const int row_height = diagram.schedule.charge_stores() == 2 ? 44 : 34;
+    const int height = 140 + row_height * static_cast<int>(diagram.pixels.size());
+    write_text(pending, draw_chart(extension, {.width = 1000, .height = height},
                                    commands_of(diagram, drawing)));
 }
 

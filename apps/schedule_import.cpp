@@ -5,6 +5,7 @@
 
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/schedule_commands.h"
 #include "apps/schedule_text.h"
 #include "apps/text_file.h"
@@ -62,7 +63,7 @@ void add_schedule_import(Command& schedule, Action& action) {
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kScheduleName);
     command.add_flag("--lengths", options->lengths,
                      "layers are the lengths of successive exposures in slots, from slot 0 on");
     command

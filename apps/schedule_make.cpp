@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
+#include "apps/output_names.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
 #include "apps/schedule_text.h"
@@ -36,7 +37,7 @@ void add_schedule_make(Command& schedule, Action& action) {
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kScheduleName);
     command.footer(
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"

@@ -5,6 +5,7 @@
 
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/schedule_chart.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
@@ -43,7 +44,7 @@ void add_schedule_show(Command& schedule, Action& action) {
     add_schedule_choice(command, options->schedule);
     command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
         .type_name("FILE")
-        .output();
+        .output(kDiagramName);
     command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
         .check(whole_check(1, 64))
         .type_name("N");

@@ -67,7 +67,7 @@ class ShowTest(ProgramTest):
         self.assertTrue((self.folder / "random.png").read_bytes().startswith(b"\x89PNG"))
 
     def test_a_picture_of_another_kind_is_refused(self):
-        self.fails(INPUT, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
+        self.fails(USAGE, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
 
 
 class CheckTest(ProgramTest):

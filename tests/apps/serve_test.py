@@ -173,7 +173,7 @@ class ServeTest(ProgramTest):
     def test_a_coded_stream_is_not_taken_for_pictures(self):
         address = self.serve(self.scene(), "--mode", "coded")
         for verb in ("live", "record"):
-            done = self.run_program("capture", verb, "gige:" + address, "-o", "x.out", "--frames", 5)
+            done = self.run_program("capture", verb, "gige:" + address, "-o", "x", "--frames", 5)
             if BUILT_WITHOUT in done.stderr:
                 self.skipTest(BUILT_WITHOUT)
             self.assertEqual(done.returncode, INPUT, done.stderr)
