@@ -52,8 +52,6 @@ void add_schedule_show(Command& schedule, Action& action) {
         .check(whole_check(1, 1024))
         .type_name("N");
     command.footer(
-        "In the text, - is open, = open in the second charge store, . closed; a digit is the slot\n"
-        "at whose end a pixel is read and how many slots it was open, # for ten or more.\n"
         "Examples:\n"
         "  stipple schedule show random\n"
         "  stipple schedule show two_bucket -o two_bucket.png --pixels 16");
