@@ -11,6 +11,7 @@
 #include "apps/flat_field_series.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/sensor_setup.h"
@@ -79,6 +80,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     params.physical.cfa = ColourFilter::kNone;
     JsonFile json(run);
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
+    say_leftover(options.output);
     {
         Progress progress(run, "photographing", kSeriesImages);
         photograph_series(params, options.sensor.seed, folder.partial(), [&] {

@@ -44,8 +44,10 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
-    if (!options.truth.empty())
+    if (!options.truth.empty()) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
+        say_leftover(options.truth);
+    }
     Recording recording(options.output, run.force, setup,
                         origin_of(options.footage, options.reading));
     Progress progress(run, "emulating", footage.slots());
