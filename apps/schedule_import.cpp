@@ -55,8 +55,9 @@ void add_schedule_import(Command& schedule, Action& action) {
         schedule.add_command("import", "A schedule from masks or exposure lengths in a .npy");
     const auto options = std::make_shared<ImportOptions>();
     command
-        .add_option("VOLUME", options->volume,
-                    ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
+        .add_option(
+            "VOLUME", options->volume,
+            ".npy of (slots, rows, columns): masks of 0 and 1 or 255, an exposure per pixel")
         .type_name("FILE.npy")
         .required()
         .input();

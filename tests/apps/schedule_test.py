@@ -125,6 +125,16 @@ class ImportTest(ProgramTest):
             codes.add((self.folder / "masks.toml").read_text())
         self.assertEqual(len(codes), 1)
 
+    def test_masks_that_are_stored_as_pictures(self):
+        masks = np.random.default_rng(4).random((4, 8, 8)) < 0.5
+        for name, values in (("one", masks), ("white", 255 * masks)):
+            self.write_array("masks.npy", values, np.uint8)
+            self.succeed("schedule", "import", "masks.npy", "-o", f"{name}.toml", "--name", "masks")
+        self.assertEqual((self.folder / "one.toml").read_text(), (self.folder / "white.toml").read_text())
+        mixed = np.where(masks, 255, 0)
+        mixed[2, 3, 4] = 1
+        self.refuse(["pixel (3, 4) slot 2: 1 is neither 0 nor 255"], mixed)
+
     def test_masks_sample_what_they_let_through(self):
         rng = np.random.default_rng(3)
         masks = rng.random((8, 12, 10)) < 0.5
