@@ -43,7 +43,7 @@ class DemoFolder {
 
 DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
     std::error_code error;
-    if (fs::is_directory(folder, error) && !force)
+    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) && !force)
         throw InputError(folder.string(),
                          "exists already; give another name, or --force to replace what is in it");
     if (fs::exists(folder, error) && !fs::is_directory(folder, error))

@@ -70,6 +70,14 @@ class OutputsTest(ProgramTest):
         (self.folder / "out/thesis.txt").touch()
         self.fails(INPUT, ["out", "thesis.txt"], *SYNTH, "out", "--force")
 
+    def test_an_empty_folder_is_filled(self):
+        (self.folder / "out").mkdir()
+        self.succeed(*SYNTH, "out")
+        self.assertEqual(self.names(), ["out", *(f"out/frame_000{slot}.exr" for slot in range(3))])
+        (self.folder / "shown").mkdir()
+        self.succeed("demo", "--frames", 6, "--size", "16x16", "-o", "shown")
+        self.fails(INPUT, ["shown", "exists already"], "demo", "--frames", 6, "-o", "shown")
+
     def test_an_output_in_a_folder_that_does_not_exist(self):
         self.fails(INPUT, ["nowhere/out.npy", "nowhere"], *SYNTH, "nowhere/out.npy")
 
