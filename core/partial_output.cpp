@@ -57,10 +57,11 @@ std::optional<fs::file_time_type> began(int process) {
 bool PartialOutput::running() const {
     const std::string name = process_name(std::to_string(process));
     if (name.empty() || name != process_name("self")) return false;
-    // A process that is younger than the file has got the number of one that is gone.
+    // A process that is younger than the file has got the number of one that is gone; the clock of
+    // a file server may be a little behind.
     std::error_code error;
     const auto written = fs::last_write_time(path, error);
-    return error || began(process).value_or(written) <= written + std::chrono::seconds(1);
+    return error || began(process).value_or(written) <= written + std::chrono::minutes(1);
 }
 
 fs::path partial_path(const fs::path& final_path, int process) {
