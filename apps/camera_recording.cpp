@@ -129,6 +129,7 @@ void CameraRecording::run(const RunOptions& run) {
         std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
                    session_.next(kPatience));
         progress.reach(static_cast<double>(taken_));
+        progress.note(losses_text(session_.totals()));
     }
     seconds_ = progress.seconds();
 }

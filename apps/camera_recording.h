@@ -16,6 +16,7 @@ struct CameraRecordingArguments {
     SessionOptions session;
     std::string output;  ///< file, or a folder in which a file named by the time is made
     CaptureLimits limits;
+    bool coded = false;  ///< the samples of a camera of `capture serve --mode coded`
 };
 
 /// Records a camera until the frames or seconds are reached, a signal asks to stop, or the camera

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "apps/action.h"
 #include "apps/command_line.h"
-#include "apps/run_options.h"
 
 namespace stipple {
 

@@ -86,9 +86,7 @@ void add_capture_doctor(Command& capture, Action& action) {
         "Examples:\n"
         "  stipple capture doctor\n"
         "  stipple capture doctor gige:192.168.0.5");
-    command.callback([address, &action] {
-        action = [address](const RunOptions& run) { doctor(*address, run); };
-    });
+    set_action(command, action, address, doctor);
 }
 
 }  // namespace stipple

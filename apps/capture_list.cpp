@@ -49,7 +49,7 @@ void add_capture_list(Command& capture, Action& action) {
     command.footer(
         "Example:\n"
         "  stipple capture list");
-    command.callback([&action] { action = list; });
+    command.callback([&action] { action.run = list; });
 }
 
 }  // namespace stipple

@@ -4,6 +4,7 @@
 #include "apps/json_file.h"
 #include "apps/live_emulation.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_arguments.h"
 
@@ -29,7 +30,7 @@ void add_capture_live(Command& capture, Action& action) {
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kStreamName);
     add_capture_limits(command, options->limits);
     add_sensor_arguments(command, options->sensor, "--sensor-set");
     add_preview_arguments(command, options->preview);
@@ -45,17 +46,17 @@ void add_capture_live(Command& capture, Action& action) {
                     "a packet is late so many slots after its frame (2)")
         .check(positive_check())
         .type_name("N");
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple capture live gige:192.168.0.5 -o clip.stipple --seconds 10\n"
         "  stipple capture live v4l2:/dev/video0 -o clip.stipple --preview now.png\n"
         "  stipple capture live replay:clip.strec -o clip.stipple --schedule tiled");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, live, [command, options] {
         if (options->preview.file.empty())
             command.refuse({"--preview-method", "--preview-size"},
                            "there is no preview; add --preview FILE or leave it out");
         check_session_arguments(command, options->camera);
-        action = [options](const RunOptions& run) { live(*options, run); };
     });
 }
 

@@ -2,14 +2,21 @@
 #include "apps/camera_recording.h"
 #include "apps/capture_commands.h"
 #include "apps/coded_recording.h"
+#include "apps/output_names.h"
 #include "apps/session_arguments.h"
 
 namespace stipple {
+namespace {
+
+void record(const CameraRecordingArguments& arguments, const RunOptions& run) {
+    arguments.coded ? record_coded_stream(arguments, run) : record_camera(arguments, run);
+}
+
+}  // namespace
 
 void add_capture_record(Command& capture, Action& action) {
     Command command = capture.add_command("record", "Record a camera, every frame accounted for");
     const auto options = std::make_shared<CameraRecordingArguments>();
-    const auto coded = std::make_shared<bool>(false);
     add_camera_arguments(command, options->camera);
     command
         .add_option("-o,--output", options->output,
@@ -20,7 +27,7 @@ void add_capture_record(Command& capture, Action& action) {
     add_capture_limits(command, options->limits);
     add_session_arguments(command, options->session);
     auto coded_flag = command.add_flag(
-        "--coded", *coded,
+        "--coded", options->coded,
         "the samples of a camera of \"capture serve --mode coded\", as \"emulate\" writes them");
     for (const char* option : {"--incomplete", "--stall", "--no-reconnect"})
         coded_flag.excludes(command.option(option));
@@ -29,11 +36,9 @@ void add_capture_record(Command& capture, Action& action) {
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
         "      --set PixelFormat=Mono12p --set ExposureTime=2000");
-    command.callback([command, options, coded, &action] {
+    set_action(command, action, options, record, [command, options] {
         check_session_arguments(command, options->camera);
-        action = [options, coded](const RunOptions& run) {
-            *coded ? record_coded_stream(*options, run) : record_camera(*options, run);
-        };
+        check_extension("--output", options->output, options->coded ? kStreamName : kRecordingName);
     });
 }
 

@@ -9,6 +9,7 @@
 #include "apps/leftovers.h"
 #include "apps/number_check.h"
 #include "apps/number_text.h"
+#include "apps/output_names.h"
 #include "apps/progress.h"
 #include "apps/standard_error.h"
 #include "capture/recording/recording_footage.h"
@@ -98,7 +99,7 @@ void add_capture_replay(Command& capture, Action& action) {
     command.add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")
         .type_name("OUT")
         .required()
-        .output();
+        .output(kVideoName);
     command.add_flag("--skip-gaps", options->skip_gaps,
                      "leave missing frames out; else the frame before stands in");
     command.add_flag("--keep-incomplete", options->keep_incomplete,
@@ -110,9 +111,7 @@ void add_capture_replay(Command& capture, Action& action) {
         "Examples:\n"
         "  stipple capture replay clip.strec -o light.npy --black-level 64\n"
         "  stipple emulate clip.strec -o clip.stipple        without a file in between");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { replay(*options, run); };
-    });
+    set_action(command, action, options, replay);
 }
 
 }  // namespace stipple

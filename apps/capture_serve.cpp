@@ -10,9 +10,11 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/number_text.h"
 #include "apps/sensor_arguments.h"
 #include "apps/served_source.h"
 #include "apps/session_report.h"
+#include "apps/standard_error.h"
 #include "capture/serve/gige_server.h"
 
 namespace stipple {
@@ -37,6 +39,33 @@ std::string ready_text(const FrameSource& source, const GigeServerOptions& optio
                        image.height, image.formats.front()->name, image.frames_per_s);
 }
 
+std::string counts_text(const GigeServerCounts& counts) {
+    return fmt::format("{} in {}, {} late; {}, {} sent again", counted(counts.frames, "frame"),
+                       counted(counts.starts, "start"), counts.late_frames,
+                       counted(counts.packets, "packet"), counts.packets_resent);
+}
+
+/// Tells on standard error who takes the control of the camera, and who has given it up.
+class ClientReport {
+  public:
+    explicit ClientReport(const GigeServer& server) : server_(&server) {}
+    void look() {
+        const std::string now = server_->client();
+        if (now == client_) return;
+        const std::uint64_t frames = server_->counts().frames;
+        if (!client_.empty())
+            say_error("{} has gone, {} sent", client_, counted(frames - frames_before_, "frame"));
+        if (!now.empty()) say_error("{} controls the camera", now);
+        client_ = now;
+        frames_before_ = frames;
+    }
+
+  private:
+    const GigeServer* server_;
+    std::string client_;
+    std::uint64_t frames_before_ = 0;
+};
+
 void serve(const ServeOptions& options, const RunOptions& run) {
     const auto source = open_served_source(options.source);
     GigeServerOptions settings = options.server;
@@ -46,13 +75,16 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     GigeServer server(*source, settings);
     fmt::print("{}\n", ready_text(*source, settings));
     std::fflush(stdout);
+    ClientReport clients(server);
     std::string said;
     server.run([&] {
         if (const std::string warning = source->warning(); warning != said)
             say_warning(said = warning);
+        if (!run.quiet) clients.look();
         return stop_signal() != 0;
     });
     json.write(counts_json(server.counts()));
+    run.say(counts_text(server.counts()));
     throw_if_stopped();  // there is no output that could be shorter
 }
 
@@ -64,7 +96,7 @@ void add_source_arguments(Command& command, ServedSourceChoice& source) {
         .input();
     command
         .add_option("--mode", source.mode,
-                    "frames as they are (the default), or the samples of a sensor")
+                    "frames: as they are; coded: the samples of a sensor (frames)")
         .one_of({"frames", "coded"})
         .type_name("frames|coded");
     command
@@ -90,7 +122,7 @@ void check_mode(const Command& command, const ServedSourceChoice& source) {
     if (source.mode == "coded")
         command.refuse({"--format"}, "is of --mode frames; leave it out");
     else
-        command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun"},
+        command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},
                        "is of the sensor of --mode coded; add that or leave this out");
 }
 
@@ -108,19 +140,19 @@ void add_capture_serve(Command& capture, Action& action) {
     add_source_arguments(command, options->source);
     command.add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
         .type_name("IP");
-    command.add_option("--serial", options->server.serial, "serial number (1)")
+    command.add_option("--serial", options->server.serial, "serial number (the address)")
         .check(check_serial)
         .type_name("TEXT");
     command.add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
     add_fault_arguments(command, options->server);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, serve, [command, options] {
         check_mode(command, options->source);
         check_faults(command, options->server.faults);
-        action = [options](const RunOptions& run) { serve(*options, run); };
     });
 }
 

@@ -11,6 +11,7 @@
 #include "apps/flat_field_series.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
 #include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/sensor_setup.h"
@@ -79,6 +80,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     params.physical.cfa = ColourFilter::kNone;
     JsonFile json(run);
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
+    say_leftover(options.output);
     {
         Progress progress(run, "photographing", kSeriesImages);
         photograph_series(params, options.sensor.seed, folder.partial(), [&] {
@@ -106,6 +108,11 @@ void characterize_images(const CharacterizeOptions& options, const RunOptions& r
     report(camera, failure, json, run);
 }
 
+void characterize(const CharacterizeOptions& options, const RunOptions& run) {
+    options.descriptor.empty() ? characterize_sensor(options, run)
+                               : characterize_images(options, run);
+}
+
 }  // namespace
 
 void add_characterize(Command& app, Action& action) {
@@ -120,11 +127,13 @@ void add_characterize(Command& app, Action& action) {
     const auto seed = command.add_option("--seed", options->sensor.seed, "of the noise (1)")
                           .check(whole_check(0))
                           .type_name("S");
+    const auto threads = add_threads(command, action.options);
     command.add_option("--evaluate", options->descriptor, "images that exist: their descriptor")
         .type_name("FILE")
         .excludes(sensor)
         .excludes(set)
         .excludes(seed)
+        .excludes(threads)
         .input();
     command.add_option("-o,--output", options->output, "folder for images, descriptor and charts")
         .type_name("DIR")
@@ -134,13 +143,9 @@ void add_characterize(Command& app, Action& action) {
         "  stipple characterize --sensor grasshopper -o series\n"
         "  stipple characterize --sensor t6 --set temperature_c=60 -o warm --json figures.json\n"
         "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
-    command.callback([options, &action] {
+    set_action(command, action, options, characterize, [options] {
         if (options->descriptor.empty() && options->output.empty())
             throw UsageError("--output", "a folder for the series is required, or --evaluate");
-        action = [options](const RunOptions& run) {
-            options->descriptor.empty() ? characterize_sensor(*options, run)
-                                        : characterize_images(*options, run);
-        };
     });
 }
 

@@ -6,12 +6,14 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
 #include "apps/number_text.h"
+#include "apps/progress.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
@@ -105,19 +107,21 @@ std::int64_t slots_to_come(const CameraDescription& camera,
     return of_source == 0 ? *limit : std::min(*limit, of_source);
 }
 
-/// Until all slots are there, the camera falls silent or goes, or somebody stops it. True if it
-/// was not stopped.
-bool record_slots(Camera& camera, SlotRecorder& recorder, std::int64_t slots, double seconds) {
-    const auto begin = Clock::now();
-    auto last = begin;
+/// Until all slots are there (0: no number is known), the camera falls silent or goes, or somebody
+/// stops it. True if it was not stopped.
+bool record_slots(Camera& camera, SlotRecorder& recorder, std::int64_t slots, double seconds,
+                  Progress& progress) {
+    auto last = Clock::now();
     while (slots == 0 || recorder.slots() < slots) {
         if (stop_signal() != 0) return false;
+        if (seconds > 0 && progress.seconds() >= seconds) return false;
         const auto now = Clock::now();
-        const double elapsed_s = std::chrono::duration<double>(now - begin).count();
-        if (seconds > 0 && elapsed_s >= seconds) return false;
         const Arrival arrival = camera.wait(kWait);
         if (const auto* frame = std::get_if<CapturedFrame>(&arrival)) {
             recorder.take(*frame);
+            progress.reach(static_cast<double>(recorder.slots()));
+            if (recorder.missing() > 0)
+                progress.note(fmt::format("{} missing", recorder.missing()));
             last = Clock::now();
         } else if (std::holds_alternative<DeviceLost>(arrival) || now - last > kSilence) {
             break;
@@ -138,7 +142,10 @@ void record_coded_stream(const CameraRecordingArguments& arguments, const RunOpt
     JsonFile json(run);
     SlotRecorder recorder(arguments.output, run.force, header);
     camera->start();
-    const bool to_the_end = record_slots(*camera, recorder, slots, arguments.limits.seconds);
+    const bool to_the_end = [&] {
+        Progress progress(run, "recording", slots > 0 ? std::optional(slots) : std::nullopt);
+        return record_slots(*camera, recorder, slots, arguments.limits.seconds, progress);
+    }();
     camera->stop();
     if (recorder.slots() == 0) {
         throw_if_stopped();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "apps/standard_error.h"
 #include "apps/usage_problem.h"
+#include "core/footage_files.h"
 #include "core/suggestion.h"
 
 namespace stipple {
@@ -89,6 +91,15 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
+void check_extension(const std::string& option, const std::string& file, const OutputName& name) {
+    std::error_code error;
+    if (name.rule.empty() || (fs::exists(file, error) && !fs::is_regular_file(file, error))) return;
+    const std::string extension = lower_extension(file);
+    if (extension.empty() ? !name.may_have_none
+                          : std::ranges::find(name.extensions, extension) == name.extensions.end())
+        throw UsageError(option, fmt::format("{}: {}", file, name.rule));
+}
+
 CommandOption& CommandOption::type_name(const std::string& name) {
     option_->type_name(name);
     return *this;
@@ -138,8 +149,9 @@ CommandOption& CommandOption::input() {
     return *this;
 }
 
-CommandOption& CommandOption::output() {
+CommandOption& CommandOption::output(const OutputName& name) {
     files_->outputs.push_back(option_);
+    files_->output_names.push_back(name);
     return *this;
 }
 
@@ -241,6 +253,9 @@ void CommandLine::check_files() const {
                     fmt::format("{} is the output of {} too; give one of them another name",
                                 output->second.string(), other->first));
     }
+    for (std::size_t i = 0; i < files_.outputs.size(); ++i)
+        for (const std::string& file : files_.outputs[i]->results())
+            check_extension(files_.outputs[i]->get_name(), file, files_.output_names[i]);
 }
 
 CommandLine::Parsed CommandLine::parse(int argc, char** argv) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,10 +35,22 @@ class UsageError : public std::runtime_error {
     std::string option_;
 };
 
+/// What an output may be called: any name, or one by the `rule` for its extension.
+struct OutputName {
+    std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
+    std::array<std::string_view, 3> extensions = {};  ///< in lower case; names may be in upper case
+    bool may_have_none = true;
+};
+
+/// \throws UsageError naming `option` if `file` is not called as `name` says. What is there and is
+/// no file, as a folder, a pipe or a device, may have any name.
+void check_extension(const std::string& option, const std::string& file, const OutputName& name);
+
 /// The options of a command line that name files.
 struct FileOptions {
     std::vector<CLI::Option*> inputs;
     std::vector<CLI::Option*> outputs;
+    std::vector<OutputName> output_names;  ///< of each output
 };
 
 /// An option or a positional argument while it is declared.
@@ -56,8 +70,9 @@ class CommandOption {
     CommandOption& excludes(const CommandOption& other);
     /// It names what is read: a file, a folder, a pattern or "replay:FILE".
     CommandOption& input();
-    /// It names what is written. Parsing refuses an output that is an input or another output.
-    CommandOption& output();
+    /// It names what is written. Parsing refuses an output that is an input or another output, or
+    /// that is not called as `name` says.
+    CommandOption& output(const OutputName& name = {});
 
   private:
     CLI::Option* option_;

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <tuple>
 
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/quality_json.h"
 #include "apps/read_ahead.h"
@@ -23,6 +27,7 @@ struct CompareOptions {
     std::string reference;
     FootageOptions footage;  ///< of the reference
     QualityOptions quality;
+    std::int64_t until = 0;  ///< frames of each; 0: all, of which both must have as many
 };
 
 [[noreturn]] void fail_shape(const CompareOptions& options, FrameShape result, FrameShape wanted) {
@@ -36,22 +41,36 @@ struct CompareOptions {
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
-/// Adds up all frames. \throws InputError if one video ends before the other.
+/// Of one that ends after so many frames.
+[[noreturn]] void fail_length(const CompareOptions& options, bool is_result, std::int64_t frames) {
+    const auto& [shorter, longer] = is_result ? std::tie(options.result, options.reference)
+                                              : std::tie(options.reference, options.result);
+    const std::string too_early =
+        options.until > 0 ? fmt::format("--until {}", options.until)
+                          : fmt::format("\"{}\" does; --until {} compares as many", longer, frames);
+    throw InputError(shorter,
+                     fmt::format("ends after {}, before {}", counted(frames, "frame"), too_early));
+}
+
+/// Adds up the frames. \throws InputError if one video ends before the other, or before --until.
 void compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead& reference,
                     QualityMeter& meter, Progress& progress) {
-    while (true) {
+    while (options.until == 0 || progress.done() < options.until) {
         throw_if_stopped();
         const auto a = result.next();
         const auto b = reference.next();
-        if (a.empty() != b.empty())
-            throw InputError(
-                a.empty() ? options.result : options.reference,
-                fmt::format("ends after {} frames, before \"{}\" does", progress.done(),
-                            a.empty() ? options.reference : options.result));
-        if (a.empty()) return;
+        if (a.empty() && b.empty() && options.until == 0) return;
+        if (a.empty() || b.empty()) fail_length(options, a.empty(), progress.done());
         meter.add(a, b);
         progress.advance();
     }
+}
+
+/// If that is known.
+std::optional<std::int64_t> frames_to_come(const CompareOptions& options,
+                                           const ReadAhead& reference) {
+    if (options.until > 0) return options.until;
+    return reference.slots();
 }
 
 void compare(const CompareOptions& options, const RunOptions& run) {
@@ -69,7 +88,7 @@ void compare(const CompareOptions& options, const RunOptions& run) {
     QualityMeter meter(reference.shape(), options.quality);
     VideoQuality quality;
     {
-        Progress progress(run, "comparing", reference.slots());
+        Progress progress(run, "comparing", frames_to_come(options, reference));
         compare_frames(options, result, reference, meter, progress);
         quality = meter.quality();
     }
@@ -94,6 +113,9 @@ void add_compare(Command& app, Action& action) {
     const auto options = std::make_shared<CompareOptions>();
     command.add_option("RESULT", options->result, "video in linear light").required().input();
     command.add_option("REFERENCE", options->reference, "footage").required().input();
+    command.add_option("--until", options->until, "only the first N frames (all)")
+        .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))
+        .type_name("N");
     command.add_option("--margin", options->quality.margin, "frames left out at each end (0)")
         .check(whole_check(0, 1'000'000))
         .type_name("N");
@@ -108,13 +130,13 @@ void add_compare(Command& app, Action& action) {
                     "luminance of light 1.0 for PU21, in cd/m2 (100)")
         .check(positive_check())
         .type_name("L");
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"
+        "  stipple compare preview scene --until 60\n"
         "  stipple compare decoded.npy footage.npy --max-value 2 --peak 2 --cd-per-unit 1000");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { compare(*options, run); };
-    });
+    set_action(command, action, options, compare);
 }
 
 }  // namespace stipple

@@ -7,6 +7,7 @@
 #include "apps/decode_file.h"
 #include "apps/names_of.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/subcommands.h"
 #include "core/joined.h"
 #include "decoder/reconstruct.h"
@@ -29,7 +30,7 @@ void add_decode(Command& app, Action& action) {
                     "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
         .type_name("OUT")
         .required()
-        .output();
+        .output(kVideoName);
     command.add_option("--method", options->method, method_help())
         .one_of(names_of(decode_methods()))
         .type_name("NAME");
@@ -62,6 +63,7 @@ void add_decode(Command& app, Action& action) {
                   "=fix goes on with that shift")
         .type_name("[=fix]")
         .one_of({"true", "fix"});
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple decode clip.stipple -o decoded\n"
@@ -69,10 +71,9 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    command.callback([command, options, &action] {
+    set_action(command, action, options, decode_file, [command, options] {
         if (!options->follow)
             command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
-        action = [options](const RunOptions& run) { decode_file(*options, run); };
     });
 }
 

@@ -43,7 +43,7 @@ class DemoFolder {
 
 DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
     std::error_code error;
-    if (fs::is_directory(folder, error) && !force)
+    if (fs::is_directory(folder, error) && !fs::is_empty(folder, error) && !force)
         throw InputError(folder.string(),
                          "exists already; give another name, or --force to replace what is in it");
     if (fs::exists(folder, error) && !fs::is_directory(folder, error))
@@ -92,12 +92,12 @@ void add_demo(Command& app, Action& action) {
         .one_of(names_of(scenes()))
         .type_name("NAME");
     add_scene_arguments(command, options->rendering);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple demo\n"
         "  stipple demo -o dice_demo --scene dice --frames 32 --size 160x120");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { demo(*options, run); }; });
+    set_action(command, action, options, demo);
 }
 
 }  // namespace stipple

@@ -8,6 +8,8 @@
 #include "apps/footage_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
+#include "apps/leftovers.h"
+#include "apps/output_names.h"
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
 #include "apps/read_ahead.h"
@@ -42,8 +44,10 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
-    if (!options.truth.empty())
+    if (!options.truth.empty()) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
+        say_leftover(options.truth);
+    }
     Recording recording(options.output, run.force, setup,
                         origin_of(options.footage, options.reading));
     Progress progress(run, "emulating", footage.slots());
@@ -83,24 +87,23 @@ void add_emulate(Command& app, Action& action) {
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kStreamName);
     add_sensor_arguments(command, options->sensor);
     add_footage_arguments(command, options->reading);
     add_max_value(command, options->reading.max_value);
     command
         .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
         .type_name("OUT")
-        .output();
+        .output(kVideoName);
     add_waveform_arguments(command, options->waveform);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set read_noise_e=5 --set bit_depth=10 --set schedule.tile_rows=8");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { emulate(*options, run); };
-    });
+    set_action(command, action, options, emulate);
 }
 
 }  // namespace stipple

@@ -72,8 +72,7 @@ void add_info(Command& app, Action& action) {
         "  stipple info clip.stipple --json -\n"
         "  stipple info clip.strec\n"
         "The whole file is checked. If it is damaged, the damage is listed, the exit code is 1.");
-    command.callback(
-        [file, &action] { action = [file](const RunOptions& run) { info(*file, run); }; });
+    set_action(command, action, file, info);
 }
 
 }  // namespace stipple

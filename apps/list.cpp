@@ -111,8 +111,7 @@ void add_list(Command& app, Action& action) {
         "Examples:\n"
         "  stipple list sensors\n"
         "  stipple list schedules --json -");
-    command.callback(
-        [kind, &action] { action = [kind](const RunOptions& run) { list(*kind, run); }; });
+    set_action(command, action, kind, list);
 }
 
 }  // namespace stipple

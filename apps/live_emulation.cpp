@@ -69,6 +69,8 @@ void LiveEmulation::run(const RunOptions& run) {
             else
                 end_ = camera_.end();
             progress.reach(static_cast<double>(latencies_us_.size()));
+            if (held_slots_ + late_slots_ > 0)
+                progress.note(fmt::format("{} held, {} late", held_slots_, late_slots_));
         }
     } catch (const DeviceError& e) {
         failure_ = e;

@@ -40,11 +40,11 @@ ExitCode signal_code() {
     return static_cast<ExitCode>(kSignal + stop_signal());
 }
 
-/// Runs `action` and hands its last words on standard output to the system.
-int run(const Action& action, const RunOptions& options) {
+/// Does `action` and hands its last words on standard output to the system.
+int run(const Action& action) {
     try {
-        const ThreadLimit limit(options.threads);
-        action(options);
+        const ThreadLimit limit(action.options.threads);
+        action.run(action.options);
         if (std::fflush(stdout) != 0)
             throw std::system_error(errno, std::generic_category(), "standard output");
     } catch (const InputError& e) {
@@ -63,7 +63,6 @@ int run(const Action& action, const RunOptions& options) {
 
 int main(int argc, char** argv) {
     occupy_standard_streams();
-    RunOptions options;
     Action action;
     CommandLine line(
         "stipple",
@@ -75,17 +74,18 @@ int main(int argc, char** argv) {
          {add_synth, add_emulate, add_decode, add_compare, add_info, add_recover, add_schedule,
           add_timing, add_characterize, add_capture, add_demo, add_list})
         add(root, action);
-    for (Command& command : root.leaves()) add_run_options(command, options);
+    for (Command& command : root.leaves()) add_run_options(command, action.options);
     switch (line.parse(argc, argv)) {
         case CommandLine::Parsed::kHelp:
-            return run([](const RunOptions&) {}, options);  // standard output may be a full disk
+            action.run = [](const RunOptions&) {};  // standard output may be a full disk
+            return run(action);
         case CommandLine::Parsed::kWrong:
             return kUsage;
         case CommandLine::Parsed::kAction:
             break;
     }
     catch_signals();
-    return run(action, options);
+    return run(action);
 }
 
 }  // namespace

@@ -1,21 +1,10 @@
 #include "apps/preview_arguments.h"
 
-#include <filesystem>
-
+#include "apps/output_names.h"
 #include "apps/size_argument.h"
-#include "core/error.h"
 #include "core/pending_output.h"
 
 namespace stipple {
-namespace {
-
-std::string check_extension(const std::string& file) {
-    const auto extension = std::filesystem::path(file).extension();
-    if (extension == ".png" || extension == ".npy") return {};
-    return "\"" + file + "\" is neither a .png nor a .npy file";
-}
-
-}  // namespace
 
 void add_preview_arguments(Command& command, PreviewArguments& arguments) {
     constexpr int kLeast = 8;
@@ -24,9 +13,8 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
         .add_option("--preview", arguments.file,
                     "picture of what the decoder makes of the newest slots, replaced again and "
                     "again: .png to look at, .npy linear light")
-        .check(check_extension)
         .type_name("FILE")
-        .output();
+        .output(kPreviewName);
     command
         .add_option("--preview-method", arguments.method,
                     "naive: at once, noisier; fast: as it will be decoded, in seconds (naive)")

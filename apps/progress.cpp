@@ -9,7 +9,6 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -62,6 +61,11 @@ void Progress::reach(double frames, std::int64_t complete) {
     done_at_s_ = seconds();
 }
 
+void Progress::note(std::string text) {
+    const std::lock_guard lock(note_mutex_);
+    note_ = std::move(text);
+}
+
 void Progress::show(const std::stop_token& stop) const {
     const std::chrono::milliseconds interval = terminal_ ? kBarEvery : kLineEvery;
     std::mutex mutex;
@@ -78,12 +82,18 @@ std::string Progress::line(std::size_t columns) const {
     const bool known = total_ && *total_ >= complete;
     const std::string counter =
         known ? fmt::format("{}/{} frames", complete, *total_) : counted(complete, "frame");
-    const std::string text = fmt::format("{}{}", counter, pace());
+    const std::string noted = counter + note_behind();
+    const std::string text = noted + pace();
     const std::size_t length = task_.size() + 1 + text.size();
-    if (length > columns) return counter.substr(0, columns);
+    if (length > columns) return (noted.size() <= columns ? noted : counter).substr(0, columns);
     const std::size_t room = columns - length;
     if (!terminal_ || !known || room < kShortestBar + 3) return task_ + ' ' + text;
     return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kLongestBar)), text);
+}
+
+std::string Progress::note_behind() const {
+    const std::lock_guard lock(note_mutex_);
+    return note_.empty() ? "" : ", " + note_;
 }
 
 std::string Progress::bar(std::size_t width) const {

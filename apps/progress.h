@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -29,6 +30,9 @@ class Progress {
     void reach(double frames, std::int64_t complete);
     void reach(double frames) { reach(frames, static_cast<std::int64_t>(frames)); }
 
+    /// What stands behind the counter from now on, as "3 lost"; empty: nothing.
+    void note(std::string text);
+
     [[nodiscard]] std::int64_t done() const { return complete_; }
     /// Since the construction.
     [[nodiscard]] double seconds() const;
@@ -38,6 +42,8 @@ class Progress {
     void show(const std::stop_token& stop) const;
     /// Fits into `columns`.
     [[nodiscard]] std::string line(std::size_t columns) const;
+    /// The note with a comma before it.
+    [[nodiscard]] std::string note_behind() const;
     [[nodiscard]] std::string bar(std::size_t width) const;
     /// Rate and time left, as far as they are known.
     [[nodiscard]] std::string pace() const;
@@ -49,7 +55,9 @@ class Progress {
     std::atomic<double> done_ = 0;
     std::atomic<std::int64_t> complete_ = 0;
     std::atomic<double> done_at_s_ = 0;  ///< when `done_` was last set
-    std::jthread display_;               ///< last: it reads the others
+    mutable std::mutex note_mutex_;
+    std::string note_;
+    std::jthread display_;  ///< last: it reads the others
 };
 
 }  // namespace stipple

@@ -107,9 +107,7 @@ void add_recover(Command& app, Action& action) {
         "  stipple recover .clip.4711.partial.strec          keep it as clip.strec\n"
         "  stipple recover .clip.4711.partial.strec -o saved.strec\n"
         "Streams and recordings are whole up to their last packet or frame. Nothing else is.");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { run_recover(*options, run); };
-    });
+    set_action(command, action, options, run_recover);
 }
 
 }  // namespace stipple

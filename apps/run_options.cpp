@@ -20,11 +20,14 @@ void add_run_options(Command& command, RunOptions& run) {
     command.add_option("--json", run.json, "write the figures as JSON; - is standard output")
         .type_name("FILE")
         .output();
-    command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
-        .check(whole_check(0, 1024))
-        .type_name("N");
     command.add_flag("--force", run.force, "replace existing outputs");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
+}
+
+CommandOption add_threads(Command& command, RunOptions& run) {
+    return command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
+        .check(whole_check(0, 1024))
+        .type_name("N");
 }
 
 }  // namespace stipple

@@ -1,18 +1,18 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 
 namespace stipple {
 
 class Command;
+class CommandOption;
 
-/// What every subcommand can be told.
+/// What subcommands can be told.
 struct RunOptions {
     bool quiet = false;
     bool force = false;
-    int threads = 0;   ///< 0: all cores
+    int threads = 0;   ///< 0: all cores; of those that have `--threads`
     std::string json;  ///< file for the figures; empty: none, "-": standard output
 
     /// Prints `text` for people on standard output, unless it shall be quiet or has JSON on it.
@@ -20,9 +20,10 @@ struct RunOptions {
     void say(std::string_view text) const;
 };
 
-/// What the chosen subcommand does.
-using Action = std::function<void(const RunOptions&)>;
-
+/// What every subcommand has: `--json`, `--force` and `--quiet`.
 void add_run_options(Command& command, RunOptions& run);
+
+/// `--threads`, of subcommands that spread their work (core/parallel.h).
+CommandOption add_threads(Command& command, RunOptions& run);
 
 }  // namespace stipple

@@ -9,6 +9,7 @@
 #include "apps/chart.h"
 #include "apps/text_file.h"
 #include "core/error.h"
+#include "core/footage_files.h"
 
 namespace stipple {
 namespace {
@@ -21,10 +22,12 @@ struct Box {
     double bottom;
 };
 
-/// The boxes of a diagram by slots of light, and the lines across gaps.
+/// The boxes of a diagram by slots of light, the lines across gaps, and the readings, which have no
+/// width.
 struct Drawing {
     std::map<int, std::vector<Box>> boxes;
     std::vector<Box> lines;
+    std::vector<Box> reads;
 };
 
 /// Adds an exposure that begins in `begin`; what lies outside [0, slots) is cut off.
@@ -41,6 +44,8 @@ void add_exposure(Drawing& drawing, const Exposure& e, std::int64_t begin, const
     const double middle = (lane.top + lane.bottom) / 2;
     const Box line{cut(begin), cut(begin + e.span_slots()), middle, middle};
     if (e.light_slots() < e.span_slots() && line.left < line.right) drawing.lines.push_back(line);
+    const auto end = static_cast<double>(begin + e.span_slots());
+    if (lane.left < end && end <= lane.right) drawing.reads.push_back({end, end, middle, middle});
 }
 
 void add_pixel(Drawing& drawing, const ScheduleDiagram& diagram, std::size_t at) {
@@ -48,7 +53,7 @@ void add_pixel(Drawing& drawing, const ScheduleDiagram& diagram, std::size_t at)
     const int row = diagram.pixels[at].row % schedule.tile_rows();
     const int col = diagram.pixels[at].col % schedule.tile_cols();
     const auto exposures = schedule.exposures(row, col);
-    const bool two = schedule.charge_stores() > 1;
+    const bool two = schedule.charge_stores() == 2;
     const double top = static_cast<double>(at) + 0.12;
     const double height = two ? 0.38 : 0.76;
     for (std::int64_t n = -1; n * schedule.period_slots() < diagram.slots; ++n)
@@ -94,20 +99,24 @@ std::string data_of(const std::string& name, const std::vector<Box>& boxes) {
 
 std::string commands_of(const ScheduleDiagram& diagram, const Drawing& drawing) {
     const auto rows = diagram.pixels.size();
-    std::string text = data_of("gaps", drawing.lines);
+    const bool two = diagram.schedule.charge_stores() == 2;
+    std::string text = data_of("gaps", drawing.lines) + data_of("reads", drawing.reads);
     for (const auto& [light, boxes] : drawing.boxes)
         text += data_of(fmt::format("light{}", light), boxes);
     text += fmt::format(
         "set title {}\nset xrange [0:{}]\nset yrange [{}:0]\n"
-        "set xlabel 'time, slots'\nset ylabel 'pixel (row, column)'\n"
+        "set xlabel 'time, slots'\nset ylabel 'pixel (row, column){}'\n"
         "set border 0\nset tics nomirror scale 0.5\nset key above\n"
         "set arrow from graph 0,0 to graph 1.02,0 filled\n"
         "set grid xtics lc rgb '#d0d0d0'\nset style fill solid border lc rgb 'black'\n"
         "set ytics (",
-        quoted("Schedule " + diagram.name), diagram.slots, rows);
-    for (std::size_t i = 0; i < rows; ++i)
-        text += fmt::format("{}'({}, {})' {}.5", i > 0 ? ", " : "", diagram.pixels[i].row,
-                            diagram.pixels[i].col, i);
+        quoted("Schedule " + diagram.name), diagram.slots, rows, two ? ", charge store" : "");
+    for (std::size_t i = 0; i < rows; ++i) {
+        const auto [row, col] = diagram.pixels[i];
+        text += i > 0 ? ", " : "";
+        text += two ? fmt::format("'({}, {})  1' {}.31, '2' {}.69", row, col, i, i)
+                    : fmt::format("'({}, {})' {}.5", row, col, i);
+    }
     text += ")\nplot ";
     if (!drawing.lines.empty())
         text += "$gaps using 3:2:($4-$3):(0) with vectors nohead lc rgb '#808080' lw 1.5 notitle, ";
@@ -117,19 +126,22 @@ std::string commands_of(const ScheduleDiagram& diagram, const Drawing& drawing) 
             "$light{} using 1:2:3:4:5:6 with boxxyerror fc rgb '{}' title '{} "
             "slot{} of light', ",
             light, colour(i++, drawing.boxes.size()), light, light == 1 ? "" : "s");
-    return text + "1/0 notitle\n";
+    if (drawing.reads.empty()) return text + "1/0 notitle\n";
+    return text + "$reads using 1:2 with points pt 7 ps 0.6 lc rgb 'black' title 'read'\n";
 }
 
 }  // namespace
 
 void draw_schedule(const std::filesystem::path& file, bool force, const ScheduleDiagram& diagram) {
-    if (file.extension() != ".png" && file.extension() != ".svg")
+    const std::string extension = lower_extension(file);
+    if (extension != ".png" && extension != ".svg")
         throw InputError(file.string(), "a diagram is a .png or a .svg");
     Drawing drawing;
     for (std::size_t i = 0; i < diagram.pixels.size(); ++i) add_pixel(drawing, diagram, i);
     PendingOutput pending(file, force);
-    const int height = 140 + 34 * static_cast<int>(diagram.pixels.size());
-    write_text(pending, draw_chart(file.extension().string(), {.width = 1000, .height = height},
+    const int row_height = diagram.schedule.charge_stores() == 2 ? 44 : 34;
+    const int height = 140 + row_height * static_cast<int>(diagram.pixels.size());
+    write_text(pending, draw_chart(extension, {.width = 1000, .height = height},
                                    commands_of(diagram, drawing)));
 }
 

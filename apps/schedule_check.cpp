@@ -68,9 +68,7 @@ void add_schedule_check(Command& schedule, Action& action) {
         "Examples:\n"
         "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2\n"
         "  stipple schedule check tiled --sensor lux1310 --size 1280x1024");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { check(*options, run); };
-    });
+    set_action(command, action, options, check);
 }
 
 }  // namespace stipple

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
+#include "apps/output_names.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
 #include "apps/text_file.h"
-#include "core/error.h"
 #include "readout/program_text.h"
 
 namespace stipple {
@@ -19,8 +19,6 @@ struct CompileOptions {
 };
 
 void compile(const CompileOptions& options, const RunOptions& run) {
-    if (options.output.extension() != ".mem" && options.output.extension() != ".hex")
-        throw InputError(options.output.string(), "a memory image is a .mem or a .hex");
     const NamedSchedule schedule = set_up_schedule(options.schedule);
     const NamedProgram named = {schedule.name, compile_schedule(schedule.schedule)};
     JsonFile json(run);
@@ -52,15 +50,13 @@ void add_schedule_compile(Command& schedule, Action& action) {
     command.add_option("-o,--output", options->output, "memory image, .mem or .hex")
         .required()
         .type_name("FILE")
-        .output();
+        .output(kProgramName);
     command.footer(
         "Examples:\n"
         "  stipple schedule compile tiled -o tiled.mem\n"
         "  stipple schedule compile tiled -o tiled.mem --set tile_rows=8 --seed 7\n"
         "  stipple emulate scene -o clip.stipple --schedule tiled.mem");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { compile(*options, run); };
-    });
+    set_action(command, action, options, compile);
 }
 
 }  // namespace stipple

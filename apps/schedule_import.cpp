@@ -5,6 +5,7 @@
 
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/schedule_commands.h"
 #include "apps/schedule_text.h"
 #include "apps/text_file.h"
@@ -54,15 +55,16 @@ void add_schedule_import(Command& schedule, Action& action) {
         schedule.add_command("import", "A schedule from masks or exposure lengths in a .npy");
     const auto options = std::make_shared<ImportOptions>();
     command
-        .add_option("VOLUME", options->volume,
-                    ".npy of (slots, rows, columns): masks of 0 and 1, an exposure per pixel")
+        .add_option(
+            "VOLUME", options->volume,
+            ".npy of (slots, rows, columns): masks of 0 and 1 or 255, an exposure per pixel")
         .type_name("FILE.npy")
         .required()
         .input();
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kScheduleName);
     command.add_flag("--lengths", options->lengths,
                      "layers are the lengths of successive exposures in slots, from slot 0 on");
     command
@@ -78,9 +80,7 @@ void add_schedule_import(Command& schedule, Action& action) {
         "  stipple schedule import masks.npy -o masks.toml\n"
         "  stipple schedule import lengths.npy -o lengths.toml --lengths --period 16\n"
         "  stipple emulate scene -o clip.stipple --schedule masks.toml");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { import(*options, run); };
-    });
+    set_action(command, action, options, import);
 }
 
 }  // namespace stipple

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/json_file.h"
+#include "apps/output_names.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
 #include "apps/schedule_text.h"
@@ -36,13 +37,12 @@ void add_schedule_make(Command& schedule, Action& action) {
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
         .required()
-        .output();
+        .output(kScheduleName);
     command.footer(
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"
         "  stipple schedule make random -o tile.toml --size 32x32 --seed 7");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { make(*options, run); }; });
+    set_action(command, action, options, make);
 }
 
 }  // namespace stipple

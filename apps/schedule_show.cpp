@@ -5,6 +5,7 @@
 
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/schedule_chart.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
@@ -43,7 +44,7 @@ void add_schedule_show(Command& schedule, Action& action) {
     add_schedule_choice(command, options->schedule);
     command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
         .type_name("FILE")
-        .output();
+        .output(kDiagramName);
     command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
         .check(whole_check(1, 64))
         .type_name("N");
@@ -51,13 +52,10 @@ void add_schedule_show(Command& schedule, Action& action) {
         .check(whole_check(1, 1024))
         .type_name("N");
     command.footer(
-        "In the text, - is open, = open in the second charge store, . closed; a digit is the slot\n"
-        "at whose end a pixel is read and how many slots it was open, # for ten or more.\n"
         "Examples:\n"
         "  stipple schedule show random\n"
         "  stipple schedule show two_bucket -o two_bucket.png --pixels 16");
-    command.callback(
-        [options, &action] { action = [options](const RunOptions& run) { show(*options, run); }; });
+    set_action(command, action, options, show);
 }
 
 }  // namespace stipple

@@ -8,7 +8,8 @@
 namespace stipple {
 namespace {
 
-std::string line_of(const ExposureSchedule& schedule, ArrayPixel pixel, int slots) {
+/// What becomes of a charge store of a pixel.
+std::string line_of(const ExposureSchedule& schedule, ArrayPixel pixel, int store, int slots) {
     const int row = pixel.row % schedule.tile_rows();
     const int col = pixel.col % schedule.tile_cols();
     const auto exposures = schedule.exposures(row, col);
@@ -16,16 +17,25 @@ std::string line_of(const ExposureSchedule& schedule, ArrayPixel pixel, int slot
     std::string line(static_cast<std::size_t>(slots), '.');
     for (std::int64_t n = -1; n * period < slots; ++n)
         for (std::size_t i = 0; i < exposures.size(); ++i) {
+            if (schedule.store(row, col, i, n + 2) != store) continue;
             const Exposure& e = exposures[i];
-            const char open = schedule.store(row, col, i, n + 2) == 0 ? '-' : '=';
             const char read = e.light_slots() < 10 ? static_cast<char>('0' + e.light_slots()) : '#';
             for (int age = 0; age < e.span_slots(); ++age) {
                 const std::int64_t slot = n * period + e.first_slot + age;
                 if (slot >= 0 && slot < slots && (e.open_slots >> age & 1U) != 0)
-                    line[static_cast<std::size_t>(slot)] = age + 1 == e.span_slots() ? read : open;
+                    line[static_cast<std::size_t>(slot)] = age + 1 == e.span_slots() ? read : '-';
             }
         }
     return line;
+}
+
+/// The numbers of every fourth or, of many, every eighth slot, each above its slot.
+std::string ruler(const std::string& title, int slots) {
+    const int every = slots > 64 ? 8 : 4;
+    std::string line = fmt::format("{:>12}  ", title);
+    for (int slot = 0; slot < slots; slot += every) line += fmt::format("{:<{}}", slot, every);
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + '\n';
 }
 
 }  // namespace
@@ -78,11 +88,16 @@ std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, FrameSha
 
 std::string diagram_text(const ExposureSchedule& schedule, const std::vector<ArrayPixel>& pixels,
                          int slots) {
-    std::string text;
+    const bool two = schedule.charge_stores() == 2;
+    std::string text = ruler(two ? "pixel, store" : "pixel", slots);
     for (const ArrayPixel& pixel : pixels)
-        text += fmt::format("{:>12}  {}\n", fmt::format("({}, {})", pixel.row, pixel.col),
-                            line_of(schedule, pixel, slots));
-    return text;
+        for (int store = 0; store < (two ? 2 : 1); ++store) {
+            std::string name = fmt::format("({}, {})", pixel.row, pixel.col);
+            if (two) name = fmt::format("{} {}", store == 0 ? name : "", store + 1);
+            text += fmt::format("{:>12}  {}\n", name, line_of(schedule, pixel, store, slots));
+        }
+    return text +
+           "- open  . closed  1 to 9 read at its end, after so many open slots  # after more\n";
 }
 
 }  // namespace stipple

@@ -27,9 +27,9 @@ struct ArrayPixel {
 [[nodiscard]] std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule,
                                                     FrameShape array, int count);
 
-/// A line per pixel and a character per slot of [0, slots), the period before counts too: '-' open,
-/// '=' open in the second charge store, '.' closed; where an exposure is read, the slots it was
-/// open, '#' for ten or more.
+/// A ruler, a line per charge store of each pixel with a character per slot of [0, slots), and what
+/// the characters say: '-' open, '.' closed; where an exposure is read, the slots it was open, '#'
+/// for ten or more. The period before counts too.
 [[nodiscard]] std::string diagram_text(const ExposureSchedule& schedule,
                                        const std::vector<ArrayPixel>& pixels, int slots);
 

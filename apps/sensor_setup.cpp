@@ -8,6 +8,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/footage_files.h"
 #include "core/input_file.h"
 #include "core/joined.h"
 #include "readout/program_text.h"
@@ -46,7 +47,8 @@ Config schedule_config(const SensorChoice& choice) {
 
 /// True for a compiled schedule (docs/sequencer_program.md).
 bool is_program(const std::filesystem::path& file) {
-    return file.extension() == ".mem" || file.extension() == ".hex";
+    const std::string extension = lower_extension(file);
+    return extension == ".mem" || extension == ".hex";
 }
 
 NamedSchedule read_program(const SensorChoice& choice) {

@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace stipple {
 
@@ -22,6 +23,12 @@ std::string lost_text(const SessionTotals& totals) {
         if (const auto frames = totals.lost[i]; frames > 0)
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", frames, kGapCauseNames[i]);
     return text.empty() ? "none" : text;
+}
+
+std::string losses_text(const SessionTotals& totals) {
+    const auto lost = std::accumulate(totals.lost.begin(), totals.lost.end(), std::uint64_t{0});
+    if (lost + totals.incomplete == 0) return {};
+    return fmt::format("{} lost, {} incomplete", lost, totals.incomplete);
 }
 
 void say(const Outage& outage) {

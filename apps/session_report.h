@@ -13,6 +13,10 @@ namespace stipple {
 /// The same for people: the causes there are, or "none".
 [[nodiscard]] std::string lost_text(const SessionTotals& totals);
 
+/// How many, and how many are incomplete, for a line of progress: "3 lost, 1 incomplete"; empty if
+/// all is well.
+[[nodiscard]] std::string losses_text(const SessionTotals& totals);
+
 /// Tells on standard error that the camera is gone, or back.
 void say(const Outage& outage);
 void say(const Recovery& recovery);

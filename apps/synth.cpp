@@ -9,6 +9,7 @@
 #include "apps/leftovers.h"
 #include "apps/names_of.h"
 #include "apps/number_text.h"
+#include "apps/output_names.h"
 #include "apps/progress.h"
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
@@ -64,15 +65,14 @@ void add_synth(Command& app, Action& action) {
     command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
         .type_name("OUT")
         .required()
-        .output();
+        .output(kVideoName);
     add_scene_arguments(command, options->rendering);
+    add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple synth pan -o scene\n"
         "  stipple synth dice -o dice.npy --frames 200 --size 640x480 --seed 7");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { synth(*options, run); };
-    });
+    set_action(command, action, options, synth);
 }
 
 }  // namespace stipple

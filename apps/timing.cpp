@@ -84,9 +84,7 @@ void add_timing(Command& app, Action& action) {
         "  stipple timing --sensor lux1310\n"
         "  stipple timing --sensor vita --roi 640x480 --schedule tiled --json -\n"
         "  stipple timing --sensor lux1310 --set timing.addressing=group --vcd readout.vcd");
-    command.callback([options, &action] {
-        action = [options](const RunOptions& run) { time_readout(*options, run); };
-    });
+    set_action(command, action, options, time_readout);
 }
 
 }  // namespace stipple

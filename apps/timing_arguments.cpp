@@ -1,6 +1,7 @@
 #include "apps/timing_arguments.h"
 
 #include "apps/number_check.h"
+#include "apps/output_names.h"
 #include "apps/sensor_setup.h"
 #include "core/error.h"
 
@@ -11,7 +12,7 @@ void add_waveform_arguments(Command& command, WaveformOptions& options) {
     const auto file =
         command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
             .type_name("FILE")
-            .output();
+            .output(kWaveformName);
     command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
         .check(whole_check(1, kMostSlots))
         .type_name("N")

@@ -2,12 +2,16 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -30,11 +34,34 @@ std::string process_name(const std::string& process) {
     return name;
 }
 
+/// When a process began, by the clock of files; nothing if that cannot be told.
+std::optional<fs::file_time_type> began(int process) {
+    constexpr int kStartField = 22;  // of proc(5), ticks since the machine was started
+    std::ifstream file(fmt::format("/proc/{}/stat", process));
+    std::string text;
+    std::getline(file, text, '\0');
+    std::istringstream fields(text.substr(text.rfind(')') + 1));  // the name before may hold spaces
+    for (int field = 3; field < kStartField; ++field) fields >> text;
+    double ticks = 0;
+    timespec now{};
+    if (!(fields >> ticks) || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return std::nullopt;
+    const double age_s = static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9 -
+                         ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+    return fs::file_time_type::clock::now() -
+           std::chrono::duration_cast<fs::file_time_type::duration>(
+               std::chrono::duration<double>(age_s));
+}
+
 }  // namespace
 
 bool PartialOutput::running() const {
     const std::string name = process_name(std::to_string(process));
-    return !name.empty() && name == process_name("self");
+    if (name.empty() || name != process_name("self")) return false;
+    // A process that is younger than the file has got the number of one that is gone; the clock of
+    // a file server may be a little behind.
+    std::error_code error;
+    const auto written = fs::last_write_time(path, error);
+    return error || began(process).value_or(written) <= written + std::chrono::minutes(1);
 }
 
 fs::path partial_path(const fs::path& final_path, int process) {

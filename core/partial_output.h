@@ -13,7 +13,8 @@ struct PartialOutput {
     std::filesystem::path final_path;
     int process = 0;
 
-    /// Whether a process of that number and of this program's name is there.
+    /// Whether a process of that number and of this program's name is there, which began before the
+    /// output was last written.
     [[nodiscard]] bool running() const;
 };
 

@@ -108,8 +108,11 @@ void PendingOutput::check_replaceable() const {
     const auto refuse = [&](const std::string& problem) {
         throw InputError(final_.string(), problem);
     };
-    if (!force_) refuse("exists already; give another name, or --force to replace it");
     std::error_code error;
+    if (kind_ == OutputKind::kFolder && fs::is_directory(fs::symlink_status(final_, error)) &&
+        fs::is_empty(final_, error))
+        return;
+    if (!force_) refuse("exists already; give another name, or --force to replace it");
     const auto status = fs::status(final_, error);
     if (kind_ == OutputKind::kFile) {
         if (!fs::is_regular_file(status)) refuse("is not a regular file; give another name");
@@ -146,6 +149,7 @@ void PendingOutput::commit() {
         const auto status = fs::symlink_status(final_);
         if (kind_ == OutputKind::kFolder && force_ && fs::is_directory(status))
             remove_replaced_folder();
+        if (kind_ == OutputKind::kFolder && !force_) rmdir(final_.c_str());  // only if it is empty
         if (force_) {
             fs::rename(partial_, final_);
         } else if (!rename_to_free_name(partial_, final_)) {

@@ -20,9 +20,10 @@ class PendingOutput {
   public:
     /// Creates the folder `partial()` if `kind` is a folder.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
-    /// missing. With `force` a regular file gives way to a file, and a folder that holds nothing
-    /// but files of our own names to a folder; anything else is an InputError, because it may be
-    /// somebody's work. \throws DeviceError if the folder cannot be created.
+    /// missing. An empty folder gives way to a folder. With `force` a regular file gives way to a
+    /// file, and a folder that holds nothing but files of our own names to a folder; anything else
+    /// is an InputError, because it may be somebody's work. \throws DeviceError if the folder
+    /// cannot be created.
     PendingOutput(const std::filesystem::path& final_path, bool force,
                   OutputKind kind = OutputKind::kFile, IsOwnName is_own = is_frame_name);
     ~PendingOutput();

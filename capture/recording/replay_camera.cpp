@@ -11,7 +11,6 @@
 #include "capture/recording/replay_source.h"
 #include "capture/setting_value.h"
 #include "core/error.h"
-#include "core/joined.h"
 
 namespace stipple {
 namespace {
@@ -83,7 +82,7 @@ class ReplayCamera final : public Camera {
     void number_frame();
     void schedule_frame();
     CapturedFrame deliver();
-    [[nodiscard]] DeviceLost end() const;
+    [[nodiscard]] DeviceLost end();
 
     std::string path_;
     ReplaySettings settings_;
@@ -110,8 +109,7 @@ CameraDescription ReplayCamera::description() const {
     }
     result.transport = "replay";
     result.address = std::string(kPrefix).append(path_);
-    result.warnings.clear();
-    if (!source_.clipping().empty()) result.warnings.push_back(source_.clipping());
+    result.warnings = source_.warnings();
     return result;
 }
 
@@ -167,11 +165,8 @@ CapturedFrame ReplayCamera::deliver() {
     return std::exchange(coming_, {});
 }
 
-DeviceLost ReplayCamera::end() const {
-    DeviceLost end{.reason = path_ + " is at its end", .at_end = true};
-    const auto faults = source_.faults();
-    if (!faults.empty()) end.warning = fmt::format("{}: {}", path_, joined(faults));
-    return end;
+DeviceLost ReplayCamera::end() {
+    return {.reason = path_ + " is at its end", .at_end = true, .warning = source_.end_warning()};
 }
 
 Arrival ReplayCamera::wait(std::chrono::milliseconds timeout) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "capture/clipping.h"
 #include "core/error.h"
+#include "core/joined.h"
 #include "stream/little_endian.h"
 
 namespace stipple {
@@ -35,11 +37,10 @@ FrameLayout footage_layout(FrameShape shape, const std::string& name) {
 ReplaySource::ReplaySource(const std::filesystem::path& path, const std::string& format)
     : path_(path) {
     if (!stipple::is_recording(path)) {
-        footage_.emplace(path);
+        open_footage();
         layout_ = footage_layout(footage_->shape(), format);
         light_.resize(footage_->shape().sites());
-        if (footage_->read(light_))
-            clipping_ = clipping_text(path.string(), light_, *layout_.format);
+        look_at_first_frame();
         rewind();
         return;
     }
@@ -51,6 +52,35 @@ ReplaySource::ReplaySource(const std::filesystem::path& path, const std::string&
         throw InputError("PixelFormat", fmt::format("the recording is in {}; it is played as it is",
                                                     layout_.format->name));
     recording_->rewind();
+}
+
+/// A replay is a camera, whose numbers are linear: what is not gets a warning of its own.
+void ReplaySource::open_footage() {
+    footage_.emplace(path_, FootageOptions{.transfer = Transfer::kLinear, .max_value = {}});
+}
+
+void ReplaySource::look_at_first_frame() {
+    const std::string name = path_.string();
+    if (footage_->gamma_coded())
+        warnings_.push_back(name +
+                            ": looks gamma-coded, and is played as linear light; \"emulate\" and "
+                            "\"capture serve\" have --transfer");
+    const bool has_frame = footage_->read(light_);
+    for (std::string& warning : footage_->take_warnings()) warnings_.push_back(std::move(warning));
+    std::string clipping = has_frame ? clipping_text(name, light_, *layout_.format) : "";
+    if (!clipping.empty()) warnings_.push_back(std::move(clipping));
+}
+
+std::string ReplaySource::end_warning() {
+    std::vector<std::string> found;
+    if (recording_) {
+        found = recording_->faults();
+        return found.empty() ? "" : fmt::format("{}: {}", path_.string(), joined(found));
+    }
+    for (std::string& warning : footage_->take_warnings())
+        if (std::ranges::find(warnings_, warning) == warnings_.end())
+            found.push_back(std::move(warning));
+    return joined(found);
 }
 
 const SessionRecord* ReplaySource::session() const {
@@ -95,8 +125,7 @@ void ReplaySource::quantise(std::vector<std::uint8_t>& payload) const {
 
 void ReplaySource::rewind() {
     next_id_ = 0;
-    if (recording_) return recording_->rewind();
-    footage_.emplace(path_);
+    recording_ ? recording_->rewind() : open_footage();
 }
 
 }  // namespace stipple

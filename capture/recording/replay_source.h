@@ -29,14 +29,14 @@ class ReplaySource {
     /// The next frame; of footage, id counts from 0. False at the end. \throws InputError.
     bool next(CapturedFrame& frame);
     void rewind();
-    /// What of the first frame of footage its format cannot hold; empty if it holds it all.
-    [[nodiscard]] const std::string& clipping() const { return clipping_; }
-    /// What is wrong with a recording that is at its end; empty if nothing is.
-    [[nodiscard]] std::vector<std::string> faults() const {
-        return recording_ ? recording_->faults() : std::vector<std::string>();
-    }
+    /// Where footage may not be what it seems, and what of its first frame its format cannot hold.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    /// What reading to the end has shown to be wrong besides; empty if nothing is.
+    [[nodiscard]] std::string end_warning();
 
   private:
+    void open_footage();
+    void look_at_first_frame();
     void quantise(std::vector<std::uint8_t>& payload) const;
 
     std::filesystem::path path_;
@@ -45,7 +45,7 @@ class ReplaySource {
     FrameLayout layout_;
     std::vector<float> light_;
     std::uint64_t next_id_ = 0;
-    std::string clipping_;
+    std::vector<std::string> warnings_;
 };
 
 }  // namespace stipple

@@ -119,7 +119,7 @@ GigeServer::Impl::Impl(FrameSource& frames, const GigeServerOptions& settings)
               .mac = kLocalMac << 32U | address,
               .model = options.model,
               .version = options.version,
-              .serial = options.serial,
+              .serial = options.serial.empty() ? ipv4_text(address) : options.serial,
               .can_resend = options.can_resend},
              source.image()) {
     data.set_send_buffer(kSendBufferBytes);
@@ -281,6 +281,12 @@ GigeServerCounts GigeServer::counts() const {
             .packets = impl_->sender.packets_sent(),
             .packets_resent = impl_->sender.packets_resent(),
             .starts = impl_->device.stream().starts};
+}
+
+std::string GigeServer::client() const {
+    const std::scoped_lock lock(impl_->mutex);
+    const auto client = impl_->device.controller();
+    return client ? fmt::format("{}:{}", ipv4_text(client->address), client->port) : "";
 }
 
 const std::string& GigeServer::xml() const {

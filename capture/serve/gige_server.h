@@ -14,8 +14,8 @@ struct GigeServerOptions {
     std::string address = "127.0.0.1";  ///< IPv4, of this machine
     std::string model = "Recording";
     std::string version = {};
-    std::string serial = "1";
-    bool repeat = false;  ///< begin again at the end of the source
+    std::string serial = {};  ///< empty: the address
+    bool repeat = false;      ///< begin again at the end of the source
     bool can_resend = true;
     GvspFaults faults = {};
 };
@@ -48,6 +48,8 @@ class GigeServer {
     void run(const std::function<bool()>& stop);
 
     [[nodiscard]] GigeServerCounts counts() const;
+    /// The client in control, as "10.0.0.5:40112"; empty if there is none.
+    [[nodiscard]] std::string client() const;
     [[nodiscard]] const std::string& xml() const;
 
   private:

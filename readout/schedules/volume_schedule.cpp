@@ -12,30 +12,39 @@ namespace {
 
 constexpr int kLongestExposure = 64;
 constexpr int kLongestPeriod = 65535;
+constexpr double kWhite = 255;  // of masks that are stored as pictures
 
 struct TilePixel {
     int row;
     int col;
 };
 
-bool is_open(const NpyVolume& masks, int slot, TilePixel pixel, std::string_view place) {
-    const double value = masks.at(slot, pixel.row, pixel.col);
-    if (value == 0 || value == 1) return value == 1;
-    throw InputError(place, fmt::format("pixel ({}, {}) slot {}: {} is neither 0 nor 1", pixel.row,
-                                        pixel.col, slot, value));
+/// Masks, and what their open slots are marked by.
+struct Masks {
+    const NpyVolume& volume;
+    double open;
+    std::string_view place;
+};
+
+bool is_open(const Masks& masks, int slot, TilePixel pixel) {
+    const double value = masks.volume.at(slot, pixel.row, pixel.col);
+    if (value == 0 || value == masks.open) return value == masks.open;
+    throw InputError(masks.place, fmt::format("pixel ({}, {}) slot {}: {} is neither 0 nor {}",
+                                              pixel.row, pixel.col, slot, value, masks.open));
 }
 
-void add_mask(const NpyVolume& masks, TilePixel pixel, std::string_view place, TileList& list) {
+void add_mask(const Masks& masks, TilePixel pixel, TileList& list) {
     int first = -1;
     std::uint64_t mask = 0;
-    for (int slot = 0; slot < masks.layers; ++slot) {
-        if (!is_open(masks, slot, pixel, place)) continue;
+    for (int slot = 0; slot < masks.volume.layers; ++slot) {
+        if (!is_open(masks, slot, pixel)) continue;
         if (first < 0) first = slot;
         if (slot - first >= kLongestExposure)
             throw InputError(
-                place, fmt::format("pixel ({}, {}) slot {}: the exposure from slot {} on spans "
-                                   "more than {} slots",
-                                   pixel.row, pixel.col, slot, first, kLongestExposure));
+                masks.place,
+                fmt::format("pixel ({}, {}) slot {}: the exposure from slot {} on spans "
+                            "more than {} slots",
+                            pixel.row, pixel.col, slot, first, kLongestExposure));
         mask |= std::uint64_t{1} << static_cast<unsigned>(slot - first);
     }
     if (first >= 0) list.add(static_cast<std::uint32_t>(first), mask);
@@ -81,7 +90,9 @@ int checked_period(const NpyVolume& lengths, int period_slots, std::string_view 
 
 ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view place) {
     TileList list(masks.rows, masks.cols, masks.layers);
-    for_each_pixel(masks, [&](TilePixel pixel) { add_mask(masks, pixel, place, list); });
+    const bool white = std::ranges::find(masks.values, kWhite) != masks.values.end();
+    const Masks marked{masks, white ? kWhite : 1, place};
+    for_each_pixel(masks, [&](TilePixel pixel) { add_mask(marked, pixel, list); });
     return std::move(list).schedule();
 }
 

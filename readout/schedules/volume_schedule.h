@@ -8,9 +8,9 @@
 namespace stipple {
 
 /// The schedule of a volume of binary masks, one layer per slot: each pixel repeats one exposure,
-/// open where its mask is 1; a pixel whose mask is 0 throughout is never read.
-/// \throws InputError at `place`, naming pixel and slot, for a value that is neither 0 nor 1 and
-/// for an exposure that spans more than 64 slots.
+/// open where its mask is 1 or, in a volume that holds 255, where it is 255; a pixel whose mask is
+/// 0 throughout is never read. \throws InputError at `place`, naming pixel and slot, for any other
+/// value and for an exposure that spans more than 64 slots.
 [[nodiscard]] ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view place);
 
 /// The schedule of a volume of exposure lengths in slots: each pixel repeats its layers' exposures

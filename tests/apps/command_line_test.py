@@ -12,6 +12,11 @@ from concurrent.futures import ThreadPoolExecutor
 from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest, project_path
 
 COMMANDS = ("synth", "emulate", "decode", "compare", "info", "timing", "demo")
+SPREAD = [[name] for name in ("synth", "emulate", "decode", "compare", "characterize", "demo")] + [
+    ["capture", "live"], ["capture", "serve"]]
+UNSPREAD = [[name] for name in ("list", "info", "recover", "timing")] + [
+    ["capture", name] for name in ("list", "doctor", "record", "replay")] + [
+    ["schedule", name] for name in ("make", "show", "check", "compile", "import")]
 LONGER = ["synth", "still", "--frames", "9", "--size", "240x180"]
 CLEAR = "\r\x1b[K"
 SYNTH = ["synth", "still", "--frames", "2", "--size", "32x24"]
@@ -33,8 +38,16 @@ class CommandLineTest(ProgramTest):
         for command in COMMANDS:
             text = self.succeed(command, "--help")
             self.assertIn(f"Examples:\n  stipple {command}", text)
-            for option in ("--json", "--threads", "--force", "--quiet"):
+            for option in ("--json", "--force", "--quiet"):
                 self.assertIn(option, text)
+
+    def test_threads_are_of_commands_that_spread_their_work(self):
+        for commands, offered in ((SPREAD, True), (UNSPREAD, False)):
+            for command in commands:
+                self.assertEqual("--threads" in self.succeed(*command, "--help"), offered, command)
+        self.fails(USAGE, ["--threads is no option of stipple info"], "info", "a", "--threads", 2)
+        self.fails(USAGE, ["--threads excludes --evaluate"], "characterize", "--evaluate", "a",
+                   "--threads", 2)
 
     def test_help_has_several_names(self):
         self.assertEqual(self.succeed("help"), self.succeed("--help"))
@@ -136,6 +149,17 @@ class CommandLineTest(ProgramTest):
         cut.write_bytes(cut.read_bytes()[:-10])
         text = self.on_a_terminal("capture", "record", "replay:cut.strec", "-o", "again.strec")
         self.assertRegex(text, r"recording \d+ frames[^\n]*\r\x1b\[Kstipple: cut\.strec: was cut off[^\n\x1b]*\r\n")
+
+    def test_losses_are_shown_while_it_records(self):
+        self.succeed("capture", "record", f"replay:{self.write_flat('light.npy', 100)}", "-o", "clip.strec",
+                     "--set", "AcquisitionFrameRate=0", "--buffers", 1024)
+        clip = self.folder / "clip.strec"
+        content = clip.read_bytes()
+        starts = [at for at in range(len(content)) if content.startswith(b"\xc5FRM", at)]
+        clip.write_bytes(content[:starts[4]] + content[starts[6]:])
+        text = self.on_a_terminal("capture", "record", "replay:clip.strec", "-o", "again.strec", "--set",
+                                  "AcquisitionFrameRate=200")
+        self.assertRegex(text, r"recording \d+ frames, 2 lost, 0 incomplete, [\d.]+ frames/s")
 
     def test_the_summary_stands_alone_in_its_line(self):
         text = self.on_a_terminal(*LONGER, "-o", "out.npy", stdout=True)

@@ -36,6 +36,26 @@ class FootageWarningsTest(ProgramTest):
             self.assertEqual(self.said_of_png(colour, (), "--transfer", transfer), "")
         self.assertEqual(self.said_of_png(colour, [(b"gAMA", struct.pack(">I", 100000))]), "")
 
+    def test_a_replay_says_the_same(self):
+        def said(footage, verb="record"):
+            done = self.run_program("capture", verb, f"replay:{footage}", "-o", "clip", "--set",
+                                    "AcquisitionFrameRate=0", "--force", "-q")
+            self.assertEqual(done.returncode, OK, done.stderr)
+            return done.stderr
+
+        colour = self.write_png("f.png", np.full((8, 8, 3), 99))
+        for verb in ("record", "live"):
+            self.assertIn("stipple: f.png: looks gamma-coded, and is played as linear light; \"emulate\" and "
+                          "\"capture serve\" have --transfer\n", said(colour, verb))
+        self.assertIn("its alpha channel is left out", said(self.write_png("a.png", np.full((8, 8, 2), 99))))
+        for number in (0, 1, 3):
+            self.write_png(f"gap/f{number}.png", np.zeros((8, 8)))
+        self.assertEqual(said("gap"), "stipple: gap/f2.png is missing: the frames after it move one slot "
+                         "forward\n")
+        dn = self.write_array("dn.npy", np.full((4, 8, 8), 117.0))
+        self.assertEqual(said(dn).count("the mean light is 117"), 1)
+        self.assertEqual(said(self.write_flat("light.npy")), "")
+
     def test_alpha(self):
         for channels in (2, 4):
             self.assertEqual(self.said_of_png(np.full((8, 8, channels), 99), (), "--transfer", "srgb"),

@@ -124,8 +124,8 @@ class PreviewTest(LiveTest):
 
     def test_what_cannot_be_is_refused(self):
         self.write_array("light.npy", moving_light(4))
-        live = ("capture", "live", "replay:light.npy", "-o", "clip.npy", "--preview")
-        self.fails(USAGE, ["neither a .png nor a .npy"], *live, "now.jpg")
+        live = ("capture", "live", "replay:light.npy", "-o", "clip.stipple", "--preview")
+        self.fails(USAGE, ["a preview is a .png or a .npy"], *live, "now.jpg")
         self.fails(USAGE, ["--preview-size"], *live, "now.png", "--preview-size", "big")
         for option, value in (("--preview-size", "8x8"), ("--preview-method", "fast")):
             self.fails(USAGE, [option, "add --preview FILE"], *live[:-1], option, value)
@@ -134,7 +134,8 @@ class PreviewTest(LiveTest):
                 self.fails(USAGE, [option[0], "a replay has no camera"], "capture", verb,
                            "replay:light.npy", "-o", "x", *option)
         self.fails(INPUT, ["nowhere"], *live, "nowhere/now.png")
-        self.fails(USAGE, ["clip.npy is the output of --output too"], *live, "./clip.npy")
+        self.fails(USAGE, ["clip.npy is the output of --output too"], *live[:4], "clip.npy", "--preview",
+                   "./clip.npy")
         self.fails(USAGE, ["light.npy"], *live, "light.npy")
 
 

@@ -36,8 +36,8 @@ class UsageTest(ProgramTest):
                               *line)
             self.assertNotIn("required", said)
         self.fails(USAGE, ["-v is no option of stipple; did you mean -V?"], "-v")
-        self.fails(USAGE, ['--threads is no option of stipple; write it behind "stipple info"'],
-                   "--threads", 3, "info", "a")
+        self.fails(USAGE, ['--threads is no option of stipple; write it behind "stipple synth"'],
+                   "--threads", 3, "synth", "pan", "-o", "x")
 
     def test_words_that_are_too_many_are_named_in_their_order(self):
         self.fails(USAGE, ['"more" is more than stipple info takes'], "info", "a", "more", "words")

@@ -1,5 +1,6 @@
 """Outputs appear complete or not at all, and never in the place of something else."""
 
+import os
 import resource
 import unittest
 
@@ -69,6 +70,14 @@ class OutputsTest(ProgramTest):
         (self.folder / "out/thesis.txt").touch()
         self.fails(INPUT, ["out", "thesis.txt"], *SYNTH, "out", "--force")
 
+    def test_an_empty_folder_is_filled(self):
+        (self.folder / "out").mkdir()
+        self.succeed(*SYNTH, "out")
+        self.assertEqual(self.names(), ["out", *(f"out/frame_000{slot}.exr" for slot in range(3))])
+        (self.folder / "shown").mkdir()
+        self.succeed("demo", "--frames", 6, "--size", "16x16", "-o", "shown")
+        self.fails(INPUT, ["shown", "exists already"], "demo", "--frames", 6, "-o", "shown")
+
     def test_an_output_in_a_folder_that_does_not_exist(self):
         self.fails(INPUT, ["nowhere/out.npy", "nowhere"], *SYNTH, "nowhere/out.npy")
 
@@ -85,8 +94,33 @@ class OutputsTest(ProgramTest):
                          "--method", "naive")
             (self.folder / "light.npy").unlink()
 
-    def test_an_output_of_unknown_kind(self):
-        self.fails(INPUT, ["out.avi", ".npy", ".mp4"], *SYNTH, "out.avi")
+    def test_an_output_under_the_name_of_another_kind(self):
+        light = self.write_flat("light.npy")
+        emulate = ["emulate", light, "-o"]
+        make = ["schedule", "make", "random", "-o"]
+        record = ["capture", "record", f"replay:{light}", "-o"]
+        for option, kind, line in (
+                ("--output", "a video is a .npy, .mp4 or .mkv, or by a name without", [*SYNTH, "out.avi"]),
+                ("--output", "a sample stream is a .stipple, or", [*emulate, "out.mp4"]),
+                ("--output", "a sample stream is a .stipple, or", [*emulate, "out.npy", "--force"]),
+                ("--truth", "a video is", [*emulate, "out", "--truth", "out.stipple"]),
+                ("--vcd", "a waveform is a .vcd", ["timing", "--sensor", "vita", "--vcd", "out.txt"]),
+                ("--output", "a sample stream is", ["capture", "live", f"replay:{light}", "-o", "out.strec"]),
+                ("--output", "a recording is a .strec, or", [*record, "out.mp4"]),
+                ("--output", "a sample stream is", [*record, "out.strec", "--coded"]),
+                ("--output", "a video is", ["capture", "replay", "a.strec", "-o", "out.strec"]),
+                ("--output", "a schedule is a .toml, or", [*make, "out.txt"]),
+                ("--output", "a schedule is a .toml", ["schedule", "import", light, "-o", "out.npz"]),
+                ("--output", "a memory image is a .mem or a .hex", ["schedule", "compile", "random", "-o", "out"]),
+                ("--output", "a diagram is a .png or a .svg", ["schedule", "show", "random", "-o", "out.pdf"])):
+            self.fails(USAGE, [f"{option}: out", kind], *line)
+        self.succeed(*emulate, "upper.STIPPLE")
+        self.succeed(*emulate, "bare")
+        self.succeed(*make, "schedule", "--size", "8x8")
+        self.succeed("schedule", "compile", "tiled", "-o", "tiled.MEM")
+        self.succeed(*emulate, "compiled.stipple", "--schedule", "tiled.MEM")
+        os.mkfifo(self.folder / "pipe.mp4")
+        self.fails(INPUT, ["pipe.mp4", "exists already"], *emulate, "pipe.mp4")
 
     def test_a_full_disk_is_said_and_leaves_nothing(self):
         for name in ("out", "out.npy", "out.mp4"):

@@ -167,11 +167,23 @@ class PipelineTest(ProgramTest):
         self.assertIsNone(figures["psnr_db"], "no difference is left; JSON has no infinity")
         self.assertAlmostEqual(figures["ssim"], 1)
 
+    def test_the_first_frames_alone_are_compared(self):
+        light = 0.2 + np.random.default_rng(5).random((9, 16, 16))
+        long = self.write_array("long.npy", light)
+        noisy = light + np.random.default_rng(6).normal(0, 0.01, light.shape)
+        whole = self.figures("compare", self.write_array("a.npy", noisy[:5]), self.write_array("b.npy", light[:5]))
+        self.assertEqual(self.figures("compare", "a.npy", long, "--until", 5), whole)
+        self.write_array("noisy.npy", noisy)
+        self.assertEqual(self.figures("compare", "noisy.npy", long, "--until", 5), whole)
+        self.fails(1, ["margin", "none of 5"], "compare", "a.npy", long, "--until", 5, "--margin", 3)
+
     def test_compare_refuses_videos_of_different_shape(self):
         a = self.write_flat("a.npy", slots=4)
         self.fails(1, ["b.npy", "8 x 9"], "compare", self.write_flat("b.npy", slots=4, cols=9), a)
-        self.fails(1, ["b.npy", "ends after 3 frames"], "compare",
-                   self.write_flat("b.npy", slots=3), a)
+        b = self.write_flat("b.npy", slots=3)
+        for line in ((a, b), (b, a)):
+            self.fails(1, ['b.npy: ends after 3 frames, before "a.npy" does; --until 3'], "compare", *line)
+            self.fails(1, ["b.npy: ends after 3 frames, before --until 4"], "compare", *line, "--until", 4)
         self.fails(1, ["margin", "none of 4"], "compare", a, a, "--margin", 2)
 
     def test_footage_is_turned_into_light_as_asked(self):

@@ -1,5 +1,6 @@
 """What a run that was killed leaves: how it is found, named and kept."""
 
+import os
 import signal
 import time
 import unittest
@@ -80,6 +81,8 @@ class RecoverTest(ProgramTest):
         done = self.run_program("emulate", "light.npy", "-o", "clip.stipple")
         self.assertEqual((done.returncode, done.stderr.count("\n")), (0, 1), done.stderr)
         self.assertIn(f"a run that was killed left {left}", done.stderr)
+        done = self.run_program("emulate", "light.npy", "-o", "b.stipple", "--truth", "film.npy")
+        self.assertIn("a run that was killed left .film.999999999.partial.npy;", done.stderr)
         synth = ("synth", "pan", "--size", "8x8", "--frames", 2, "-q", "-o")
         done = self.run_program(*synth, "frames/")
         self.assertIn("a run that was killed left .frames.999999998.partial;", done.stderr)
@@ -102,6 +105,11 @@ class RecoverTest(ProgramTest):
                 break
             time.sleep(0.01)
         self.assertEqual(self.figures("recover")["left"], [])
+        old = self.folder / f".old.{program.pid}.partial.npy"  # of a process that had that number before
+        old.write_bytes(b"half")
+        os.utime(old, (1e9, 1e9))
+        self.assertEqual([one["output"] for one in self.figures("recover")["left"]], ["old.npy"])
+        old.unlink()
         self.assertIn("no run that was killed", self.succeed("recover"))
         done = self.run_program("recover", name)
         self.assertEqual(done.returncode, INPUT)

@@ -1,5 +1,6 @@
 """stipple schedule: making, showing, checking and importing schedules."""
 
+import re
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -51,11 +52,27 @@ class ShowTest(ProgramTest):
             'kind = "code"\nname = "it\'s"\ntile_cols = 2\nperiod_slots = 6\ncode = ["AaaA..", "ABaBab"]\n')
         lines = self.succeed("schedule", "show", "mine.toml", "--pixels", "2", "--slots",
                              "12").splitlines()
-        self.assertEqual(lines[0].split()[-1], "--31..--31..")
-        self.assertEqual(lines[1].split()[-1], "-1-=32-1-=32")
+        self.assertEqual(lines[0], "pixel, store  0   4   8")
+        self.assertEqual([line.split()[-2:] for line in lines[1:5]], [
+            ["1", "--31..--31.."], ["2", "............"], ["1", "-.-.3.-.-.3."], ["2", ".1.-.2.1.-.2"]])
+        self.assertEqual([line[:10].strip() for line in lines[1:5]], ["(0, 0)", "", "(0, 1)", ""])
+        self.assertIn("1 to 9 read at its end, after so many open slots", lines[5])
         self.assertIn("2 charge stores", "\n".join(lines))
         self.succeed("schedule", "show", "mine.toml", "-o", "mine.svg")
-        self.assertIn("Schedule it's", (self.folder / "mine.svg").read_text())
+        picture = (self.folder / "mine.svg").read_text()
+        for words in ("Schedule it's", "(0, 1)  1", ">read<", "charge store"):
+            self.assertIn(words, picture)
+
+    def test_the_ruler_stands_over_the_slots(self):
+        for slots, every in ((24, 4), (64, 4), (1024, 8)):
+            ruler, line = self.succeed("schedule", "show", "full4x", "--pixels", 1, "--slots",
+                                       slots).splitlines()[:2]
+            first = line.index(")") + 3
+            self.assertEqual(len(line), first + slots)
+            for number in re.finditer(r"\d+", ruler):
+                self.assertEqual(number.start() - first, int(number.group()))
+                self.assertEqual(int(number.group()) % every, 0)
+            self.assertEqual(len(ruler.split()), 1 + -(-slots // every))
 
     def test_pictures(self):
         for name in ("random", "two_bucket", "global_flutter", "rolling"):
@@ -67,7 +84,7 @@ class ShowTest(ProgramTest):
         self.assertTrue((self.folder / "random.png").read_bytes().startswith(b"\x89PNG"))
 
     def test_a_picture_of_another_kind_is_refused(self):
-        self.fails(INPUT, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
+        self.fails(USAGE, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
 
 
 class CheckTest(ProgramTest):
@@ -107,6 +124,16 @@ class ImportTest(ProgramTest):
             self.assertEqual((figures["least_exposures"], figures["most_exposures"]), (0, 1))
             codes.add((self.folder / "masks.toml").read_text())
         self.assertEqual(len(codes), 1)
+
+    def test_masks_that_are_stored_as_pictures(self):
+        masks = np.random.default_rng(4).random((4, 8, 8)) < 0.5
+        for name, values in (("one", masks), ("white", 255 * masks)):
+            self.write_array("masks.npy", values, np.uint8)
+            self.succeed("schedule", "import", "masks.npy", "-o", f"{name}.toml", "--name", "masks")
+        self.assertEqual((self.folder / "one.toml").read_text(), (self.folder / "white.toml").read_text())
+        mixed = np.where(masks, 255, 0)
+        mixed[2, 3, 4] = 1
+        self.refuse(["pixel (3, 4) slot 2: 1 is neither 0 nor 255"], mixed)
 
     def test_masks_sample_what_they_let_through(self):
         rng = np.random.default_rng(3)

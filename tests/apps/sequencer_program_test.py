@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 
-from program import INPUT, ProgramTest, project_path
+from program import INPUT, USAGE, ProgramTest, project_path
 
 TILES = {"tiled": ["--set", "tile_rows=5", "--set", "tile_cols=7"],
          "full1x": [], "pixel_flutter": [], "two_bucket": []}
@@ -102,7 +102,7 @@ class SequencerProgramTest(ProgramTest):
         self.compile("tiled")
         self.fails(INPUT, ["tiled.mem", "exists already"], "schedule", "compile", "tiled", "-o",
                    "tiled.mem")
-        self.fails(INPUT, ["out.txt", ".mem"], "schedule", "compile", "tiled", "-o", "out.txt")
+        self.fails(USAGE, ["out.txt", ".mem"], "schedule", "compile", "tiled", "-o", "out.txt")
         self.write_flat("light.npy")
         emulate = ["emulate", "light.npy", "-o", "clip.stipple", "--schedule"]
         self.fails(INPUT, ["missing.mem"], *emulate, "missing.mem")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import struct
@@ -70,6 +71,33 @@ class ServeTest(ProgramTest):
         self.assertEqual(server.returncode, STOPPED, errors)
         self.assertNotIn("shorter", errors)
         self.assertEqual(json.loads((self.folder / "counts.json").read_text())["frames"], 0)
+
+    def test_clients_are_told_as_they_come_and_go_and_frames_at_the_end(self):
+        for quiet in ([], ["-q"]):
+            ServeTest.count += 1
+            address = own_address(ServeTest.count)
+            server = self.start_program("capture", "serve", self.scene(), "--address", address, "--fps",
+                                        100, *quiet, stdout=subprocess.PIPE)
+            self.addCleanup(self.stop, server)
+            self.assertIn("READY", server.stdout.readline())
+            self.record(address, "clip.strec", "--frames", 6, "--force")
+            time.sleep(0.5)
+            server.send_signal(signal.SIGINT)
+            text, errors = server.communicate(timeout=60)
+            if quiet:
+                self.assertEqual((text, "127." in errors), ("", False), errors)
+                continue
+            told = re.findall(r"^stipple: (127[.\d]+:\d+) (controls the camera|has gone, \d+ frames sent)$",
+                              errors, re.MULTILINE)
+            self.assertEqual([what[:8] for _, what in told], ["controls", "has gone"] * (len(told) // 2))
+            self.assertGreaterEqual(int(told[-1][1].split()[2]), 6)
+            self.assertRegex(text, r"^\d+ frames in 1 start, \d+ late; \d+ packets, \d+ sent again\n$")
+
+    def test_cameras_differ_in_their_serial_numbers(self):
+        scene = self.scene()
+        for address in (self.serve(scene), self.serve(scene)):
+            self.assertIn(f"DeviceSerialNumber = {address}", self.tool(
+                "arv-tool-0.8", "-a", address, "control", "DeviceSerialNumber"))
 
     def record(self, address, output, *arguments):
         done = self.run_program("capture", "record", "gige:" + address, "-o", output, *arguments)
@@ -173,7 +201,7 @@ class ServeTest(ProgramTest):
     def test_a_coded_stream_is_not_taken_for_pictures(self):
         address = self.serve(self.scene(), "--mode", "coded")
         for verb in ("live", "record"):
-            done = self.run_program("capture", verb, "gige:" + address, "-o", "x.out", "--frames", 5)
+            done = self.run_program("capture", verb, "gige:" + address, "-o", "x", "--frames", 5)
             if BUILT_WITHOUT in done.stderr:
                 self.skipTest(BUILT_WITHOUT)
             self.assertEqual(done.returncode, INPUT, done.stderr)
@@ -280,7 +308,7 @@ class ServeTest(ProgramTest):
     def test_options_of_another_mode_are_refused(self):
         serve = ("capture", "serve", self.scene())
         for option, value in (("--sensor", "ideal"), ("--schedule", "tiled"), ("--seed", 3),
-                              ("--set", "bit_depth=8"), ("--overrun", "stretch")):
+                              ("--set", "bit_depth=8"), ("--overrun", "stretch"), ("--threads", 1)):
             self.fails(USAGE, [option, "--mode coded"], *serve, option, value)
         self.fails(USAGE, ["--format", "--mode frames"], *serve, "--mode", "coded", "--format",
                    "Mono8")

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
+
 #include "core/pending_output.h"
 #include "tests/core/temporary_folder.h"
 
@@ -46,6 +48,15 @@ TEST(PartialOutputTest, ThoseOfAFolderAreListedAndTellWhoIsAtWork) {
     EXPECT_EQ(partial_of(folder / "left.npy"), found[0].path);
     EXPECT_FALSE(partial_of(folder / "whole.npy"));
     EXPECT_TRUE(partial_outputs(folder / "missing").empty());
+}
+
+TEST(PartialOutputTest, AProcessThatIsYoungerThanTheFileOnlyHasItsNumber) {
+    const TemporaryFolder folder;
+    const fs::path file = partial_path(folder / "old.npy", getpid());
+    write_text(file, "half");
+    EXPECT_TRUE(partial_output(file)->running());
+    fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(24 * 365));
+    EXPECT_FALSE(partial_output(file)->running());
 }
 
 TEST(PartialOutputTest, ANameThatIsTakenIsNotReplaced) {
