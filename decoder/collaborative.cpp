@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/censored_samples.h"
 #include "decoder/collaborative_filter.h"
 #include "decoder/data_prox.h"
 #include "decoder/measurements.h"
@@ -31,12 +32,12 @@ class CollaborativeSolver {
         : measurements_(measurements),
           noise_(noise),
           options_(options),
-          offset_(std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
-                             options.light_offset, kMaxOffset)),
+          scale_(scale_for(noise, options)),
           last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
                                  options.least_sigma, kMaxSigma)),
           first_sigma_(std::max(options.first_sigma, last_sigma_)),
           x_(x),
+          censored_(measurements, noise),
           sampled_(measurements.sum),
           noisy_(x.slots(), x.shape()),
           filtered_(x.slots(), x.shape()),
@@ -55,10 +56,11 @@ class CollaborativeSolver {
         if (!last) extrapolate();
         for_each_slot([&](int slot) {
             restore_light(std::as_const(last ? pilot_ : filtered_).frame(slot), shape().planes,
-                          offset_, x_.frame(slot));
+                          scale_, x_.frame(slot));
         });
         refresh_variances(measurements_, noise_, x_.data());
         if (last) return;
+        censored_.expect(x_.data(), sampled_);
         feed_back();
         draw_to_samples(sigma);
     }
@@ -66,6 +68,13 @@ class CollaborativeSolver {
 
   private:
     [[nodiscard]] FrameShape shape() const { return x_.shape(); }
+
+    static RootScale scale_for(const SampleNoise& noise, const CollaborativeOptions& options) {
+        const float offset =
+            std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
+                       options.light_offset, kMaxOffset);
+        return {.offset = offset, .least = std::max(options.least_light, -offset)};
+    }
 
     template <typename Body>
     void for_each_slot(const Body& body) {
@@ -85,7 +94,7 @@ class CollaborativeSolver {
             std::min(shape().rows, shape().cols) >= kMinMotionSide)
             motion_ = estimate_motion(x_, {});
         for_each_slot([&](int slot) {
-            stabilise(std::as_const(x_).frame(slot), shape().planes, offset_, noisy_.frame(slot));
+            stabilise(std::as_const(x_).frame(slot), shape().planes, scale_, noisy_.frame(slot));
         });
         if (iteration == 0) pilot_ = noisy_;
         if (iteration % options_.match_every != 0) return;
@@ -136,7 +145,7 @@ class CollaborativeSolver {
             for (std::size_t i = 0; i < pixels; ++i) {
                 float sum = 0;
                 for (std::size_t site = i; site < light.size(); site += pixels) sum += light[site];
-                step_[index(slot) * pixels + i] = share * sum + sigma * sigma * offset_;
+                step_[index(slot) * pixels + i] = share * sum + sigma * sigma * scale_.offset;
             }
         });
         parallel_for(0, static_cast<int>(runs_.size()),
@@ -146,10 +155,11 @@ class CollaborativeSolver {
     Measurements& measurements_;
     const SampleNoise& noise_;
     const CollaborativeOptions& options_;
-    float offset_;
+    RootScale scale_;
     float last_sigma_;
     float first_sigma_;
     FluxVideo& x_;
+    CensoredSamples censored_;
     std::vector<float> sampled_;  ///< sums of the samples, without feedback
     FluxVideo noisy_;
     FluxVideo filtered_;

@@ -41,6 +41,7 @@ struct CollaborativeOptions {
     /// Flux that is added before the square root, at least; more where read noise is larger.
     float light_offset = 0.002F;
     float offset_slots = 32;  ///< of an exposure whose read noise sets that offset
+    float least_light = 0;    ///< flux; what noise makes less counts as that, at least -offset
     /// Share of the samples' residuals that is added to them, and what is kept of that in the next
     /// iteration.
     float feedback = 0.25F;

@@ -107,6 +107,7 @@ void read_options(Config& config, CollaborativeOptions& best) {
     read_number(config, "last_noise", 0, 100, best.last_noise);
     read_number(config, "least_sigma", 1e-3, 10, best.least_sigma);
     read_number(config, "light_offset", 1e-4, 1e3, best.light_offset);
+    read_number(config, "least_light", -10, 0, best.least_light);
     read_number(config, "feedback", 0, 2, best.feedback);
     read_number(config, "feedback_kept", 0, 1, best.feedback_kept);
     read_number(config, "momentum", 0, 1, best.momentum);

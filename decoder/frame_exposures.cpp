@@ -1,5 +1,6 @@
 #include "decoder/frame_exposures.h"
 #include "decoder/measurements.h"
+#include "decoder/sampling_operator.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -119,9 +120,9 @@ Measurements measurements_of_frames(const Measurements& measurements,
         for (std::size_t site = 0; site < sites; ++site) {
             const std::uint8_t state = measurements.state[from + site];
             if ((state & Measurements::kLast) == 0) continue;
-            result.state[to + site] =
-                static_cast<std::uint8_t>(Measurements::kOpen | Measurements::kFirst |
-                                          Measurements::kLast | (state & Measurements::kSaturated));
+            result.state[to + site] = static_cast<std::uint8_t>(
+                Measurements::kOpen | Measurements::kFirst | Measurements::kLast |
+                (state & (Measurements::kSaturated | Measurements::kZero)));
             result.sum[to + site] = measurements.sum[from + site] / n;
             result.dark_variance[to + site] =
                 (own_noise ? measurements.dark_variance[from + site] : noise.variance(0)) / (n * n);
@@ -131,6 +132,23 @@ Measurements measurements_of_frames(const Measurements& measurements,
         }
     }
     return result;
+}
+
+void add_what_frames_lack(const Measurements& measurements,
+                          std::span<const FrameExposure> exposures, const FluxVideo& frames,
+                          FluxVideo& x) {
+    const std::size_t sites = measurements.shape.sites();
+    std::vector<float> lack(measurements.voxels());
+    sample(measurements, x.data(), lack);
+    for (std::size_t k = 0; k < exposures.size(); ++k) {
+        const auto n = static_cast<float>(exposures[k].open_slots);
+        const auto frame = frames.frame(static_cast<int>(k));
+        float* const light = &lack[index(exposures[k].last_slot) * sites];
+        for (std::size_t site = 0; site < sites; ++site)
+            light[site] = frame[site] - light[site] / n;
+    }
+    spread(measurements, lack, lack);
+    for (std::size_t i = 0; i < x.voxels(); ++i) x.data()[i] += lack[i];
 }
 
 std::vector<float> centre_slots(std::span<const FrameExposure> exposures) {

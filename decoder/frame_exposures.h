@@ -31,6 +31,12 @@ struct FrameExposure {
                                                   std::span<const FrameExposure> exposures,
                                                   const SampleNoise& noise);
 
+/// Adds to the open slots of each exposure what their mean lacks of its frame: what lies between
+/// frames that show the mean of several slots each is that of both, and so blurred twice.
+void add_what_frames_lack(const Measurements& measurements,
+                          std::span<const FrameExposure> exposures, const FluxVideo& frames,
+                          FluxVideo& x);
+
 [[nodiscard]] std::vector<float> centre_slots(std::span<const FrameExposure> exposures);
 
 /// The noise of a frame as light per slot.

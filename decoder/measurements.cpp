@@ -78,6 +78,7 @@ class Collector {
         out_.state[first_voxel] |= Measurements::kFirst;
         out_.state[last_voxel] |= Measurements::kLast;
         if (response.saturated(dn)) out_.state[last_voxel] |= Measurements::kSaturated;
+        if (dn == 0) out_.state[last_voxel] |= Measurements::kZero;
         const int open_slots = std::popcount(span.open_slots);
         out_.sum[last_voxel] = response.light(dn, open_slots);
         out_.variance[last_voxel] = response.noise().variance(out_.sum[last_voxel]);

@@ -8,6 +8,7 @@
 #include "core/light.h"
 #include "core/parallel.h"
 #include "decoder/box_blur.h"
+#include "decoder/censored_samples.h"
 #include "decoder/measurements.h"
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"
@@ -17,7 +18,7 @@
 namespace stipple {
 namespace {
 
-constexpr float kMinStep = 0.1F;  // of the step at `step_flux`
+constexpr float kMinStep = 0.05F;  // of the step at `step_flux`
 constexpr float kMaxStep = 4;
 
 std::size_t index(int value) {
@@ -122,6 +123,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     WorkCount work(options, checkpoint);
     FluxVideo x = nearest_samples(measurements);
     const PresumedSamples presumed(measurements, x, noise);
+    CensoredSamples censored(measurements, noise);
     TotalVariationSolver solver(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
@@ -134,6 +136,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
     for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {
         refresh_variances(measurements, noise, x.data());
+        censored.expect(x.data());
         const bool last = round + 1 == options.rounds;
         auto motion = estimate_motion(x, motion_options(round, last));
         work.add_motion();

@@ -30,7 +30,8 @@ double saturation_dn(const Calibration& c) {
 }  // namespace
 
 SampleNoise::SampleNoise(const Calibration& calibration)
-    : per_unit_(static_cast<float>(1 / calibration.electrons_per_unit)) {
+    : per_unit_(static_cast<float>(1 / calibration.electrons_per_unit)),
+      one_dn_(static_cast<float>(calibration.gain_e_per_dn / calibration.electrons_per_unit)) {
     const double read = calibration.read_noise_e / calibration.electrons_per_unit;
     const double quantum = calibration.gain_e_per_dn / calibration.electrons_per_unit;
     constant_ = static_cast<float>(read * read + quantum * quantum / 12);

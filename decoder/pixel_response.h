@@ -20,8 +20,12 @@ class SampleNoise {
     /// What a unit of light adds to the variance: 1 / r.
     [[nodiscard]] float per_light() const { return per_unit_; }
 
+    /// Light of one DN.
+    [[nodiscard]] float one_dn() const { return one_dn_; }
+
   private:
     float per_unit_;
+    float one_dn_;
     float constant_;
 };
 

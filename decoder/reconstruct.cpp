@@ -186,10 +186,11 @@ Block decode_by_prior(Measurements& measurements, const SampleNoise& noise,
                : decode_collaborative(measurements, noise, options.best, checkpoint);
 }
 
-/// A frame's one exposure has all its read noise, and no other sample says what the filter has
-/// taken.
+/// A frame's one exposure has all its read noise, most of it below 0 where it is dark, and no other
+/// sample says what the filter has taken.
 DecodeOptions options_of_frames(DecodeOptions options) {
     options.best.offset_slots = 1;
+    options.best.least_light = -1;
     options.best.feedback = 0;
     return options;
 }
@@ -211,10 +212,12 @@ std::optional<FluxVideo> decode_block(Measurements measurements, const Calibrati
     const SampleNoise noise(calibration);
     if (const auto exposures = frame_exposures(measurements)) {
         Measurements frames = measurements_of_frames(measurements, *exposures, noise);
-        const auto x = decode_by_prior(frames, noise_of_frames(calibration, *exposures),
-                                       options_of_frames(options), checkpoint);
-        if (!x) return {};
-        return interpolate_frames(*x, centre_slots(*exposures), measurements.slots);
+        const auto lights = decode_by_prior(frames, noise_of_frames(calibration, *exposures),
+                                            options_of_frames(options), checkpoint);
+        if (!lights) return {};
+        FluxVideo x = interpolate_frames(*lights, centre_slots(*exposures), measurements.slots);
+        add_what_frames_lack(measurements, *exposures, *lights, x);
+        return x;
     }
     return decode_by_prior(measurements, noise, options, checkpoint);
 }

@@ -17,22 +17,22 @@ PlaneTriple planes_of(std::span<float> frame) {
 
 }  // namespace
 
-void stabilise(std::span<const float> light, int planes, float offset,
+void stabilise(std::span<const float> light, int planes, RootScale scale,
                std::span<float> stabilised) {
     assert(stabilised.size() == light.size());
     for (std::size_t i = 0; i < light.size(); ++i)
-        stabilised[i] = 2 * std::sqrt(std::max(light[i], 0.0F) + offset);
+        stabilised[i] = 2 * std::sqrt(std::max(light[i], scale.least) + scale.offset);
     if (planes == 3) to_opponents(light.size() / 3, planes_of(stabilised));
 }
 
-void restore_light(std::span<const float> stabilised, int planes, float offset,
+void restore_light(std::span<const float> stabilised, int planes, RootScale scale,
                    std::span<float> light) {
     assert(stabilised.size() == light.size());
     std::ranges::copy(stabilised, light.begin());
     if (planes == 3) from_opponents(light.size() / 3, planes_of(light));
     for (float& x : light) {
         const float root = std::max(x, 0.0F);
-        x = std::max(root * root / 4 - offset, 0.0F);
+        x = std::max(root * root / 4 - scale.offset, scale.least);
     }
 }
 

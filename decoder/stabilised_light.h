@@ -8,11 +8,17 @@ namespace stipple {
 // (Anscombe 1948), then, of three planes, luma and two opponents (opponent_planes.h). Frames have
 // the order (plane, row, col).
 
-/// Light below 0 counts as 0.
-void stabilise(std::span<const float> light, int planes, float offset, std::span<float> stabilised);
+/// Light below `least` counts as that. Precondition: 0 <= -least <= offset.
+struct RootScale {
+    float offset;
+    float least = 0;
+};
 
-/// The inverse; never negative.
-void restore_light(std::span<const float> stabilised, int planes, float offset,
+void stabilise(std::span<const float> light, int planes, RootScale scale,
+               std::span<float> stabilised);
+
+/// The inverse; never below `least`.
+void restore_light(std::span<const float> stabilised, int planes, RootScale scale,
                    std::span<float> light);
 
 }  // namespace stipple

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/reconstruct.h"
+#include "readout/schedule_catalogue.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 
@@ -119,6 +120,23 @@ TEST(FrameExposuresTest, WhatRestsStaysInSlotsWithoutASample) {
             EXPECT_NEAR(x->plane(slot, 0)(24, 28), 0.73, 0.03) << slot;
             EXPECT_NEAR(x->plane(slot, 0)(4, 4), 0.02, 0.01) << slot;
         }
+    }
+}
+
+// Frames of 4 slots each; what is interpolated between them shows more than 4.
+TEST(FrameInterpolationTest, WhatFramesLackMakesTheirSlotsSumUpToThem) {
+    const FluxVideo scene = moving_texture(16, 0.5F, 1.5F);
+    const Measurements m = measure(scene, full_schedule(4, 4));
+    const auto exposures = frame_exposures(m);
+    ASSERT_TRUE(exposures);
+    const FluxVideo frames = random_video(static_cast<int>(exposures->size()), kShape, 1);
+    FluxVideo x = interpolate_frames(frames, centre_slots(*exposures), m.slots);
+    add_what_frames_lack(m, *exposures, frames, x);
+    for (std::size_t k = 0; k < exposures->size(); ++k) {
+        FluxVideo mean(1, kShape);
+        for (int slot = (*exposures)[k].first_slot; slot <= (*exposures)[k].last_slot; ++slot)
+            for (std::size_t i = 0; i < kShape.sites(); ++i) mean.data()[i] += x.frame(slot)[i] / 4;
+        EXPECT_LT(rms(mean.data(), frames.frame(static_cast<int>(k))), 1e-6) << k;
     }
 }
 
