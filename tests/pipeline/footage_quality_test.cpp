@@ -57,8 +57,8 @@ TEST_P(BestOnFootageTest, BestIsAsGoodAsTheFilterOfBeforeAndBetterThanConvention
     expect_quality(*video, DecodeMethod::kBest, GetParam());
 }
 
-// The mean over the clips, linear and after 1/2.2, where dark light counts more and blur less. Frames
-// held for the four slots that they show are what the camera gives.
+// The mean over the clips, linear and after 1/2.2, where dark light counts more and blur less.
+// Frames held for the four slots that they show are what the camera gives.
 TEST(ConventionalFootageTest, BestOnFramesOfFourSlotsIsBetterThanHoldingThem) {
     double gain_db = 0;
     double gain_gamma_db = 0;
