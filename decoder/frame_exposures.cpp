@@ -1,11 +1,12 @@
 #include "decoder/frame_exposures.h"
-#include "decoder/measurements.h"
-#include "decoder/sampling_operator.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+
+#include "decoder/measurements.h"
+#include "decoder/sampling_operator.h"
 
 namespace stipple {
 namespace {

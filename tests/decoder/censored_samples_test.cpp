@@ -15,13 +15,6 @@
 namespace stipple {
 namespace {
 
-constexpr FrameShape kSite{.rows = 1, .cols = 1, .planes = 1};
-
-const SampleNoise& noise() {
-    static const SampleNoise noise(calibration_of({}));
-    return noise;
-}
-
 // Tables of the standard normal distribution: phi(0) / Phi(0) = sqrt(2 / pi); at 1 0.24197 /
 // 0.84134, at -1 0.24197 / 0.15866. Far below, -z - 1 / z and terms of z^-3.
 TEST(CensoredSamplesTest, TheRatioIsThatOfTables) {
@@ -50,10 +43,10 @@ Measurements dark_sample() {
 // By symmetry the mean of what lies below the mean is sqrt(2 / pi) deviations away from it.
 TEST(CensoredSamplesTest, ASampleAtHalfADnIsExpectedBelow) {
     Measurements m = dark_sample();
-    CensoredSamples censored(m, noise());
-    const float half_dn = noise().one_dn() / 2;
+    CensoredSamples censored(m, paper_noise());
+    const float half_dn = paper_noise().one_dn() / 2;
     const FluxVideo x = one_voxel(half_dn);
-    refresh_variances(m, noise(), x.data());
+    refresh_variances(m, paper_noise(), x.data());
     censored.expect(x.data());
     const double deviation = std::sqrt(static_cast<double>(m.variance[0]));
     EXPECT_NEAR(m.sum[0], static_cast<double>(half_dn) - 0.79788 * deviation, 1e-4 * deviation);
@@ -62,17 +55,17 @@ TEST(CensoredSamplesTest, ASampleAtHalfADnIsExpectedBelow) {
 // What is far brighter than the sample says is not believed to have been far below.
 TEST(CensoredSamplesTest, BesideBrightThingsASampleStaysNearHalfADn) {
     Measurements m = dark_sample();
-    CensoredSamples censored(m, noise());
+    CensoredSamples censored(m, paper_noise());
     const FluxVideo x = one_voxel(1);
-    refresh_variances(m, noise(), x.data());
+    refresh_variances(m, paper_noise(), x.data());
     censored.expect(x.data());
-    EXPECT_NEAR(m.sum[0], noise().one_dn() / 2, 0.01);
+    EXPECT_NEAR(m.sum[0], paper_noise().one_dn() / 2, 0.01);
 }
 
 TEST(CensoredSamplesTest, NothingOfItStays) {
     Measurements m = dark_sample();
     {
-        CensoredSamples censored(m, noise());
+        CensoredSamples censored(m, paper_noise());
         const FluxVideo x = one_voxel(0);
         std::vector<float> copy = m.sum;
         censored.expect(x.data(), copy);

@@ -9,6 +9,9 @@
 
 namespace stipple {
 
+/// One pixel.
+inline constexpr FrameShape kSite{.rows = 1, .cols = 1, .planes = 1};
+
 /// A sample written by hand.
 struct HandSample {
     std::size_t site = 0;

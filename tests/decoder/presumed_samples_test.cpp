@@ -14,17 +14,10 @@
 namespace stipple {
 namespace {
 
-constexpr FrameShape kSite{.rows = 1, .cols = 1, .planes = 1};
-
-const SampleNoise& noise() {
-    static const SampleNoise noise(calibration_of({}));
-    return noise;
-}
-
 /// The measurements while samples are presumed.
 Measurements presumed(Measurements m) {
     const FluxVideo nearest = nearest_samples(m);
-    const PresumedSamples samples(m, nearest, noise());
+    const PresumedSamples samples(m, nearest, paper_noise());
     Measurements copy = m;
     return copy;
 }
@@ -37,7 +30,7 @@ TEST(PresumedSamplesTest, WhatRestsIsPresumedAsWellAsASampleKnowsIt) {
     for (const std::size_t slot : {1U, 2U, 3U, 5U, 6U, 7U}) {
         EXPECT_NE(m.state[slot] & Measurements::kPresumed, 0) << slot;
         EXPECT_FLOAT_EQ(m.sum[slot], 0.5F);
-        EXPECT_FLOAT_EQ(m.variance[slot], noise().variance(0.5F));
+        EXPECT_FLOAT_EQ(m.variance[slot], paper_noise().variance(0.5F));
     }
     EXPECT_EQ(m.state[4] & Measurements::kPresumed, 0);
 }
@@ -123,7 +116,7 @@ TEST(PresumedSamplesTest, NothingOfItStays) {
         Measurements m = before;
         const FluxVideo nearest = nearest_samples(m);
         {
-            const PresumedSamples samples(m, nearest, noise());
+            const PresumedSamples samples(m, nearest, paper_noise());
             EXPECT_NE(m.sum, before.sum);
             EXPECT_TRUE(std::ranges::any_of(
                 m.state, [](auto s) { return (s & Measurements::kPresumed) != 0; }));

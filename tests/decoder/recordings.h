@@ -8,10 +8,17 @@
 
 #include "core/flux_video.h"
 #include "decoder/measurements.h"
+#include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
+
+/// The noise of the sensor `paper`.
+inline const SampleNoise& paper_noise() {
+    static const SampleNoise noise(calibration_of({}));
+    return noise;
+}
 
 /// A recording in memory.
 struct Recorded {
