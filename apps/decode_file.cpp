@@ -24,6 +24,7 @@
 #include "core/error.h"
 #include "core/frame_writer.h"
 #include "core/parallel.h"
+#include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 

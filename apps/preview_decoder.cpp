@@ -10,6 +10,7 @@
 #include "apps/side_by_side.h"
 #include "core/frame_writer.h"
 #include "core/tone_map.h"
+#include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 
@@ -24,8 +25,8 @@ constexpr double kNaiveVoxels = 4 * kFastVoxels;
 /// Fewer slots give motion too little to go by.
 constexpr int kLeastSlots = 12;
 
-DecodeOptions options_of(const PreviewArguments& arguments) {
-    DecodeOptions options{.method = decode_method_from_name(arguments.method)};
+DecodeOptions options_of(DecodeMethod method) {
+    DecodeOptions options{.method = method};
     options.fast.rounds = 1;
     options.fast.last_iterations = 10;
     options.fast.mosaic.last_iterations = 20;
@@ -101,7 +102,7 @@ double PreviewFrame::mean_light() const {
 
 PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewArguments& arguments)
     : header_(std::move(header)),
-      options_(options_of(arguments)),
+      method_(decode_method_from_name(arguments.method)),
       region_(region_of(header_, arguments)) {}
 
 std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
@@ -115,7 +116,7 @@ std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
                        .light = {},
                        .too_bright = too_bright_pixels(measurements)};
     const auto video =
-        decode_block(std::move(measurements), header_.calibration, options_, checkpoint);
+        decode_block(std::move(measurements), header_.calibration, options_of(method_), checkpoint);
     if (!video) return std::nullopt;
     const auto shown = video->frame(shown_slot());
     frame.light.resize(shown.size());

@@ -8,7 +8,7 @@
 
 #include "apps/preview_arguments.h"
 #include "decoder/checkpoint.h"
-#include "decoder/decode_options.h"
+#include "decoder/decode_method.h"
 #include "decoder/measurements.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
@@ -46,7 +46,7 @@ class PreviewDecoder {
 
   private:
     StreamHeader header_;
-    DecodeOptions options_;
+    DecodeMethod method_;
     VideoWindow region_;  ///< of the first slots
 };
 

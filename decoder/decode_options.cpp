@@ -8,17 +8,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/joined.h"
 
 namespace stipple {
 namespace {
-
-constexpr NamedDecodeMethod kMethods[] = {
-    {"naive", DecodeMethod::kNaive},
-    {"fast", DecodeMethod::kFast},
-    {"best", DecodeMethod::kBest},
-    {"portz2013", DecodeMethod::kPortz2013},
-};
 
 void read_number(Config& config, std::string_view key, double least, double most, float& value) {
     value = static_cast<float>(config.number(key, static_cast<double>(value), least, most));
@@ -120,19 +112,6 @@ void read_options(Config& config, CollaborativeOptions& best) {
 }
 
 }  // namespace
-
-std::span<const NamedDecodeMethod> decode_methods() {
-    return kMethods;
-}
-
-DecodeMethod decode_method_from_name(std::string_view name) {
-    std::vector<std::string> names;
-    for (const NamedDecodeMethod& known : kMethods) {
-        if (known.name == name) return known.method;
-        names.emplace_back(known.name);
-    }
-    throw InputError("decoding method", fmt::format("\"{}\" is none of {}", name, joined(names)));
-}
 
 DecodeOptions read_decode_options(DecodeMethod method, Config& config) {
     DecodeOptions options{.method = method};

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "decoder/block_partition.h"
 #include "decoder/collaborative.h"
+#include "decoder/decode_options.h"
 #include "decoder/defects.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/frame_interpolation.h"
@@ -251,6 +252,11 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return report;
+}
+
+DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+                    const DecodeMonitor& monitor) {
+    return decode(reader, DecodeOptions{.method = method}, sink, monitor);
 }
 
 }  // namespace stipple

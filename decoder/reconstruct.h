@@ -7,12 +7,13 @@
 
 #include "core/flux_video.h"
 #include "decoder/checkpoint.h"
-#include "decoder/decode_options.h"
+#include "decoder/decode_method.h"
 #include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
 
+struct DecodeOptions;
 struct Measurements;
 
 /// Takes the frames of a decoded video in slot order; order (plane, row, col), units of
@@ -43,11 +44,9 @@ DecodeReport decode(
     const DecodeMonitor& monitor = [](double) { return true; });
 
 /// With the defaults of a method.
-inline DecodeReport decode(
+DecodeReport decode(
     StreamReader& reader, DecodeMethod method, const FrameSink& sink,
-    const DecodeMonitor& monitor = [](double) { return true; }) {
-    return decode(reader, DecodeOptions{.method = method}, sink, monitor);
-}
+    const DecodeMonitor& monitor = [](double) { return true; });
 
 /// Decodes one block as `decode` does; the result may be slightly negative. Nothing if `checkpoint`
 /// has stopped it.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 
 namespace stipple {
 namespace {

@@ -7,10 +7,12 @@
 
 #include "core/error.h"
 #include "readout/column_addressing.h"
+#include "readout/full_schedule.h"
 #include "readout/hardware_tiled.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/random_codes.h"
+#include "readout/tiled_schedule.h"
 
 namespace stipple {
 namespace {
@@ -244,15 +246,6 @@ NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed
 
 NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed) {
     return read_schedule(config, shape, seed, ColumnAddressing{});
-}
-
-ExposureSchedule full_schedule(int open_slots, int period_slots) {
-    if (open_slots < 1 || open_slots > kLongestExposure || open_slots > period_slots)
-        throw InputError("exposure schedule",
-                         fmt::format("{} open slots in a period of {}: needs 1 to {} open slots "
-                                     "and a period not shorter",
-                                     open_slots, period_slots, kLongestExposure));
-    return {1, 1, period_slots, {0, 1}, {{0, open_without_gap(open_slots)}}};
 }
 
 }  // namespace stipple

@@ -1,11 +1,11 @@
-// tiled_schedule: a random tile whose pixels are drawn again until the slots are even.
+#include "readout/tiled_schedule.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
 #include "readout/schedules/draws.h"
 
 namespace stipple {

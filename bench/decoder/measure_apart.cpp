@@ -13,6 +13,7 @@
 #include "core/footage_reader.h"
 #include "core/npy_writer.h"
 #include "core/parallel.h"
+#include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"

@@ -14,7 +14,7 @@
 #include "decoder/schedule_shift.h"
 #include "metrics/video_quality.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"

@@ -10,7 +10,8 @@
 #include "core/parallel.h"
 #include "readout/coded_sensor.h"
 #include "readout/column_adc.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
+#include "readout/tiled_schedule.h"
 #include "scenes/scene.h"
 
 namespace stipple {

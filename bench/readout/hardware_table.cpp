@@ -14,6 +14,7 @@
 #include "core/config.h"
 #include "readout/hardware_tiled.h"
 #include "readout/readout_rate.h"
+#include "readout/tiled_schedule.h"
 #include "tests/pipeline/clip.h"
 #include "tests/readout/sensor_timing.h"
 

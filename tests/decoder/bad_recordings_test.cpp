@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "core/error.h"
+#include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
 #include "decoder/schedule_shift.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
+#include "readout/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/decoder/recordings.h"

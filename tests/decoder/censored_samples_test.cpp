@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decoder/decode_options.h"
 #include "decoder/pixel_response.h"
 #include "decoder/reconstruct.h"
 #include "decoder/sampling_operator.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 

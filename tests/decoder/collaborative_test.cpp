@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "decoder/pixel_response.h"
+#include "readout/coded_sensor.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

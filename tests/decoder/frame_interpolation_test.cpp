@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/decode_options.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/reconstruct.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 

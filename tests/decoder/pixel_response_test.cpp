@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
 #include "readout/schedule_catalogue.h"
 #include "tests/decoder/recordings.h"

@@ -7,7 +7,8 @@
 #include "decoder/nearest_samples.h"
 #include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
+#include "readout/tiled_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 

@@ -6,7 +6,8 @@
 
 #include "core/parallel.h"
 #include "decoder/schedule_residual.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
+#include "readout/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/decoder/recordings.h"

@@ -7,8 +7,8 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "readout/full_readout.h"
+#include "readout/full_schedule.h"
 #include "readout/readout_timing.h"
-#include "readout/schedule_catalogue.h"
 #include "readout/slot_readout.h"
 #include "tests/fuzz/memory_file.h"
 

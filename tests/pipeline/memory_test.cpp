@@ -6,6 +6,7 @@
 #include <string>
 
 #include "decoder/block_partition.h"
+#include "decoder/decode_options.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 

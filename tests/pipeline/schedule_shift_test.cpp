@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "decoder/schedule_check.h"
+#include "readout/tiled_schedule.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 

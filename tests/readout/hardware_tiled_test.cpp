@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/tiled_schedule.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/fnv1a.h"
 #include "tests/support/paper_schedule.h"

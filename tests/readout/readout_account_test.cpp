@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "readout/sequencer_program.h"
+#include "readout/tiled_schedule.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/random_readout.h"
 #include "tests/readout/sensor_timing.h"

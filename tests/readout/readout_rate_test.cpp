@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "readout/full_schedule.h"
 #include "readout/schedule_catalogue.h"
 #include "sensor_model/sensor_config.h"
 #include "tests/readout/random_readout.h"

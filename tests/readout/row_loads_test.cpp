@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/random_readout.h"
 

@@ -1,4 +1,6 @@
 #include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
+#include "readout/tiled_schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "readout/sequencer_program.h"
+#include "readout/tiled_schedule.h"
 #include "tests/readout/gapped_schedule.h"
 
 namespace stipple {

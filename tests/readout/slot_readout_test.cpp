@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "readout/full_readout.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/full_schedule.h"
 #include "tests/readout/random_readout.h"
 #include "tests/readout/sensor_timing.h"
 

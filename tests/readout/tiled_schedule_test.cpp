@@ -1,3 +1,5 @@
+#include "readout/tiled_schedule.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
 #include "tests/support/paper_schedule.h"
 
 namespace stipple {

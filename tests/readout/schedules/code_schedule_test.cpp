@@ -7,6 +7,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "readout/full_schedule.h"
 #include "readout/schedule_catalogue.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/readout/gapped_schedule.h"

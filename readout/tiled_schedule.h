@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/exposure_schedule.h"
+
+namespace stipple {
+
+/// A seeded tile in which every pixel repeats its own permutation of `exposure_slots` without
+/// gaps, and the number of pixels due per slot is as even as possible over the period.
+/// \throws InputError if a length is outside 1..64 or the tile is empty or beyond 256 x 256.
+[[nodiscard]] ExposureSchedule tiled_schedule(int tile_rows, int tile_cols,
+                                              std::span<const int> exposure_slots,
+                                              std::uint64_t seed);
+
+}  // namespace stipple

@@ -1,0 +1,79 @@
+#include "tests/decoder/recordings.h"
+
+#include <algorithm>
+#include <random>
+
+#include "readout/coded_sensor.h"
+#include "sensor_model/colour_mosaic.h"
+
+namespace stipple {
+
+const SampleNoise& paper_noise() {
+    static const SampleNoise noise(calibration_of({}));
+    return noise;
+}
+
+Recorded record(const FluxVideo& video, const ExposureSchedule& schedule, SensorParams params,
+                std::uint64_t seed) {
+    params.charge_stores = schedule.charge_stores();
+    Recorded recorded{{.shape = video.shape(),
+                       .slot_us = 5000,
+                       .calibration = calibration_of(params),
+                       .schedule = schedule,
+                       .schedule_source = {},
+                       .schedule_name = "test",
+                       .provenance = ""},
+                      std::vector<SamplePacket>(static_cast<std::size_t>(video.slots()))};
+    CodedSensor sensor(params, video.shape(), recorded.header.schedule, seed);
+    for (int slot = 0; slot < video.slots(); ++slot)
+        sensor.expose(video.frame(slot), recorded.packets[static_cast<std::size_t>(slot)]);
+    return recorded;
+}
+
+Recorded record_mosaic(const FluxVideo& video, ColourFilter cfa, const ExposureSchedule& schedule,
+                       const SensorParams& params) {
+    FluxVideo mosaic(video.slots(), {video.shape().rows, video.shape().cols, 1});
+    for (int slot = 0; slot < video.slots(); ++slot)
+        take_mosaic(cfa, video.shape(), video.frame(slot), mosaic.frame(slot));
+    Recorded recorded = record(mosaic, schedule, params);
+    recorded.header.cfa = cfa;
+    return recorded;
+}
+
+VideoWindow whole(const FluxVideo& video) {
+    return {.first_slot = 0,
+            .slots = video.slots(),
+            .first_row = 0,
+            .first_col = 0,
+            .shape = video.shape()};
+}
+
+Measurements measure(const FluxVideo& video, const ExposureSchedule& schedule,
+                     const SensorParams& params) {
+    const Recorded recorded = record(video, schedule, params);
+    return collect_measurements(recorded.header, recorded.packets, whole(video));
+}
+
+std::vector<float> random_values(std::size_t count, float low, float high, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<float> values(count);
+    for (float& value : values)
+        value = low + (high - low) * static_cast<float>(random() >> 8U) * 0x1p-24F;
+    return values;
+}
+
+FluxVideo random_video(int slots, FrameShape shape, std::uint32_t seed) {
+    FluxVideo video(slots, shape);
+    const auto values = random_values(video.voxels(), 0, 1, seed);
+    std::copy(values.begin(), values.end(), video.data().begin());
+    return video;
+}
+
+double dot(std::span<const float> a, std::span<const float> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+    return sum;
+}
+
+}  // namespace stipple
