@@ -91,18 +91,6 @@ FluxVideo chain(const FluxVideo& naive, int first) {
     return video;
 }
 
-FluxVideo middle(const FluxVideo& video, int side, int slots) {
-    const FrameShape whole = video.shape();
-    const FrameShape shape{std::min(side, whole.rows), std::min(side, whole.cols), 1};
-    FluxVideo crop(std::min(slots, video.slots()), shape);
-    for (int slot = 0; slot < crop.slots(); ++slot)
-        for (int row = 0; row < shape.rows; ++row)
-            for (int col = 0; col < shape.cols; ++col)
-                crop.plane(slot, 0)(row, col) = video.plane(slot, 0)(
-                    row + (whole.rows - shape.rows) / 2, col + (whole.cols - shape.cols) / 2);
-    return crop;
-}
-
 void print(const std::string& clip, const char* row, const VideoQuality& quality) {
     fmt::print("{:<16}{:<16}{:>8.2f}{:>8.2f}\n", clip, row, quality.psnr_db, quality.psnr_gamma_db);
     std::fflush(stdout);

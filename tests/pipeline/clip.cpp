@@ -86,6 +86,18 @@ std::optional<FluxVideo> colour_clip(const std::string& name) {
     return video;
 }
 
+FluxVideo middle(const FluxVideo& video, int side, int slots) {
+    const FrameShape whole = video.shape();
+    const FrameShape shape{std::min(side, whole.rows), std::min(side, whole.cols), 1};
+    FluxVideo crop(std::min(slots, video.slots()), shape);
+    for (int slot = 0; slot < crop.slots(); ++slot)
+        for (int row = 0; row < shape.rows; ++row)
+            for (int col = 0; col < shape.cols; ++col)
+                crop.plane(slot, 0)(row, col) = video.plane(slot, 0)(
+                    row + (whole.rows - shape.rows) / 2, col + (whole.cols - shape.cols) / 2);
+    return crop;
+}
+
 NamedSchedule schedule_of(const std::string& name, FrameShape shape) {
     Config config(find_config("schedules", name), {});
     NamedSchedule schedule = read_schedule(config, shape, kSeed);

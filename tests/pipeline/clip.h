@@ -22,6 +22,10 @@ namespace stipple {
 /// The same in its three colours. Nothing if the clip is absent or has no colour.
 [[nodiscard]] std::optional<FluxVideo> colour_clip(const std::string& name);
 
+/// The first `slots` slots of the `side` x `side` pixels in the middle, or what there is of them;
+/// the video has one plane.
+[[nodiscard]] FluxVideo middle(const FluxVideo& video, int side, int slots);
+
 /// The schedule of config/schedules of this name, for an array of this shape.
 [[nodiscard]] NamedSchedule schedule_of(const std::string& name, FrameShape shape);
 
