@@ -10,6 +10,9 @@ constexpr OutputName kStreamName{"a sample stream is a .stipple, or has a name w
                                  {".stipple"}};
 constexpr OutputName kRecordingName{"a recording is a .strec, or has a name without extension",
                                     {".strec"}};
+constexpr OutputName kRecoveredName{
+    "a stream is a .stipple, a recording a .strec, or either has a name without extension",
+    {".stipple", ".strec"}};
 constexpr OutputName kVideoName{
     "a video is a .npy, .mp4 or .mkv, or by a name without extension a folder of EXR files",
     {".npy", ".mp4", ".mkv"}};

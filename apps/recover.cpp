@@ -9,6 +9,7 @@
 
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
+#include "apps/output_names.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 
@@ -100,7 +101,7 @@ void add_recover(Command& app, Action& action) {
         .add_option("-o,--output", options->output,
                     "its new name (the one that it was going to have); nothing is replaced")
         .type_name("FILE")
-        .output();
+        .output(kRecoveredName);
     command.footer(
         "Examples:\n"
         "  stipple recover                                   list what lies in this folder\n"

@@ -6,7 +6,8 @@ same tools need not run again.
 
 `ask` ends with 0, and says when it was, if the check NAME has passed on what PATHs, files and folders
 of the project, hold now; `record` notes that it has. Packages of Debian that the project needs count
-as content too. The notes lie in $XDG_CACHE_HOME/stipple/passed; without that folder all runs again."""
+as content too. The notes lie in $XDG_CACHE_HOME/stipple/passed; without that folder all runs again.
+They are kept for 30 days."""
 
 import datetime
 import functools
@@ -17,6 +18,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+KEPT_SECONDS = 30 * 86400  # what passed long ago runs again
 NOTES = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "stipple/passed"
 
 
@@ -65,6 +67,9 @@ class Passed:
     def record(self, files, *extra):
         NOTES.mkdir(parents=True, exist_ok=True)
         now = datetime.datetime.now(datetime.timezone.utc)
+        for note in NOTES.glob(f"{self._name}-*"):
+            if note.stat().st_mtime < now.timestamp() - KEPT_SECONDS:
+                note.unlink(missing_ok=True)
         self._note(files, *extra).write_text(f"{now:%Y-%m-%d %H:%M} UTC\n")
 
 

@@ -6,7 +6,7 @@ import time
 import unittest
 
 import numpy as np
-from program import INPUT, ProgramTest
+from program import INPUT, USAGE, ProgramTest
 
 PACKET = b"\xc5SPK"
 
@@ -127,6 +127,7 @@ class RecoverTest(ProgramTest):
         self.fails(INPUT, ["light.npy", "say with -o"], "recover", "light.npy")
         self.fails(INPUT, ["light.npy", "cannot be recovered"], "recover", "light.npy", "-o", "x")
         self.fails(INPUT, ["nothing: there is no such"], "recover", "nothing")
+        self.fails(USAGE, ["saved.mp4", ".strec"], "recover", name, "-o", "saved.mp4")
 
     def test_a_demo_that_is_stopped_leaves_no_empty_folder(self):
         demo = self.start_program("demo", "--frames", 4000, "--size", "64x64")

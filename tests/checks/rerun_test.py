@@ -119,6 +119,17 @@ class RunTestsTest(unittest.TestCase):
         self.assertEqual(self.run_tests()[0], ["test_one"])
         self.assertEqual(self.run_tests()[0], [])
 
+    def test_old_notes_are_removed(self):
+        self.entry("test_one")
+        self.configure()
+        self.run_tests()
+        (old,) = Path(self.environment["XDG_CACHE_HOME"]).glob("stipple/passed/*")
+        os.utime(old, (0, 0))
+        self.write("config/c", "new")
+        self.run_tests()
+        (new,) = old.parent.iterdir()
+        self.assertNotEqual(new, old)
+
 
 if __name__ == "__main__":
     unittest.main()
