@@ -12,7 +12,7 @@
 namespace stipple {
 namespace {
 
-constexpr int kSlots = 24;
+constexpr int kSlots = 16;
 
 /// Bright chequers that drift by a pixel a slot over darker, finer ones.
 FluxVideo drifting(FrameShape shape) {
@@ -63,7 +63,7 @@ TEST_P(CollaborativeTest, IsBetterThanItsStart) {
 TEST_P(CollaborativeTest, TheSameBitsForOneAndTwoThreads) {
     const auto bits = [](int threads) {
         const ThreadLimit limit(threads);
-        const FluxVideo x = decode({.iterations = 6});
+        const FluxVideo x = decode({.iterations = 2});
         return std::vector<float>(x.data().begin(), x.data().end());
     };
     EXPECT_EQ(bits(1), bits(2));

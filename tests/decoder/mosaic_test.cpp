@@ -206,10 +206,10 @@ FluxVideo blurred_cards(int slots, FrameShape shape) {
 }
 
 TEST(MosaicTest, BestHasLessThanHalfTheErrorOfFastOnColouredEdges) {
-    const FrameShape shape{36, 40, 3};
-    const FluxVideo video = blurred_cards(26, shape);
+    const FrameShape shape{30, 34, 3};
+    const FluxVideo video = blurred_cards(20, shape);
     const Recorded recorded =
-        record_mosaic(video, ColourFilter::kRggb, random_schedule(36, 40, kPaperExposureSlots, 1));
+        record_mosaic(video, ColourFilter::kRggb, random_schedule(30, 34, kPaperExposureSlots, 1));
     const double fast = error_of(decode_mosaic(recorded, DecodeMethod::kFast), video);
     const double best = error_of(decode_mosaic(recorded, DecodeMethod::kBest), video);
     RecordProperty("share", std::to_string(best / fast));
