@@ -45,9 +45,12 @@ Measurements record(int planes) {
 }
 
 const Measurements& measurements(int planes) {
-    static const Measurements mono = record(1);
+    if (planes == 1) {
+        static const Measurements mono = record(1);
+        return mono;
+    }
     static const Measurements colour = record(3);
-    return planes == 1 ? mono : colour;
+    return colour;
 }
 
 void count_voxels(benchmark::State& state, int planes) {
