@@ -88,8 +88,13 @@ TEST(ScheduleCheckTest, DoesNotFlagTheRightSchedule) {
 TEST(ScheduleCheckTest, FindsTheShiftThatTheChipRan) {
     const ExposureSchedule tiled = tiled_schedule(16, 16, kPaperExposureSlots, 1);
     const ExposureSchedule random = random_schedule(48, 64, kPaperExposureSlots, 1);
-    for (const ScheduleShift shift :
-         {ScheduleShift{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {5, -7, 8}, {-7, 3, -4}})
+    for (const ScheduleShift shift : {ScheduleShift{1, 0, 0},
+                                      {-1, 0, 0},
+                                      {0, 1, 0},
+                                      {0, 0, 1},
+                                      {0, -1, 1},
+                                      {5, -7, 8},
+                                      {-7, 3, -4}})
         for (const ExposureSchedule& schedule : {tiled, random}) {
             const ScheduleCheck check = check_shifted(waves(0.3, 0.7), schedule, shift);
             EXPECT_EQ(check.verdict, Verdict::kShifted);

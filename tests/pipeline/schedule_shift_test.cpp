@@ -30,7 +30,8 @@ TEST_P(ScheduleShiftOnFootageTest, IsFoundAndTheRightScheduleIsNotFlagged) {
     const FrameShape shape = video->shape();
     for (const auto& schedule : {tiled_schedule(16, 16, kPaperExposureSlots, kSeed),
                                  random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1)})
-        for (const ScheduleShift shift : {ScheduleShift{0, 0, 0}, {0, -1, 0}, {-4, 6, 5}}) {
+        for (const ScheduleShift shift :
+             {ScheduleShift{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {-4, 6, 5}}) {
             const ScheduleCheck check = check_shifted(*video, schedule, shift);
             EXPECT_EQ(check.verdict, shift == ScheduleShift{} ? ScheduleCheck::Verdict::kAgrees
                                                               : ScheduleCheck::Verdict::kShifted);
