@@ -222,11 +222,13 @@ TEST_F(AravisCameraTest, AConsumerThatIsTooSlowLosesFramesToItsOwnBuffers) {
         if (frame.record.status == FrameStatus::kComplete) {
             ASSERT_EQ(frame.payload, sent(frame.record));
         }
-        if (frame.record.lost_before == 0) continue;
-        EXPECT_EQ(frame.record.cause, GapCause::kHostUnderrun);
-        return;
+        // A busy machine loses frames in other ways, too.
+        if (frame.record.cause == GapCause::kHostUnderrun) {
+            EXPECT_GT(frame.record.lost_before, 0U);
+            return;
+        }
     }
-    ADD_FAILURE() << "no gap";
+    ADD_FAILURE() << "no gap by underruns";
 }
 
 TEST_F(AravisCameraTest, AReceiveBufferThatIsTooSmallIsWarnedOfByTheNameOfItsLimit) {
