@@ -68,11 +68,12 @@ function(stipple_reads out)
     set(${out} "STIPPLE_READS=${paths}" PARENT_SCOPE)
 endfunction()
 
-# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] file_test.cpp ... [READS path ...]): one
-# executable MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of
-# their own match the GoogleTest filter APART: each is a ctest entry. READS as in stipple_reads.
+# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] [PART filter PART_LABEL label]
+# file_test.cpp ... [READS path ...]): one executable MODULE_test, run whole, or as n parts that run side
+# by side. Tests that need a process of their own match the GoogleTest filter APART: each is a ctest
+# entry. Those that match the filter PART are one entry, with the label. READS as in stipple_reads.
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "SHARDS;APART;LABEL" "READS" ${ARGN})
+    cmake_parse_arguments(arg "" "SHARDS;APART;PART;PART_LABEL;LABEL" "READS" ${ARGN})
     stipple_reads(reads ${arg_READS})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
@@ -89,13 +90,22 @@ function(stipple_test module)
     if(NOT arg_SHARDS)
         set(arg_SHARDS 1)
     endif()
+    set(elsewhere "${arg_APART}")
+    if(arg_PART)
+        set(name ${module}_test_${arg_PART_LABEL})
+        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=${arg_PART}
+                                                     --gtest_output=xml:${results}/${name}.xml)
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_PART_LABEL}" COST 9
+            ENVIRONMENT "${reads}")
+        string(APPEND elsewhere ":${arg_PART}")
+    endif()
     foreach(shard RANGE 1 ${arg_SHARDS})
         set(name ${module}_test)
         if(arg_SHARDS GREATER 1)
             string(APPEND name _${shard}_of_${arg_SHARDS})
         endif()
         math(EXPR index "${shard} - 1")
-        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${arg_APART}
+        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${elsewhere}
                                                      --gtest_output=xml:${results}/${name}.xml)
         set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_SHARDS}  # long ones first
             ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index};${reads}")
