@@ -169,19 +169,12 @@ void CameraRecording::finish() {
 
 nlohmann::ordered_json CameraRecording::json() const {
     const RecordingEnd totals = writer_.totals();
-    const TransportCounts transport = session_.transport();
     return {{"file", output_.final_path().string()},
             {"frames", totals.frames},
             {"incomplete", totals.incomplete},
             {"lost", lost_json(session_.totals())},
             {"outages", session_.totals().outages},
-            {"transport",
-             {{"underruns", transport.underruns},
-              {"packets_resent", transport.packets_resent},
-              {"packets_missing", transport.packets_missing},
-              {"socket_drops", transport.socket_drops},
-              {"link_faults", transport.link_faults},
-              {"size_mismatches", transport.size_mismatches}}},
+            {"transport", transport_json(session_.transport())},
             {"payload_bytes", totals.payload_bytes},
             {"seconds", seconds_},
             {"frames_per_s", rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr}};

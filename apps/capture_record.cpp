@@ -25,6 +25,7 @@ void add_capture_record(Command& capture, Action& action) {
         .required()
         .output();
     add_capture_limits(command, options->limits);
+    add_incomplete_argument(command, options->session.incomplete);
     add_session_arguments(command, options->session);
     auto coded_flag = command.add_flag(
         "--coded", options->coded,

@@ -39,6 +39,8 @@ class LiveCamera {
     [[nodiscard]] std::size_t peak() const;
     /// Stops the camera. What became of its frames.
     SessionTotals stop();
+    /// Precondition: it is stopped.
+    [[nodiscard]] TransportCounts transport() const { return session_.transport(); }
 
   private:
     void run(const std::stop_token& stop);

@@ -97,6 +97,7 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     hold(frame.record.lost_before);
     rate_.add(frame.record);
     if (rate_.seconds() >= kRateAfterS) compare_rates();
+    if (frame.record.status != FrameStatus::kComplete) return hold(1);
     to_light_.convert(frame.payload, light_);
     expose(frame.record.host_monotonic_ns);
     last_done_ns_ = monotonic_ns();
@@ -152,7 +153,9 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["frames"] = latencies_us_.size();
     json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
+    json["incomplete"] = totals_.incomplete;
     json["lost"] = lost_json(totals_);
+    json["transport"] = transport_json(camera_.transport());
     json["held_slots"] = held_slots_;
     json["late_slots"] = late_slots_;
     json["late"] = nlohmann::ordered_json::array();
@@ -170,12 +173,13 @@ nlohmann::ordered_json LiveEmulation::json() const {
 
 std::string LiveEmulation::text() const {
     std::string text = fmt::format(
-        "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing\n"
-        "lost: {}\n"
+        "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing or "
+        "incomplete\n"
+        "lost: {}; incomplete: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         arguments_.output, recording_text(recording_, slots_per_s()),
         counted(latencies_us_.size(), "frame"), counted(late_slots_, "slot"),
-        arguments_.late_after_slots, held_slots_, lost_text(totals_),
+        arguments_.late_after_slots, held_slots_, lost_text(totals_), totals_.incomplete,
         sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
         sorted_quantile(latencies_us_, 1) * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());

@@ -23,7 +23,7 @@ namespace stipple {
 /// What `stipple capture live` was asked for.
 struct LiveArguments {
     CameraArguments camera;
-    SessionOptions session;
+    SessionOptions session{.incomplete = IncompletePolicy::kKeep};  ///< they are held, and counted
     SensorChoice sensor;
     std::string output;
     double black_level_dn = 0;
@@ -34,7 +34,7 @@ struct LiveArguments {
 };
 
 /// A camera's frames through the emulated sensor as they come, a slot each. Where frames are
-/// missing, the one before stands in, so that each slot keeps its time.
+/// missing or incomplete, the one before stands in, so that each slot keeps its time.
 class LiveEmulation {
   public:
     /// Opens camera and output. \throws InputError, DeviceError.

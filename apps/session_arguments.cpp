@@ -7,14 +7,17 @@
 
 namespace stipple {
 
-void add_session_arguments(Command& command, SessionOptions& options) {
+void add_incomplete_argument(Command& command, IncompletePolicy& policy) {
     command
-        .add_choice("--incomplete", options.incomplete,
+        .add_choice("--incomplete", policy,
                     {{"drop", IncompletePolicy::kDrop},
                      {"keep", IncompletePolicy::kKeep},
                      {"mask", IncompletePolicy::kMask}},
                     "frames that did not arrive whole: drop, keep, or mask what is missing (mask)")
         .type_name("POLICY");
+}
+
+void add_session_arguments(Command& command, SessionOptions& options) {
     command
         .add_parsed(
             "--stall",

@@ -6,7 +6,10 @@
 
 namespace stipple {
 
-/// `--incomplete`, `--stall` and `--no-reconnect`.
+/// `--incomplete`.
+void add_incomplete_argument(Command& command, IncompletePolicy& policy);
+
+/// `--stall` and `--no-reconnect`.
 void add_session_arguments(Command& command, SessionOptions& options);
 
 /// \throws UsageError for those that do nothing with a replay.

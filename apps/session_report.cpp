@@ -25,6 +25,15 @@ std::string lost_text(const SessionTotals& totals) {
     return text.empty() ? "none" : text;
 }
 
+nlohmann::ordered_json transport_json(const TransportCounts& counts) {
+    return {{"underruns", counts.underruns},
+            {"packets_resent", counts.packets_resent},
+            {"packets_missing", counts.packets_missing},
+            {"socket_drops", counts.socket_drops},
+            {"link_faults", counts.link_faults},
+            {"size_mismatches", counts.size_mismatches}};
+}
+
 std::string losses_text(const SessionTotals& totals) {
     const auto lost = std::accumulate(totals.lost.begin(), totals.lost.end(), std::uint64_t{0});
     if (lost + totals.incomplete == 0) return {};

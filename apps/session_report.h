@@ -13,6 +13,9 @@ namespace stipple {
 /// The same for people: the causes there are, or "none".
 [[nodiscard]] std::string lost_text(const SessionTotals& totals);
 
+/// What the transport has counted: the key `transport` of docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json transport_json(const TransportCounts& counts);
+
 /// How many, and how many are incomplete, for a line of progress: "3 lost, 1 incomplete"; empty if
 /// all is well.
 [[nodiscard]] std::string losses_text(const SessionTotals& totals);

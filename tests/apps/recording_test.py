@@ -20,6 +20,15 @@ def lines_of_the_document():
     return re.search(r"```python\n(.*?)```", DOCUMENT.read_text(), re.S)[1]
 
 
+def crc32c(content):
+    crc = 0xFFFFFFFF
+    for byte in content:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return struct.pack("<I", crc ^ 0xFFFFFFFF)
+
+
 class RecordingTest(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -126,6 +135,24 @@ class RecordingTest(ProgramTest):
         self.assertEqual((figures["frames"], figures["held_slots"], figures["slots"]), (6, 0, 6))
         self.assertEqual((self.folder / "a.stipple").read_bytes(),
                          (self.folder / "b.stipple").read_bytes())
+
+    def test_incomplete_frames_are_no_light_live_either(self):
+        self.record()
+        clip = self.folder / "clip.strec"
+        content = bytearray(clip.read_bytes())
+        starts = [found.start() for found in re.finditer(rb"\xc5FRM", content)][1:]  # of frames
+        for frame in (2, 3):
+            block = starts[frame]
+            content[block + 32 + 121] = 1  # status: packets are missing
+            content[block + 24:block + 28] = crc32c(content[block + 32:block + 32 + 160])
+            content[block + 28:block + 32] = crc32c(content[block:block + 28])
+        clip.write_bytes(content)
+        self.succeed("emulate", "clip.strec", "-o", "a.stipple")
+        figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)
+        self.assertEqual((figures["frames"], figures["incomplete"], figures["held_slots"], figures["slots"]),
+                         (4, 2, 2, 6))
+        self.assertEqual(figures["transport"]["packets_missing"], 0)
+        self.assertEqual((self.folder / "a.stipple").read_bytes(), (self.folder / "b.stipple").read_bytes())
 
     def test_ctrl_c_leaves_a_whole_stream(self):
         self.record()
