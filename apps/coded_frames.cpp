@@ -1,6 +1,5 @@
 #include "apps/coded_frames.h"
 
-#include "capture/serve/coded_payload.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -11,8 +10,8 @@ CodedFrames::CodedFrames(const std::string& footage, const FootageOptions& readi
       reading_(reading),
       reader_(footage_, reading_),
       setup_(set_up_sensor(sensor, reader_.shape())),
-      header_(stream_header_of(setup_, origin_of(footage, reading))),
-      image_(coded_image(header_)),
+      header_(coded_header(stream_header_of(setup_, origin_of(footage, reading)))),
+      image_(coded_image(header_.stream)),
       light_(setup_.footage.sites()) {
     if (slots_per_s) image_.frames_per_s = *slots_per_s;
     if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);

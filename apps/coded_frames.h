@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/slot_emulator.h"
+#include "capture/serve/coded_payload.h"
 #include "capture/serve/frame_source.h"
 #include "core/footage_reader.h"
 
@@ -28,7 +29,7 @@ class CodedFrames final : public FrameSource {
     FootageOptions reading_;
     FootageReader reader_;
     SensorSetup setup_;
-    StreamHeader header_;
+    CodedHeader header_;
     ServedImage image_;
     std::optional<SlotEmulator> emulator_;
     std::vector<float> light_;

@@ -45,11 +45,11 @@ std::string coded_feature(const CameraDescription& camera, const std::string& na
 /// Writes slots as they come, and drops those that do not.
 class SlotRecorder {
   public:
-    SlotRecorder(const std::string& output, bool force, const StreamHeader& header)
+    SlotRecorder(const std::string& output, bool force, const CodedHeader& header)
         : header_(header),
           output_(output, force),
-          writer_(output_.partial(), header, output_.final_path().string()),
-          order_(header.shape.rows) {
+          writer_(output_.partial(), header.stream, output_.final_path().string()),
+          order_(header.stream.shape.rows) {
         say_leftover(output_.final_path());
     }
 
@@ -69,7 +69,7 @@ class SlotRecorder {
                                                              order_.expected().slot, next.slot));
         while (order_.expected() < next) {
             const StreamPosition at = order_.expected();
-            const int end = at.slot < next.slot ? header_.shape.rows : next.row;
+            const int end = at.slot < next.slot ? header_.stream.shape.rows : next.row;
             if (at.row == 0) ++missing_;
             write({at.slot, at.row, end - at.row, SamplePacket::kDropped, {}});
         }
@@ -89,7 +89,7 @@ class SlotRecorder {
         order_.advance(packet.rows);
     }
 
-    StreamHeader header_;
+    CodedHeader header_;
     PendingOutput output_;
     StreamWriter writer_;
     PacketOrder order_;
@@ -136,8 +136,8 @@ void record_coded_stream(const CameraRecordingArguments& arguments, const RunOpt
     const auto camera = open_camera(arguments.camera.address, camera_settings(arguments.camera),
                                     arguments.camera.buffers);
     const CameraDescription description = camera->description();
-    const StreamHeader header = decode_coded_header(coded_feature(description, "CodedStreamHeader"),
-                                                    description.address + ": CodedStreamHeader");
+    const CodedHeader header = decode_coded_header(coded_feature(description, "CodedStreamHeader"),
+                                                   description.address + ": CodedStreamHeader");
     const std::int64_t slots = slots_to_come(description, arguments);
     JsonFile json(run);
     SlotRecorder recorder(arguments.output, run.force, header);

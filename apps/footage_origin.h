@@ -8,8 +8,9 @@ namespace stipple {
 
 /// Where light comes from and how its numbers were read: what a stream says of its footage.
 struct FootageOrigin {
-    std::string name = {};    ///< without folders
-    std::string sha256 = {};  ///< of its files, one after the other; empty where there are none
+    std::string name = {};       ///< without folders
+    std::string sha256 = {};     ///< of its files, one after the other; empty where there are none
+    std::string recording = {};  ///< tells recordings of one camera apart; empty of files
     FootageOptions reading = {};
     double black_level_dn = 0;  ///< that was taken off a recording
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <string>
 #include <utility>
 
 #include "apps/interrupt.h"
@@ -26,12 +28,21 @@ constexpr double kRateAfterS = 1;
 constexpr std::size_t kMostLateListed = 1000;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
+/// A random number: packets of two recordings with the same settings are told apart by it
+/// (docs/stream_format.md, "Packet").
+std::string new_recording_name() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}", random(), random());
+}
+
 /// What the stream says of where its light came from: no address, no time.
 FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
     FootageOrigin origin{.name = camera.model};
     if (is_replay(arguments.camera)) {
         const std::string& address = arguments.camera.address;
         origin = origin_of(address.substr(address.find(':') + 1), FootageOptions{});
+    } else {
+        origin.recording = new_recording_name();
     }
     origin.black_level_dn = arguments.black_level_dn;
     return origin;

@@ -68,6 +68,7 @@ toml::table footage_table(const FootageOrigin& footage) {
                       {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
                       {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
+    if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
     if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
     return table;

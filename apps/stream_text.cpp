@@ -73,7 +73,8 @@ ordered_json stream_json(const StreamHeader& header, const StreamReport& report)
     for (const StreamDamage& place : report.damage)
         damage.push_back(
             {{"offset", place.offset}, {"bytes", place.bytes}, {"cause", place.cause}});
-    return {{"rows", header.shape.rows},
+    return {{"version", report.version},
+            {"rows", header.shape.rows},
             {"cols", header.shape.cols},
             {"planes", header.shape.planes},
             {"cfa", name_of(header.cfa)},

@@ -20,7 +20,8 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'P', 'L', '\r', '\n', 0x1A};
 constexpr std::array<std::uint8_t, 4> kRecording{0x89, 'S', 'T', 'R'};  // recording_format.md
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;  ///< that is written; 1 is read, too
+constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kMaxNameBytes = 64;
@@ -235,14 +236,20 @@ std::size_t header_bytes(Bytes start, std::string_view place) {
     }
     if (start.size() < kHeaderStartBytes)
         fail_at(place, start.size(), "the file ends within its header");
-    const auto version = load<std::uint16_t>(&start[8]);
-    if (version != kVersion)
-        fail_at(place, 8,
-                fmt::format("version {} of the sample stream; this program reads version {}",
+    const auto version = load<std::uint16_t>(&start[kVersionAt]);
+    if (version < 1 || version > kVersion)
+        fail_at(place, kVersionAt,
+                fmt::format("version {} of the sample stream; this program reads versions 1 and {}",
                             version, kVersion));
     const auto bytes = load_at<std::uint32_t>(start, kHeaderLength);
     check(kHeaderLength, bytes, place);
     return bytes;
+}
+
+Framing framing_of(Bytes header) {
+    const int version = load<std::uint16_t>(&header[kVersionAt]);
+    const auto crc = load<std::uint32_t>(&header[header.size() - kCrcBytes]);
+    return {version, version == 1 ? 0 : crc};
 }
 
 StreamHeader decode_header(Bytes header, std::string_view place) {

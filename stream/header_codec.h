@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "stream/framing.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -20,6 +21,9 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 /// Length of a header, by the first `kHeaderStartBytes` bytes of a file, or all if it has fewer.
 /// \throws InputError naming file and offset if it is no sample stream or of an unknown version.
 [[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view place);
+
+/// Precondition: header.size() == header_bytes(start of header).
+[[nodiscard]] Framing framing_of(std::span<const std::uint8_t> header);
 
 /// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
 /// \throws InputError naming file and offset.

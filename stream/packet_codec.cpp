@@ -14,6 +14,7 @@ using SyncWord = std::array<std::uint8_t, 4>;
 
 constexpr SyncWord kPacketSync{0xC5, 'S', 'P', 'K'};
 constexpr SyncWord kEndSync{0xC5, 'E', 'N', 'D'};
+constexpr std::size_t kHeaderCrc = 32;  ///< where it is in a packet
 
 /// True if `bytes` begin like `sync`, as far as they go.
 bool begins_like(Bytes bytes, const SyncWord& sync) {
@@ -22,13 +23,13 @@ bool begins_like(Bytes bytes, const SyncWord& sync) {
 }
 
 /// True if the last four of `size` bytes are the CRC of those before.
-bool crc_is_good(Bytes bytes, std::size_t size) {
-    return crc32c(bytes.first(size - 4)) == load<std::uint32_t>(&bytes[size - 4]);
+bool crc_is_good(Bytes bytes, std::size_t size, std::uint32_t seed) {
+    return crc32c(bytes.first(size - 4), seed) == load<std::uint32_t>(&bytes[size - 4]);
 }
 
 }  // namespace
 
-void frame_packet(PacketHeader header, std::span<std::uint8_t> packet) {
+void frame_packet(PacketHeader header, std::span<std::uint8_t> packet, std::uint32_t seed) {
     const auto payload = packet.subspan(kPacketHeaderBytes);
     std::copy(kPacketSync.begin(), kPacketSync.end(), packet.begin());
     packet[4] = static_cast<std::uint8_t>(header.kind);
@@ -40,7 +41,7 @@ void frame_packet(PacketHeader header, std::span<std::uint8_t> packet) {
     store(&packet[20], header.samples);
     store(&packet[24], static_cast<std::uint32_t>(payload.size()));
     store(&packet[28], crc32c(payload));
-    store(&packet[32], crc32c(packet.first(32)));
+    store(&packet[kHeaderCrc], crc32c(packet.first(kHeaderCrc), seed));
 }
 
 PacketHeader decode_packet_header(Bytes bytes) {
@@ -57,39 +58,49 @@ PacketHeader decode_packet_header(Bytes bytes) {
     return header;
 }
 
-std::array<std::uint8_t, kEndMarkerBytes> encode_end_marker(std::uint64_t index_offset) {
+std::uint32_t add_to_checksum(std::uint32_t checksum, Bytes packet) {
+    return crc32c(packet.subspan(kHeaderCrc, 4), checksum);
+}
+
+std::array<std::uint8_t, kEndMarkerBytes> encode_end_marker(std::uint64_t index_offset,
+                                                            std::uint32_t checksum,
+                                                            std::uint32_t seed) {
     std::array<std::uint8_t, kEndMarkerBytes> marker{};
     std::copy(kEndSync.begin(), kEndSync.end(), marker.begin());
     store(&marker[4], index_offset);
-    store(&marker[12], crc32c(std::span(marker).first(12)));
+    store(&marker[12], checksum);
+    store(&marker[16], crc32c(std::span(marker).first(16), seed));
     return marker;
 }
 
-std::uint64_t decode_end_marker(Bytes bytes) {
-    return load<std::uint64_t>(&bytes[4]);
+EndMarker decode_end_marker(Bytes bytes, const Framing& framing) {
+    EndMarker marker{load<std::uint64_t>(&bytes[4])};
+    if (framing.version != 1) marker.checksum = load<std::uint32_t>(&bytes[12]);
+    return marker;
 }
 
-Start start_of(Bytes bytes) {
+Start start_of(Bytes bytes, const Framing& framing) {
     if (begins_like(bytes, kPacketSync)) {
         if (bytes.size() < kPacketHeaderBytes) return Start::kCut;
-        if (!crc_is_good(bytes, kPacketHeaderBytes)) return Start::kBadCrc;
+        if (!crc_is_good(bytes, kPacketHeaderBytes, framing.seed)) return Start::kBadCrc;
         const bool too_large = decode_packet_header(bytes).payload_bytes > kMaxPayloadBytes;
         return too_large ? Start::kTooLarge : Start::kPacket;
     }
     if (begins_like(bytes, kEndSync)) {
-        if (bytes.size() < kEndMarkerBytes) return Start::kCut;
-        return crc_is_good(bytes, kEndMarkerBytes) ? Start::kEnd : Start::kBadCrc;
+        const std::size_t size = end_marker_bytes(framing);
+        if (bytes.size() < size) return Start::kCut;
+        return crc_is_good(bytes, size, framing.seed) ? Start::kEnd : Start::kBadCrc;
     }
     return Start::kNoSync;
 }
 
-std::size_t find_start(Bytes bytes) {
+std::size_t find_start(Bytes bytes, const Framing& framing) {
     std::size_t at = 0;
     while (at < bytes.size()) {
         const void* found = std::memchr(&bytes[at], kPacketSync[0], bytes.size() - at);
         if (found == nullptr) break;
         at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
-        const Start start = start_of(bytes.subspan(at));
+        const Start start = start_of(bytes.subspan(at), framing);
         if (start == Start::kPacket || start == Start::kEnd) return at;
         ++at;
     }

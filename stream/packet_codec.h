@@ -3,15 +3,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "stream/framing.h"
 
 namespace stipple {
 
 // The frames around payloads, as bytes (docs/stream_format.md, "Packet" and "End marker").
 
 inline constexpr std::size_t kPacketHeaderBytes = 36;
-inline constexpr std::size_t kEndMarkerBytes = 16;
+inline constexpr std::size_t kEndMarkerBytes = 20;
 inline constexpr std::uint32_t kMaxPayloadBytes = 1U << 29U;
 inline constexpr std::uint64_t kMaxSlot = (std::uint64_t{1} << 53U) - 1;
 
@@ -30,16 +33,32 @@ struct PacketHeader {
     std::uint32_t payload_crc = 0;
 };
 
+/// Of the end marker, which is kEndMarkerBytes long from version 2 on.
+[[nodiscard]] constexpr std::size_t end_marker_bytes(const Framing& framing) {
+    return framing.version == 1 ? 16 : kEndMarkerBytes;
+}
+
+/// What an end marker says.
+struct EndMarker {
+    std::uint64_t index_offset = 0;
+    std::optional<std::uint32_t> checksum = std::nullopt;  ///< of all packets; none in version 1
+};
+
 /// Fills the first kPacketHeaderBytes of `packet`, whose payload is in place: its length and CRC
-/// are set here.
-void frame_packet(PacketHeader header, std::span<std::uint8_t> packet);
+/// are set here. `seed`: of the Framing.
+void frame_packet(PacketHeader header, std::span<std::uint8_t> packet, std::uint32_t seed);
 /// Precondition: `start` of these bytes is kPacket.
 [[nodiscard]] PacketHeader decode_packet_header(std::span<const std::uint8_t> bytes);
 
+/// The checksum of all packets up to this one, by that of those before (at first the seed).
+[[nodiscard]] std::uint32_t add_to_checksum(std::uint32_t checksum,
+                                            std::span<const std::uint8_t> packet);
+
 [[nodiscard]] std::array<std::uint8_t, kEndMarkerBytes> encode_end_marker(
-    std::uint64_t index_offset);
+    std::uint64_t index_offset, std::uint32_t checksum, std::uint32_t seed);
 /// Precondition: `start` of these bytes is kEnd.
-[[nodiscard]] std::uint64_t decode_end_marker(std::span<const std::uint8_t> bytes);
+[[nodiscard]] EndMarker decode_end_marker(std::span<const std::uint8_t> bytes,
+                                          const Framing& framing);
 
 /// What a stretch of a file begins with.
 enum class Start {
@@ -50,9 +69,9 @@ enum class Start {
     kBadCrc,    ///< a sync word with a wrong CRC
     kTooLarge,  ///< a packet header with a payload beyond its limit
 };
-[[nodiscard]] Start start_of(std::span<const std::uint8_t> bytes);
+[[nodiscard]] Start start_of(std::span<const std::uint8_t> bytes, const Framing& framing);
 
 /// Position of the first whole packet header or end marker with a good CRC; bytes.size() if none.
-[[nodiscard]] std::size_t find_start(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::size_t find_start(std::span<const std::uint8_t> bytes, const Framing& framing);
 
 }  // namespace stipple

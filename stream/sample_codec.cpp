@@ -7,7 +7,8 @@
 
 namespace stipple {
 
-std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_depth) {
+std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_depth,
+                                         std::uint32_t seed) {
     PacketHeader header;
     header.flags = packet.flags;
     header.slot = static_cast<std::uint64_t>(packet.slot);
@@ -16,18 +17,18 @@ std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_dep
     header.samples = static_cast<std::uint32_t>(packet.dn.size());
     std::vector<std::uint8_t> bytes(kPacketHeaderBytes + packed_bytes(packet.dn.size(), bit_depth));
     pack_bits(packet.dn, bit_depth, std::span(bytes).subspan(kPacketHeaderBytes));
-    frame_packet(header, bytes);
+    frame_packet(header, bytes, seed);
     return bytes;
 }
 
-DecodedSamples decode_samples(const StreamHeader& stream, std::span<const std::uint8_t> bytes,
-                              StreamPosition expected) {
+DecodedSamples decode_samples(const StreamHeader& stream, const Framing& framing,
+                              std::span<const std::uint8_t> bytes, StreamPosition expected) {
     DecodedSamples decoded;
     const auto fail = [&](std::string fault) {
         decoded.fault = std::move(fault);
         return decoded;
     };
-    if (start_of(bytes) != Start::kPacket) return fail("no packet begins here");
+    if (start_of(bytes, framing) != Start::kPacket) return fail("no packet begins here");
     const PacketHeader header = decode_packet_header(bytes);
     if (header.kind != PacketKind::kSamples) return fail("it is no packet of samples");
     if (header.payload_bytes > bytes.size() - kPacketHeaderBytes)

@@ -23,6 +23,8 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kSearchBytes = std::size_t{1} << 16U;
+constexpr std::string_view kOtherPackets =
+    "the packets are not those that were recorded, though each is good (checksum of all packets)";
 constexpr std::uint64_t kMaxVainBytes = std::uint64_t{1} << 32U;
 
 /// The next `bytes` bytes, or fewer if they do not come.
@@ -32,21 +34,29 @@ Bytes peek_or_wait(FileWindow& window, std::size_t bytes, const WaitForMore& wai
     return there;
 }
 
-StreamHeader read_header(FileWindow& window, const std::string& place, const WaitForMore& wait) {
+/// What a stream says before its first packet.
+struct Opened {
+    StreamHeader header;
+    Framing framing;
+};
+
+Opened read_header(FileWindow& window, const std::string& place, const WaitForMore& wait) {
     const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), place);
     const Bytes header = peek_or_wait(window, bytes, wait);
     if (header.size() < bytes)
         throw InputError(fmt::format("{}: byte {}", place, header.size()),
                          fmt::format("the file ends within its header of {} bytes", bytes));
-    StreamHeader result = decode_header(header, place);
+    Opened result{decode_header(header, place), framing_of(header)};
     window.skip(bytes);
     return result;
 }
 
-std::string_view cause_of(Start start) {
+std::string_view cause_of(Start start, const Framing& framing) {
     switch (start) {
         case Start::kBadCrc:
-            return "a packet header is damaged (CRC mismatch)";
+            return framing.version == 1
+                       ? "a packet header is damaged (CRC mismatch)"
+                       : "a packet header is damaged or of another stream (CRC mismatch)";
         case Start::kTooLarge:
             return "a payload is beyond 2^29 bytes";
         default:
@@ -63,9 +73,12 @@ struct StreamReader::Impl {
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
           window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
-          header(read_header(window, place, wait)),
-          slots(slots_by_index(window)),
-          order(header.shape.rows) {}
+          stream(read_header(window, place, wait)),
+          slots(slots_by_index(window, stream.framing)),
+          order(stream.header.shape.rows),
+          checksum(stream.framing.seed) {
+        report.version = stream.framing.version;
+    }
 
     enum class Step { kDelivered, kGoOn, kStop };
 
@@ -74,7 +87,7 @@ struct StreamReader::Impl {
     Step take_packet(const PacketHeader& found, SamplePacket& packet);
     void deliver(const PacketHeader& found, Bytes payload, SamplePacket& packet);
     void take_index(const PacketHeader& found);
-    void take_end_marker(std::uint64_t index_at);
+    void take_end_marker(const EndMarker& marker);
     /// The file ends within the packet that begins here; `tail` is there.
     Step wait_for_rest(Bytes tail);
     /// Moves to the next good start. False if there is none yet.
@@ -97,12 +110,13 @@ struct StreamReader::Impl {
     bool any_schedule;
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
     FileWindow window;
-    StreamHeader header;
+    Opened stream;
     std::optional<std::int64_t> slots;
     PacketOrder order;
     StreamReport report;
     std::optional<std::uint64_t> search_begin;  ///< set while searching
     std::uint64_t searched_to = 0;  ///< end of the tail that `wait_for_rest` has searched
+    std::uint32_t checksum;         ///< of all packets with good CRCs so far
     std::uint64_t vain_bytes = 0;   ///< of payloads whose CRC was wrong
     std::optional<std::uint64_t> index_offset;  ///< of the index packet, once it was read
     std::optional<std::uint64_t> end_offset;    ///< after the end marker, once it was read
@@ -140,7 +154,7 @@ void StreamReader::Impl::extend_damage(std::uint64_t begin, std::uint64_t end) {
 bool StreamReader::Impl::search() {
     for (;;) {
         const Bytes bytes = window.peek(kSearchBytes);
-        const std::size_t found = find_start(bytes);
+        const std::size_t found = find_start(bytes, stream.framing);
         const bool at_end = bytes.size() < kSearchBytes;
         const std::uint64_t skipped_to = window.offset() + found;
         if (found < bytes.size()) {
@@ -162,17 +176,17 @@ StreamReader::Impl::Step StreamReader::Impl::step(SamplePacket& packet) {
     const Bytes bytes = window.peek(kPacketHeaderBytes);
     report.tail_bytes = 0;
     if (bytes.empty()) return Step::kStop;
-    const Start start = start_of(bytes);
+    const Start start = start_of(bytes, stream.framing);
     switch (start) {
         case Start::kPacket:
             return take_packet(decode_packet_header(bytes), packet);
         case Start::kEnd:
-            take_end_marker(decode_end_marker(bytes));
+            take_end_marker(decode_end_marker(bytes, stream.framing));
             return Step::kGoOn;
         case Start::kCut:
             return wait_for_rest(bytes);
         default:
-            begin_search(cause_of(start));
+            begin_search(cause_of(start, stream.framing));
             return Step::kGoOn;
     }
 }
@@ -187,7 +201,7 @@ StreamReader::Impl::Step StreamReader::Impl::wait_for_rest(Bytes tail) {
     const std::size_t from = std::min<std::size_t>(tail.size(), cut_from - window.offset());
     searched_to = window.offset() + tail.size();
     const Bytes rest = tail.subspan(from);
-    if (find_start(rest) < rest.size()) {
+    if (find_start(rest, stream.framing) < rest.size()) {
         begin_search("bytes of a packet are missing");
         return Step::kGoOn;
     }
@@ -206,6 +220,7 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
         limit_vain_work(payload.size());
         return Step::kGoOn;
     }
+    checksum = add_to_checksum(checksum, bytes);
     const auto fault = fault_of(found, payload);
     if (fault)
         note(size, *fault);
@@ -221,7 +236,7 @@ std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& foun
                                                         Bytes payload) const {
     if (index_offset) return "a packet after the index";
     if (found.kind == PacketKind::kSamples)
-        return sample_fault(header, found, payload, order.expected(), any_schedule);
+        return sample_fault(stream.header, found, payload, order.expected(), any_schedule);
     if (found.kind != PacketKind::kIndex)
         return fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
     // After damage and gaps no offset is right, but the number of slots is.
@@ -229,7 +244,7 @@ std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& foun
     const bool intact = report.damage.empty() && end == order.expected();
     const auto before = intact ? window.offset() : std::numeric_limits<std::uint64_t>::max();
     if (auto fault = index_fault(found, payload, before, order.expected())) return fault;
-    return intact ? wrong_entry(load_index(payload), window) : std::nullopt;
+    return intact ? wrong_entry(load_index(payload), window, stream.framing) : std::nullopt;
 }
 
 void StreamReader::Impl::skip_to(StreamPosition position) {
@@ -246,12 +261,12 @@ void StreamReader::Impl::deliver(const PacketHeader& found, Bytes payload, Sampl
     packet.flags = found.flags;
     skip_to({packet.slot, packet.first_row});
     packet.dn.resize(found.samples);
-    unpack_bits(payload, header.calibration.bit_depth, packet.dn);
+    unpack_bits(payload, stream.header.calibration.bit_depth, packet.dn);
     order.advance(packet.rows);
     ++report.packets;
     report.samples += found.samples;
     report.payload_bits +=
-        std::uint64_t{found.samples} * static_cast<unsigned>(header.calibration.bit_depth);
+        std::uint64_t{found.samples} * static_cast<unsigned>(stream.header.calibration.bit_depth);
     report.slots = packet.slot + 1;
 }
 
@@ -261,13 +276,16 @@ void StreamReader::Impl::take_index(const PacketHeader& found) {
     skip_to({report.slots, 0});
 }
 
-void StreamReader::Impl::take_end_marker(std::uint64_t index_at) {
-    if (report.damage.empty() && index_at != index_offset)
-        note(kEndMarkerBytes, "the end marker does not point to an index before it");
-    window.skip(kEndMarkerBytes);
+void StreamReader::Impl::take_end_marker(const EndMarker& marker) {
+    const std::size_t size = end_marker_bytes(stream.framing);
+    if (report.damage.empty() && marker.index_offset != index_offset)
+        note(size, "the end marker does not point to an index before it");
+    else if (report.damage.empty() && marker.checksum.value_or(checksum) != checksum)
+        note(0, kOtherPackets);
+    window.skip(size);
     end_offset = window.offset();
     report.complete = true;
-    if (!slots) slots = slots_by_index(window);
+    if (!slots) slots = slots_by_index(window, stream.framing);
 }
 
 bool StreamReader::Impl::more_comes() {
@@ -294,13 +312,13 @@ StreamReader::StreamReader(StreamReader&&) noexcept = default;
 StreamReader& StreamReader::operator=(StreamReader&&) noexcept = default;
 
 const StreamHeader& StreamReader::header() const {
-    return impl_->header;
+    return impl_->stream.header;
 }
 
 void StreamReader::use_schedule(ExposureSchedule schedule) {
     assert(impl_->report.packets == 0);
-    impl_->header.schedule = std::move(schedule);
-    impl_->header.schedule_source = {};
+    impl_->stream.header.schedule = std::move(schedule);
+    impl_->stream.header.schedule_source = {};
 }
 
 std::optional<std::int64_t> StreamReader::slots() const {

@@ -32,6 +32,7 @@ struct StreamDamage {
 struct StreamReport {
     static constexpr std::size_t kMaxListedDamage = 1000;
 
+    int version = 0;  ///< of the format, docs/stream_format.md
     std::uint64_t packets = 0;
     std::uint64_t samples = 0;
     std::uint64_t payload_bits = 0;

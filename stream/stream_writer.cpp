@@ -17,7 +17,11 @@ struct StreamWriter::Impl {
     /// `encoded` comes in, so that the header is checked before the file is created.
     Impl(const std::filesystem::path& path, const StreamHeader& stream, const std::string& place,
          const std::vector<std::uint8_t>& encoded)
-        : header(stream), file(path, place), order(stream.shape.rows) {
+        : header(stream),
+          file(path, place),
+          order(stream.shape.rows),
+          seed(framing_of(encoded).seed),
+          checksum(seed) {
         file.append(encoded);
     }
 
@@ -27,6 +31,8 @@ struct StreamWriter::Impl {
     AppendFile file;
     PacketOrder order;
     SlotIndex index;
+    std::uint32_t seed;      ///< of the CRCs of packets
+    std::uint32_t checksum;  ///< of all packets written
 };
 
 bool StreamWriter::Impl::is_due(const SamplePacket& packet) const {
@@ -49,10 +55,11 @@ StreamWriter::~StreamWriter() = default;
 
 void StreamWriter::write(const SamplePacket& packet) {
     assert(impl_->is_due(packet));
-    const auto bytes = encode_samples(packet, impl_->header.calibration.bit_depth);
+    const auto bytes = encode_samples(packet, impl_->header.calibration.bit_depth, impl_->seed);
     if (packet.first_row == 0)
         impl_->index.add({static_cast<std::uint64_t>(packet.slot), impl_->file.bytes()});
     impl_->file.append(bytes);
+    impl_->checksum = add_to_checksum(impl_->checksum, bytes);
     impl_->order.advance(packet.rows);
 }
 
@@ -67,8 +74,9 @@ void StreamWriter::finish() {
     header.samples = static_cast<std::uint32_t>(entries.size());
     std::vector<std::uint8_t> bytes(kPacketHeaderBytes + entries.size() * kIndexEntryBytes);
     store_index(entries, std::span(bytes).subspan(kPacketHeaderBytes));
-    frame_packet(header, bytes);
-    const auto marker = encode_end_marker(impl_->file.bytes());
+    frame_packet(header, bytes, impl_->seed);
+    const auto marker = encode_end_marker(impl_->file.bytes(),
+                                          add_to_checksum(impl_->checksum, bytes), impl_->seed);
     bytes.insert(bytes.end(), marker.begin(), marker.end());
     impl_->file.append(bytes);
     impl_->file.close();

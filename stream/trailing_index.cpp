@@ -8,16 +8,17 @@
 
 namespace stipple {
 
-std::optional<std::int64_t> slots_by_index(const FileWindow& file) {
+std::optional<std::int64_t> slots_by_index(const FileWindow& file, const Framing& framing) {
+    const std::size_t marker_bytes = end_marker_bytes(framing);
     const std::uint64_t end = file.file_bytes().value_or(0);
-    if (end < kEndMarkerBytes) return std::nullopt;
-    const auto marker = file.read_at(end - kEndMarkerBytes, kEndMarkerBytes);
-    if (!marker || start_of(*marker) != Start::kEnd) return std::nullopt;
-    const std::uint64_t offset = decode_end_marker(*marker);
+    if (end < marker_bytes) return std::nullopt;
+    const auto marker = file.read_at(end - marker_bytes, marker_bytes);
+    if (!marker || start_of(*marker, framing) != Start::kEnd) return std::nullopt;
+    const std::uint64_t offset = decode_end_marker(*marker, framing).index_offset;
     const auto start = file.read_at(offset, kPacketHeaderBytes);
-    if (!start || start_of(*start) != Start::kPacket) return std::nullopt;
+    if (!start || start_of(*start, framing) != Start::kPacket) return std::nullopt;
     const PacketHeader packet = decode_packet_header(*start);
-    const bool last = offset + kPacketHeaderBytes + packet.payload_bytes + kEndMarkerBytes == end;
+    const bool last = offset + kPacketHeaderBytes + packet.payload_bytes + marker_bytes == end;
     if (packet.kind != PacketKind::kIndex || !last) return std::nullopt;
     const auto payload = file.read_at(offset + kPacketHeaderBytes, packet.payload_bytes);
     if (!payload || crc32c(*payload) != packet.payload_crc) return std::nullopt;
@@ -28,11 +29,11 @@ std::optional<std::int64_t> slots_by_index(const FileWindow& file) {
 }
 
 std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
-                                       const FileWindow& file) {
+                                       const FileWindow& file, const Framing& framing) {
     if (!file.file_bytes()) return std::nullopt;
     for (const IndexEntry& entry : entries) {
         const auto start = file.read_at(entry.offset, kPacketHeaderBytes);
-        const bool packet = start && start_of(*start) == Start::kPacket;
+        const bool packet = start && start_of(*start, framing) == Start::kPacket;
         const PacketHeader header = packet ? decode_packet_header(*start) : PacketHeader{};
         if (!packet || header.kind != PacketKind::kSamples || header.slot != entry.slot ||
             header.first_row != 0)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "core/error.h"
 #include "stream/bit_packing.h"
@@ -15,6 +16,7 @@
 namespace stipple {
 namespace {
 
+constexpr const char* kPlace = "the coded stream";  ///< in messages
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 20U;
 constexpr std::size_t kScheduleCrcAt = 88;  ///< docs/stream_format.md, "Header"
 /// A slot is one packet of samples, or two where rows are dropped.
@@ -47,10 +49,15 @@ std::size_t most_samples(const StreamHeader& header) {
 
 }  // namespace
 
+CodedHeader coded_header(StreamHeader stream) {
+    const Framing framing = framing_of(encode_header(stream, kPlace));
+    return {std::move(stream), framing};
+}
+
 ServedImage coded_image(const StreamHeader& header) {
-    const auto encoded = encode_header(header, "the coded stream");
+    const auto encoded = encode_header(header, kPlace);
     if (encoded.size() > kMaxHeaderBytes)
-        throw InputError("the coded stream",
+        throw InputError(kPlace,
                          fmt::format("its header has {} bytes, a client can read {} through "
                                      "registers; choose a schedule with a smaller tile",
                                      encoded.size(), kMaxHeaderBytes));
@@ -68,13 +75,14 @@ ServedImage coded_image(const StreamHeader& header) {
 }
 
 std::vector<std::uint8_t> coded_payload(std::span<const SamplePacket> packets,
-                                        const StreamHeader& header, const ServedImage& image) {
+                                        const CodedHeader& header, const ServedImage& image) {
     const std::size_t size =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     std::vector<std::uint8_t> payload;
     payload.reserve(size);
     for (const SamplePacket& packet : packets) {
-        const auto bytes = encode_samples(packet, header.calibration.bit_depth);
+        const auto bytes =
+            encode_samples(packet, header.stream.calibration.bit_depth, header.framing.seed);
         payload.insert(payload.end(), bytes.begin(), bytes.end());
     }
     assert(payload.size() <= size);
@@ -82,26 +90,27 @@ std::vector<std::uint8_t> coded_payload(std::span<const SamplePacket> packets,
     return payload;
 }
 
-CodedSlot decode_coded_payload(const StreamHeader& header, std::span<const std::uint8_t> payload,
+CodedSlot decode_coded_payload(const CodedHeader& header, std::span<const std::uint8_t> payload,
                                StreamPosition expected) {
     CodedSlot slot;
     while (!payload.empty() && payload.front() != 0) {
-        DecodedSamples decoded = decode_samples(header, payload, expected);
+        DecodedSamples decoded = decode_samples(header.stream, header.framing, payload, expected);
         if (!decoded.fault.empty()) {
             slot.fault = std::move(decoded.fault);
             return slot;
         }
         payload = payload.subspan(decoded.bytes);
         const int end_row = decoded.packet.first_row + decoded.packet.rows;
-        expected = end_row == header.shape.rows ? StreamPosition{decoded.packet.slot + 1, 0}
-                                                : StreamPosition{decoded.packet.slot, end_row};
+        expected = end_row == header.stream.shape.rows
+                       ? StreamPosition{decoded.packet.slot + 1, 0}
+                       : StreamPosition{decoded.packet.slot, end_row};
         slot.packets.push_back(std::move(decoded.packet));
     }
     if (slot.packets.empty()) slot.fault = "it holds no packet";
     return slot;
 }
 
-StreamHeader decode_coded_header(const std::string& digits, const std::string& place) {
+CodedHeader decode_coded_header(const std::string& digits, const std::string& place) {
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
         const int high = digit_value(digits[i]);
@@ -111,7 +120,7 @@ StreamHeader decode_coded_header(const std::string& digits, const std::string& p
     }
     if (bytes.size() < kHeaderStartBytes || header_bytes(bytes, place) != bytes.size())
         throw InputError(place, "is no whole header of a sample stream");
-    return decode_header(bytes, place);
+    return {decode_header(bytes, place), framing_of(bytes)};
 }
 
 }  // namespace stipple

@@ -1,9 +1,12 @@
 """Streams that are foreign or damaged: refused, or decoded as far as they are intact."""
 
 import json
+import struct
 import unittest
 
-from program import INPUT, OK, ProgramTest
+import numpy as np
+from program import INPUT, OK, ProgramTest, project_path
+from sample_stream import crc32c, parts, sealed
 
 
 class BadStreamsTest(ProgramTest):
@@ -26,6 +29,19 @@ class BadStreamsTest(ProgramTest):
     def test_a_newer_version_is_called_so(self):
         self.change_byte(self.write_stream(), 8)
         self.refuse("clip.stipple", "version")
+
+    def test_version_1_is_read(self):
+        old = project_path("tests/golden/stream_version_1")
+        for file, slots, code in (("bands_of_rows", 3, OK), ("interrupted", 3, OK),
+                                  ("damaged_payload", 3, INPUT)):
+            stream = self.folder / f"{file}.stipple"
+            stream.write_bytes((old / stream.name).read_bytes())
+            done = self.run_program("info", stream.name, "--json", "-")
+            self.assertEqual(done.returncode, code, done.stderr)
+            info = json.loads(done.stdout)
+            self.assertEqual((info["version"], info["slots"]), (1, slots))
+            self.run_program("decode", stream.name, "-o", f"{file}.npy", "--method", "naive")
+            self.assertEqual(len(self.array(f"{file}.npy")), slots)
 
     def test_a_damaged_header(self):
         self.change_byte(self.write_stream(), 40)
@@ -68,6 +84,48 @@ class BadStreamsTest(ProgramTest):
         self.assertEqual(report["missing_slots"], 1)
         self.assertEqual(report["packets"], 29)
         self.assertGreater(report["damage"][0]["bytes"], 0)
+
+    def test_packets_of_another_recording_are_damage(self):
+        streams = []
+        for light in ("a.npy", "b.npy"):
+            self.write_array(light, np.random.default_rng(ord(light[0])).random((30, 32, 32)))
+            self.succeed("emulate", light, "-o", "clip.stipple", "--force")
+            streams.append(parts((self.folder / "clip.stipple").read_bytes()))
+        (header, first, _), (other, second, marker) = streams
+        self.assertEqual(len(header), len(other))
+        self.assertEqual(list(map(len, first)), list(map(len, second)))
+        torn = self.folder / "torn.stipple"
+        torn.write_bytes(header + b"".join(first[:8] + second[8:]) + marker)
+        done = self.run_program("info", torn.name, "--json", "-")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("another stream", done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual((report["version"], report["complete"]), (2, False))
+        self.assertEqual((report["packets"], report["slots"]), (8, 8))
+        tear = len(header) + sum(map(len, first[:8]))
+        self.assertEqual([(place["offset"], place["bytes"]) for place in report["damage"]],
+                         [(tear, torn.stat().st_size - tear)])
+        done = self.run_program("decode", torn.name, "-o", "out.npy", "--method", "naive")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertEqual(len(self.array("out.npy")), 8)
+        self.fails(INPUT, ["another stream"], "decode", torn.name, "-o", "no.npy", "--strict")
+
+    def test_packets_that_are_good_but_not_those_recorded_are_told(self):
+        path = self.folder / self.write_stream(rows=32, cols=32)
+        content = path.read_bytes()
+        self.assertEqual(sealed(*parts(content)), content)
+        header, packets, marker = parts(content)
+        packets[9] = packets[9][:-1] + bytes([packets[9][-1] ^ 1])
+        other = sealed(header, packets, marker)
+        path.write_bytes(other)
+        self.succeed("info", path.name)
+        seed, end = crc32c(header[:-4]), marker[:16]  # the checksum of the packets as they were
+        path.write_bytes(other[:-20] + end + struct.pack("<I", crc32c(end, seed)))
+        for command in (["info"], ["decode", "-o", "out.npy", "--method", "naive"]):
+            done = self.run_program(command[0], path.name, *command[1:])
+            self.assertEqual(done.returncode, INPUT)
+            self.assertIn("not those that were recorded", done.stderr)
+        self.assertEqual(len(self.array("out.npy")), 30)
 
     def test_strict_writes_nothing(self):
         name = self.damaged_stream()

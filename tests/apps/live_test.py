@@ -10,6 +10,7 @@ import unittest
 
 import numpy as np
 from program import DEVICE, INPUT, STOPPED, USAGE, ProgramTest
+from sample_stream import samples
 
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
 WINDOW = 16  # slots of a preview: twice the longest exposure of the schedule `random`
@@ -186,8 +187,7 @@ class ColourFilterTest(LiveTest):
 
     def samples(self, name):
         """The packets of a stream; names of files are in its header."""
-        content = (self.folder / name).read_bytes()
-        return content[struct.unpack_from("<I", content, 12)[0]:content.rindex(b"\xc5SPK")]
+        return samples((self.folder / name).read_bytes())
 
     def test_the_sensor_samples_it_as_it_does_colour(self):
         gbrg = ("--sensor", "ideal", "--set", "cfa=gbrg")

@@ -2,25 +2,22 @@
 
 import os
 import signal
-import struct
 import subprocess
 import time
 import unittest
+from itertools import accumulate
 
 import numpy as np
 from program import INPUT, STOPPED, ProgramTest
+from sample_stream import parts
 
 CORE, REST = 48, 16  # decoder/block_partition.h: slots of a block, and of a rest that it takes along
 
 
 def packet_begins(content):
     """Offsets of the packets of a stream, and of its end marker."""
-    at = struct.unpack_from("<I", content, 12)[0]
-    begins = []
-    while content[at:at + 4] == b"\xc5SPK":
-        begins.append(at)
-        at += 36 + struct.unpack_from("<I", content, at + 24)[0]
-    return begins + [at]
+    header, packets, _ = parts(content)
+    return list(accumulate(map(len, packets), initial=len(header)))
 
 
 class UntilTest(ProgramTest):

@@ -1,10 +1,10 @@
 """decode --check-schedule: a chip that ran its schedule with a shift that the header does not know."""
 
-import struct
 import unittest
 
 import numpy as np
 from program import INPUT, USAGE, ProgramTest
+from sample_stream import parts, sealed
 
 SLOTS, ROWS, COLS = 40, 48, 64
 
@@ -27,10 +27,9 @@ class ScheduleCheckTest(ProgramTest):
 
     def exchange_headers(self, header, samples, name):
         """A stream with the header of one and the packets of the other."""
-        contents = [(self.folder / file).read_bytes() for file in (header, samples)]
-        ends = [struct.unpack_from("<I", content, 12)[0] for content in contents]
-        self.assertEqual(*ends)
-        (self.folder / name).write_bytes(contents[0][:ends[0]] + contents[1][ends[1]:])
+        stated, run = (parts((self.folder / file).read_bytes()) for file in (header, samples))
+        self.assertEqual(len(stated[0]), len(run[0]))
+        (self.folder / name).write_bytes(sealed(stated[0], *run[1:]))
         return name
 
     def decode(self, stream, out, *arguments):

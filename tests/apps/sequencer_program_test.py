@@ -1,7 +1,6 @@
 """A compiled schedule drives the chip as the schedule does, and Verilog reads it as we do."""
 
 import shutil
-import struct
 import subprocess
 import tomllib
 import unittest
@@ -9,6 +8,7 @@ import unittest
 import numpy as np
 
 from program import INPUT, USAGE, ProgramTest, project_path
+from sample_stream import samples
 
 TILES = {"tiled": ["--set", "tile_rows=5", "--set", "tile_cols=7"],
          "full1x": [], "pixel_flutter": [], "two_bucket": []}
@@ -19,9 +19,7 @@ class SequencerProgramTest(ProgramTest):
         return self.figures("schedule", "compile", name, "-o", f"{name}.mem", *options)
 
     def packets(self, name):
-        """All of a stream between its header and its index, which holds offsets."""
-        content = (self.folder / name).read_bytes()
-        return content[struct.unpack_from("<I", content, 12)[0]:content.rindex(b"\xc5SPK")]
+        return samples((self.folder / name).read_bytes())
 
     def figures_of(self, file):
         lines = (self.folder / file).read_text().splitlines()

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import threading
 import time
+import tomllib
 import unittest
 
 import numpy as np
@@ -188,6 +189,20 @@ class ServeTest(ProgramTest):
         self.assertEqual(report["slots"], 24)
         self.assertGreater(report["missing_slots"], 0)
         self.assertEqual(self.figures("info", "clip.stipple")["slots"], 24)
+
+    def test_no_two_live_streams_have_the_same_header(self):
+        address = self.serve(self.scene(), "--repeat")
+        provenances = []
+        for output in ("one.stipple", "two.stipple"):
+            done = self.run_program("capture", "live", "gige:" + address, "-o", output, "--frames", 3)
+            if BUILT_WITHOUT in done.stderr:
+                self.skipTest(BUILT_WITHOUT)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            provenances.append(tomllib.loads(self.figures("info", output)["provenance"]))
+        names = [provenance["footage"].pop("recording") for provenance in provenances]
+        self.assertEqual([len(name) for name in names], [16, 16])
+        self.assertNotEqual(*names)
+        self.assertEqual(*provenances)
 
     def test_a_camera_without_coded_stream_says_so(self):
         address = self.serve(self.scene())

@@ -211,7 +211,7 @@ std::string with_gap(const StreamHeader& header, std::uint64_t slot) {
     far.slot = slot;
     far.rows = 2;
     far.samples = 4;
-    return stream.bytes.substr(0, stream.begins[1]) + framed(far, "1234");
+    return stream.bytes.substr(0, stream.begins[1]) + framed(far, "1234", stream.seed());
 }
 
 TEST_F(ReconstructTest, GoesOnAfterALongGapAtOnce) {

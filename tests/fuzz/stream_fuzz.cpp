@@ -48,16 +48,24 @@ std::size_t repair_header(Bytes& bytes) {
 /// The same for each packet and end marker, so that the fuzzer gets beyond the CRCs.
 Bytes repaired(Bytes bytes) {
     const std::span<std::uint8_t> view(bytes);
-    for (std::size_t at = repair_header(bytes); at + 16 <= bytes.size();) {
+    std::size_t at = repair_header(bytes);
+    const Framing framing = framing_of(view.first(at));
+    const std::size_t marker = end_marker_bytes(framing);
+    std::uint32_t checksum = framing.seed;
+    while (at + marker <= bytes.size()) {
         const auto rest = view.subspan(at);
         const auto sync = load<std::uint32_t>(rest.data());
-        if (sync == 0x444E45C5) store(&rest[12], crc32c(rest.first(12)));
+        if (sync == 0x444E45C5) {
+            if (framing.version != 1) store(&rest[12], checksum);
+            store(&rest[marker - 4], crc32c(rest.first(marker - 4), framing.seed));
+        }
         if (sync == 0x4B5053C5 && rest.size() >= kPacketHeaderBytes) {
             const std::size_t left = rest.size() - kPacketHeaderBytes;
             const std::size_t payload = load<std::uint32_t>(&rest[24]);
             if (payload <= left)
                 store(&rest[28], crc32c(rest.subspan(kPacketHeaderBytes, payload)));
-            store(&rest[32], crc32c(rest.first(32)));
+            store(&rest[32], crc32c(rest.first(32), framing.seed));
+            checksum = add_to_checksum(checksum, rest);
             at += kPacketHeaderBytes + (payload <= left ? payload : 0);
         } else {
             ++at;
@@ -91,8 +99,10 @@ Reading read(const Bytes& bytes, ReadPolicy policy) {
     Reading reading;
     try {
         StreamReader reader(file.path(), policy);
-        // There is one way only to write a header.
-        const Bytes header = encode_header(reader.header(), "");
+        // There is one way only to write a header, but for the version.
+        Bytes header = encode_header(reader.header(), "");
+        header[8] = bytes[8];
+        repair_header(header);
         require(std::equal(header.begin(), header.end(), bytes.begin()));
         for (SamplePacket packet; reader.next(packet);) {
             if (policy != ReadPolicy::kAnySchedule) check_packet(reader.header(), packet);

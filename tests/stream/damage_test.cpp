@@ -208,11 +208,11 @@ TEST(DamageTest, OverlappingPacketsDoNotMakeTheWorkQuadratic) {
     while (bytes.size() < end) {
         const std::size_t rest = end - bytes.size() - kPacketHeaderBytes;
         std::string packet(kPacketHeaderBytes, '\0');
-        frame_packet({}, as_numbers(packet));
+        frame_packet({}, as_numbers(packet), s.stream.seed());
         const auto numbers = as_numbers(packet);
         store(&numbers[24], static_cast<std::uint32_t>(rest));
         store(&numbers[28], 0x12345678U);
-        store(&numbers[32], crc32c(numbers.first(32)));
+        store(&numbers[32], crc32c(numbers.first(32), s.stream.seed()));
         bytes += packet;
     }
     expect_parts(message_of<InputError>([&] { return read_bytes(bytes); }),

@@ -1,6 +1,8 @@
 #include "tests/stream/golden_cases.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "tests/stream/stream_bytes.h"
 
@@ -30,7 +32,7 @@ std::string addressed_packet() {
     packet.samples = 1;
     const std::string sample("\x02\x00\x03\x00\x00\x01\xFF\x03", 8);
     std::string bytes = stream.bytes;
-    return bytes.insert(stream.begins[2], framed(packet, sample));
+    return bytes.insert(stream.begins[2], framed(packet, sample, stream.seed()));
 }
 
 std::string calibrated_mosaic() {
@@ -53,6 +55,27 @@ std::vector<GoldenCase> features() {
             {"calibrated_mosaic", calibrated_mosaic()},
             {"flags", flags()},
             {"addressed_packet", addressed_packet()}};
+}
+
+/// The first half of one stream and the second of another, whose samples differ.
+std::string torn() {
+    StreamHeader header = varied_header({4, 4, 1});
+    auto packets = random_packets(header, 4, 4);
+    const StreamBytes first = bytes_of(header, packets);
+    header.provenance = "seed = 2\nfootage = \"Gänge\"\n";
+    for (SamplePacket& packet : packets) std::ranges::reverse(packet.dn);
+    return first.bytes.substr(0, first.begins[2]) +
+           bytes_of(header, packets).bytes.substr(first.begins[2]);
+}
+
+/// The samples of slots 1 and 2 have changed places, and all CRCs are good.
+std::string samples_exchanged() {
+    StreamHeader header = varied_header({4, 4, 1});
+    header.schedule = {1, 1, 1, {0, 1}, {{0, 1}}};
+    auto packets = random_packets(header, 4, 4);
+    const StreamBytes stream = bytes_of(header, packets);
+    std::swap(packets[1].dn, packets[2].dn);
+    return with_checksum_of(stream, bytes_of(header, packets));
 }
 
 /// Three slots of one packet each, with something done to them.
@@ -83,6 +106,8 @@ std::vector<GoldenCase> damages() {
             {"missing_bytes", without(begins[1] + 10, begins[1] + 20)},
             {"missing_end_of_last_packet", without(begins[3] - 3, begins[3])},
             {"packet_twice", twice},
+            {"torn", torn()},
+            {"samples_exchanged", samples_exchanged()},
             {"bytes_after_end", whole.bytes + "more"}};
 }
 

@@ -1,4 +1,4 @@
-// The files in tests/golden/stream say what version 1 is, for other programs too. After an intended
+// The files in tests/golden/stream say what version 2 is, for other programs too. After an intended
 // change of the format: STIPPLE_UPDATE_GOLDEN=1 build/release/stream_test --gtest_filter='Golden*'
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::filesystem::path kFolder = project_path("tests/golden/stream");
+/// As this library wrote and read them when it knew version 1 only.
+const std::filesystem::path kFolder1 = project_path("tests/golden/stream_version_1");
 
 bool updating() {
     return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;
@@ -137,6 +139,23 @@ TEST(GoldenTest, EachFileReadsAsItsDescriptionSays) {
         if (updating()) write_text(file, text);
         EXPECT_EQ(read_text(file), text) << file;
     }
+}
+
+TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(kFolder1)) {
+        if (entry.path().extension() != ".stipple") continue;
+        auto json = entry.path();
+        json.replace_extension(".json");
+        EXPECT_EQ(read_text(json), pretty(description(read_text(entry.path())))) << entry.path();
+        ++files;
+    }
+    EXPECT_EQ(files, 24);
+}
+
+TEST(GoldenTest, AFileOfVersion1TellsItsSlotsAtOnce) {
+    EXPECT_EQ(StreamReader(kFolder1 / "bands_of_rows.stipple").slots(), 3);
+    EXPECT_EQ(StreamReader(kFolder1 / "interrupted.stipple").slots(), std::nullopt);
 }
 
 TEST(GoldenTest, NoFileIsLeftOver) {

@@ -51,12 +51,12 @@ void expect_refused(Change&& change, const std::string& cause) {
     PacketHeader packet = s.good();
     std::string payload = s.good_payload();
     change(packet, payload);
-    expect_refused(s, framed(packet, payload), cause);
+    expect_refused(s, framed(packet, payload, s.stream.seed()), cause);
 }
 
 TEST(PacketFaultsTest, TheUnchangedPacketIsGood) {
     const BrokenStream s;
-    EXPECT_EQ(s.with(framed(s.good(), s.good_payload())), s.stream.bytes);
+    EXPECT_EQ(s.with(framed(s.good(), s.good_payload(), s.stream.seed())), s.stream.bytes);
 }
 
 TEST(PacketFaultsTest, ReservedBytesAndUnknownFlags) {
@@ -116,16 +116,17 @@ TEST(PacketFaultsTest, KindsThatAreNotSupportedAreSteppedOver) {
     const BrokenStream s;
     PacketHeader packet;
     packet.kind = PacketKind{77};
-    expect_refused(s, framed(packet, framed(s.good(), s.good_payload())),
+    const std::uint32_t seed = s.stream.seed();
+    expect_refused(s, framed(packet, framed(s.good(), s.good_payload(), seed), seed),
                    "packets of kind 77 are not supported");
 }
 
 TEST(PacketFaultsTest, APayloadBeyondItsLimitIsNotWaitedFor) {
     const BrokenStream s;
-    std::string broken = framed(s.good(), "");
+    std::string broken = framed(s.good(), "", s.stream.seed());
     const auto numbers = as_numbers(broken);
     store(&numbers[24], kMaxPayloadBytes + 1);
-    store(&numbers[32], crc32c(numbers.first(32)));
+    store(&numbers[32], crc32c(numbers.first(32), s.stream.seed()));
     expect_refused(s, broken, "a payload is beyond 2^29 bytes");
 }
 
@@ -138,9 +139,14 @@ std::string with_index(const BrokenStream& s, std::uint64_t slots,
     packet.samples = static_cast<std::uint32_t>(entries.size());
     std::string payload(entries.size() * kIndexEntryBytes, '\0');
     store_index(entries, as_numbers(payload));
-    const auto marker = encode_end_marker(s.stream.begins[3]);
-    return s.stream.bytes.substr(0, s.stream.begins[3]) + framed(packet, payload) +
-           std::string(marker.begin(), marker.end());
+    const std::uint32_t seed = s.stream.seed();
+    std::string bytes = s.stream.bytes.substr(0, s.stream.begins[3]);
+    std::uint32_t checksum = seed;
+    bytes += framed(packet, payload, seed);
+    for (std::size_t i = 0; i < 4; ++i)
+        checksum = add_to_checksum(checksum, as_numbers(bytes).subspan(s.stream.begins[i]));
+    const auto marker = encode_end_marker(s.stream.begins[3], checksum, seed);
+    return bytes + std::string(marker.begin(), marker.end());
 }
 
 void expect_index_refused(const BrokenStream& s, const std::string& bytes,
@@ -197,7 +203,7 @@ TEST(PacketFaultsTest, NothingMayComeAfterTheIndex) {
 
 TEST(PacketFaultsTest, AnEndMarkerPointsToTheIndex) {
     const BrokenStream s;
-    const auto marker = encode_end_marker(17);
+    const auto marker = encode_end_marker(17, 0, s.stream.seed());
     const std::string text(marker.begin(), marker.end());
     const std::string cause = "the end marker does not point to an index before it\n";
     const std::size_t end = s.stream.begins[4];

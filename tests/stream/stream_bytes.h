@@ -21,6 +21,13 @@ namespace stipple {
 struct StreamBytes {
     std::string bytes;
     std::vector<std::size_t> begins;
+
+    /// CRC of the header, which those of packets continue.
+    [[nodiscard]] std::uint32_t seed() const {
+        std::uint32_t crc = 0;
+        std::memcpy(&crc, &bytes[begins[0] - 4], 4);
+        return crc;
+    }
 };
 
 inline StreamBytes bytes_of(const StreamHeader& header, const std::vector<SamplePacket>& packets) {
@@ -44,10 +51,21 @@ inline std::span<std::uint8_t> as_numbers(std::string& bytes) {
 }
 
 /// A packet with good CRCs, whatever its fields say.
-inline std::string framed(const PacketHeader& header, const std::string& payload) {
+inline std::string framed(const PacketHeader& header, const std::string& payload,
+                          std::uint32_t seed) {
     std::string packet = std::string(kPacketHeaderBytes, '\0') + payload;
-    frame_packet(header, as_numbers(packet));
+    frame_packet(header, as_numbers(packet), seed);
     return packet;
+}
+
+/// `stream` with the checksum of all packets that `original` has, and a good CRC of the end marker.
+inline std::string with_checksum_of(const StreamBytes& original, const StreamBytes& stream) {
+    std::string bytes = stream.bytes;
+    const std::size_t marker = bytes.size() - kEndMarkerBytes;
+    bytes.replace(marker + 12, 4, original.bytes, original.bytes.size() - 8, 4);
+    const auto numbers = as_numbers(bytes);
+    store(&numbers[marker + 16], crc32c(numbers.subspan(marker, 16), stream.seed()));
+    return bytes;
 }
 
 /// Puts the good CRC at the end of a header.
