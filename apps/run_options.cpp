@@ -7,13 +7,14 @@
 #include "apps/command_line.h"
 #include "apps/number_check.h"
 #include "apps/standard_error.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 
 void RunOptions::say(std::string_view text) const {
     if (quiet || json == "-") return;
     clear_bar();
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", terminal_text(text));
 }
 
 void add_run_options(Command& command, RunOptions& run) {
