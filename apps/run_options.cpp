@@ -22,6 +22,8 @@ void add_run_options(Command& command, RunOptions& run) {
         .type_name("FILE")
         .output();
     command.add_flag("--force", run.force, "replace existing outputs");
+    command.add_flag("--no-sync", run.no_sync,
+                     "do not wait until outputs are on the disk; a power cut may lose them");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
 }
 
