@@ -69,6 +69,12 @@ class DiskTest(ProgramTest):
         self.assertEqual(done.returncode, OK, done.stderr)
         self.assertEqual(calls, [("sync", "partial"), ("rename", "old.stipple"), ("sync", ".")])
 
+    def test_a_new_folder_of_several_outputs_is_synced_in_the_one_around_it(self):
+        done, calls = self.run_noted("demo", "--frames", 6, "--size", "16x16", "-o", "shown")
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertEqual(calls[0], ("sync", "."))
+        self.assertEqual(calls[-1], ("sync", "shown"))
+
     def test_no_sync_does_not_wait(self):
         for name in ("out.npy", "out"):
             done, calls = self.run_noted(*SYNTH, name, "--no-sync")

@@ -124,6 +124,16 @@ TEST(PendingOutputTest, TakesNoNameThatAnotherHas) {
     EXPECT_EQ(folder.names().size(), 2U);
 }
 
+TEST(PendingOutputTest, KeepsWhatAKilledProcessOfTheSameNumberHasLeft) {
+    const TemporaryFolder folder;
+    const auto left = folder / (".clip." + std::to_string(getpid()) + ".partial.npy");
+    write_text(left, "theirs");
+    PendingOutput output(folder / "clip.npy", false);
+    write_text(output.partial(), "ours");
+    output.commit();
+    EXPECT_EQ(read_text(left), "theirs");
+}
+
 TEST(PendingOutputTest, DoesNotWriteThroughALinkThatSomebodyHasPutThere) {
     const TemporaryFolder folder;
     write_text(folder / "precious", "theirs");
