@@ -114,7 +114,8 @@ std::optional<fs::path> partial_of(const fs::path& final_path) {
 
 bool exchange_names(const fs::path& a, const fs::path& b) {
     if (renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
-    if (errno == EINVAL || errno == ENOSYS) return false;
+    // EXDEV: a folder of a lower layer of an overlay, as in a container.
+    if (errno == EINVAL || errno == ENOSYS || errno == EXDEV) return false;
     throw fs::filesystem_error("rename", std::error_code(errno, std::generic_category()));
 }
 

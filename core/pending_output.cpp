@@ -202,7 +202,8 @@ void PendingOutput::commit() {
             final_.string(),
             fmt::format("cannot be put in place: {}{}", e.code().message(),
                         fs::exists(partial_, error)
-                            ? fmt::format("; what was written is in {}", partial_.string())
+                            ? fmt::format("; what was written is in {}, rename it to keep it",
+                                          partial_.string())
                             : ""));
     }
     committed_ = true;

@@ -1,6 +1,7 @@
 // Preloaded (LD_PRELOAD), this writes the calls by which a program puts its outputs on the disk and
 // in place to the file DISK_CALLS, a line each: what, and of which path. A sync of a path of the
-// pattern FAILING_SYNC fails with the number FAILING_ERRNO.
+// pattern FAILING_SYNC fails with the number FAILING_ERRNO. With OLD_FILE_SYSTEM renames with flags
+// are not known.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -54,6 +55,10 @@ extern "C" int rename(const char* from, const char* to) noexcept {
 
 extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
                          unsigned flags) noexcept {
+    if (std::getenv("OLD_FILE_SYSTEM") != nullptr) {
+        errno = EINVAL;
+        return -1;
+    }
     note(std::string("rename ") + to + "\n");
     return next<int(int, const char*, int, const char*, unsigned)>("renameat2")(
         from_folder, from, to_folder, to, flags);

@@ -16,13 +16,13 @@ FRAMES = [f"frame_000{slot}.exr" for slot in range(3)]
 
 
 class DiskTest(ProgramTest):
-    def run_noted(self, *arguments, failing="", number=0):
+    def run_noted(self, *arguments, failing="", number=0, **environment):
         """A run, and what it did to put outputs on the disk and in place: (what, name); a hidden name
         is "partial", the folder of the test "."."""
         log = self.folder / "calls"
         done = self.run_program(*arguments, env=os.environ | {
             "LD_PRELOAD": os.environ["DISK_CALLS_LIBRARY"], "DISK_CALLS": str(log),
-            **({"FAILING_SYNC": failing, "FAILING_ERRNO": str(number)} if failing else {})})
+            **environment, **({"FAILING_SYNC": failing, "FAILING_ERRNO": str(number)} if failing else {})})
         calls = [tuple(line.split(" ", 1)) for line in log.read_text().splitlines()] if log.exists() else []
         log.unlink(missing_ok=True)
         names = {str(self.folder): "."}
@@ -61,6 +61,12 @@ class DiskTest(ProgramTest):
         self.assertEqual(calls[3:], [("sync", "partial"), ("rename", "out"), ("sync", ".")])
         self.assertEqual(self.names(), ["out", *(f"out/{name}" for name in FRAMES)])
 
+    def test_a_file_system_that_cannot_exchange_names_will_do(self):
+        for force, name in (([], "out"), (["--force"], "out"), ([], "out.npy"), (["--force"], "out.npy")):
+            done, calls = self.run_noted(*SYNTH, name, *force, OLD_FILE_SYSTEM="1")
+            self.assertEqual((done.returncode, calls[-2:]), (OK, [("rename", name), ("sync", ".")]), done.stderr)
+        self.assertEqual(self.names(), ["out", "out.npy", *(f"out/{name}" for name in FRAMES)])
+
     def test_a_leftover_that_is_kept_is_synced(self):
         stream = self.folder / self.write_stream("clip.stipple")
         left = self.folder / ".old.999999999-01ab.partial.stipple"
@@ -89,7 +95,7 @@ class DiskTest(ProgramTest):
             done, _ = self.run_noted(*SYNTH, name, "--force", failing=failing, number=number)
             self.assertEqual(done.returncode, DEVICE, done.stderr)
             left, = self.leftovers()
-            for part in (f"{name}: cannot be put in place: {os.strerror(number)}", "what was written is in", left):
+            for part in (f"{name}: cannot be put in place: {os.strerror(number)}", "what was written is in", f"{left}, rename it"):
                 self.assertIn(part, done.stderr)
             self.assertEqual(one.read_bytes(), before)
             if name == "out.npy":
