@@ -10,6 +10,7 @@
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
 #include "apps/trial.h"
+#include "core/disk_sync.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -51,6 +52,7 @@ DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
     if (fs::is_directory(folder, error)) return;
     made_ = fs::create_directory(folder, error);
     if (!made_) throw DeviceError(folder.string(), "cannot be created: " + error.message());
+    sync_to_disk(folder / "..");
 }
 
 void demo(const DemoOptions& options, const RunOptions& run) {

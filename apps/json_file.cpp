@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/text_file.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 
@@ -18,7 +19,7 @@ void JsonFile::write(const nlohmann::ordered_json& figures) {
     using nlohmann::ordered_json;
     // Bytes of a damaged file that are no UTF-8 must not stop the report.
     const std::string text =
-        figures.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+        terminal_text(figures.dump(2, ' ', false, ordered_json::error_handler_t::replace)) + "\n";
     if (to_stdout_) fmt::print("{}", text);
     if (output_) write_text(*output_, text);
 }

@@ -7,6 +7,7 @@
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
 #include "capture/recording/recording_reader.h"
+#include "core/disk_sync.h"
 #include "core/error.h"
 #include "stream/stream_reader.h"
 
@@ -40,7 +41,7 @@ Whole whole_of_recording(const fs::path& file) {
 
 void say_leftover(const fs::path& output) {
     const fs::path name = output.has_filename() ? output : output.parent_path();
-    const fs::path folder = name.has_parent_path() ? name.parent_path() : fs::path(".");
+    const fs::path folder = folder_of(name);
     for (const PartialOutput& partial : partial_outputs(folder)) {
         if (partial.final_path.filename() != name.filename() || partial.running()) continue;
         say_error("{}: a run that was killed left {}; `stipple recover {}` says what can be kept",
@@ -85,7 +86,9 @@ Recovered recover(const fs::path& partial, const fs::path& output) {
     try {
         if (fs::exists(fs::symlink_status(output))) refuse();
         fs::resize_file(partial, fs::file_size(partial) - whole.tail_bytes);
+        sync_to_disk(partial);
         if (!rename_to_free_name(partial, output)) refuse();
+        sync_to_disk(folder_of(output));
     } catch (const fs::filesystem_error& e) {
         throw DeviceError(output.string(), "cannot be put in place: " + e.code().message());
     }

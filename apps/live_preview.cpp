@@ -16,6 +16,7 @@
 #include "apps/sorted_quantile.h"
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
+#include "core/disk_sync.h"
 #include "core/parallel.h"
 
 namespace stipple {
@@ -68,6 +69,7 @@ void LivePreview::add(std::span<const SamplePacket> packets, std::int64_t arriva
 
 void LivePreview::run() {
     run_when_idle();
+    const NoSync no_sync;  // the next picture comes soon
     for (;;) {
         wake_.acquire();
         if (!handed_over_.load(std::memory_order_acquire)) break;  // `finish` has called

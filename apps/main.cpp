@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -12,6 +13,7 @@
 #include "apps/run_options.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
+#include "core/disk_sync.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -44,6 +46,8 @@ ExitCode signal_code() {
 int run(const Action& action) {
     try {
         const ThreadLimit limit(action.options.threads);
+        std::optional<NoSync> no_sync;
+        if (action.options.no_sync) no_sync.emplace();
         action.run(action.options);
         if (std::fflush(stdout) != 0)
             throw std::system_error(errno, std::generic_category(), "standard output");

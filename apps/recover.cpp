@@ -64,8 +64,8 @@ void recover_file(const RecoverOptions& options, const RunOptions& run) {
                                                    partial->process));
     if (!partial && options.output.empty())
         throw InputError(options.path,
-                         "has no name of an unfinished output (.name.PROCESS.partial.ext), so say "
-                         "with -o what it shall be called");
+                         "has no name of an unfinished output (.name.PROCESS-RANDOM.partial.ext), "
+                         "so say with -o what it shall be called");
     JsonFile json(run);
     const fs::path output = options.output.empty() ? partial->final_path : fs::path(options.output);
     const Recovered recovered = recover(file, output);
@@ -104,9 +104,9 @@ void add_recover(Command& app, Action& action) {
         .output(kRecoveredName);
     command.footer(
         "Examples:\n"
-        "  stipple recover                                   list what lies in this folder\n"
-        "  stipple recover .clip.4711.partial.strec          keep it as clip.strec\n"
-        "  stipple recover .clip.4711.partial.strec -o saved.strec\n"
+        "  stipple recover                                      list what lies in this folder\n"
+        "  stipple recover .clip.4711-5e1f00d5.partial.strec    keep it as clip.strec\n"
+        "  stipple recover .clip.4711-5e1f00d5.partial.strec -o saved.strec\n"
         "Streams and recordings are whole up to their last packet or frame. Nothing else is.");
     set_action(command, action, options, run_recover);
 }

@@ -7,13 +7,14 @@
 #include "apps/command_line.h"
 #include "apps/number_check.h"
 #include "apps/standard_error.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 
 void RunOptions::say(std::string_view text) const {
     if (quiet || json == "-") return;
     clear_bar();
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", terminal_text(text));
 }
 
 void add_run_options(Command& command, RunOptions& run) {
@@ -21,6 +22,8 @@ void add_run_options(Command& command, RunOptions& run) {
         .type_name("FILE")
         .output();
     command.add_flag("--force", run.force, "replace existing outputs");
+    command.add_flag("--no-sync", run.no_sync,
+                     "do not wait until outputs are on the disk; a power cut may lose them");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
 }
 

@@ -10,6 +10,7 @@
 #include "apps/chart.h"
 #include "apps/standard_error.h"
 #include "apps/text_file.h"
+#include "core/disk_sync.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -20,6 +21,7 @@ StageOutputs::StageOutputs(std::filesystem::path folder, FrameShape shape, bool 
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw InputError(folder_.string(), "cannot be made: " + error.message());
+    sync_to_disk(folder_ / "..");
     chart_.emplace(folder_ / "convergence.png", force_);
 }
 

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <string>
 
+#include "stream/plain_text.h"
+
 namespace stipple {
 namespace {
 
@@ -40,9 +42,9 @@ bool clear_bar() noexcept {
 void say_error(std::string_view text) noexcept {
     try {
         std::string line(bar_is_shown.exchange(false) ? kClearLine : "");
-        write_error_text(line.append("stipple: ").append(text).append("\n"));
-    } catch (...) {
-        write_error_text(text);
+        write_error_text(line.append("stipple: ").append(terminal_text(text)).append("\n"));
+    } catch (...) {  // no memory for it
+        write_error_text("stipple: not enough memory\n");
     }
 }
 

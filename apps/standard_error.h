@@ -13,14 +13,15 @@ namespace stipple {
 /// Writes `text` as it is.
 void write_error_text(std::string_view text) noexcept;
 
-/// Shows `line` in place of the last one, on a terminal; an empty one takes it away.
+/// Shows `line` (our own words and numbers) in place of the last one, on a terminal; an empty one
+/// takes it away.
 void show_bar(std::string_view line) noexcept;
 
 /// Takes away the bar that is shown, if one is: other text is about to come. Safe in a signal
 /// handler. Returns whether there was one.
 bool clear_bar() noexcept;
 
-/// A line of its own, "stipple: " before it.
+/// A line of its own, "stipple: " before it, as `terminal_text`.
 void say_error(std::string_view text) noexcept;
 
 /// The same, formatted.

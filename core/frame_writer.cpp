@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -49,7 +50,8 @@ enum class Format { kExrFolder, kNpy, kVideo };
 
 Format format_of(const fs::path& output) {
     const std::string extension = lower_extension(output);
-    if (extension.empty() || fs::is_directory(output)) return Format::kExrFolder;
+    std::error_code error;
+    if (extension.empty() || fs::is_directory(output, error)) return Format::kExrFolder;
     if (extension == ".npy") return Format::kNpy;
     if (extension == ".mp4" || extension == ".mkv") return Format::kVideo;
     throw InputError(output.string(),

@@ -1,5 +1,7 @@
 #include "core/output_file.h"
 
+#include <fcntl.h>
+
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -9,7 +11,11 @@
 namespace stipple {
 
 OutputFile::OutputFile(const std::filesystem::path& path, std::string place)
-    : place_(std::move(place)), file_(std::fopen(path.c_str(), "wb")) {
+    : place_(std::move(place)) {
+    // Not through a link that somebody has put there.
+    constexpr int kMode = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
+    const int descriptor = ::open(path.c_str(), kMode, 0666);
+    if (descriptor >= 0) file_.reset(::fdopen(descriptor, "wb"));
     if (!file_) fail();
 }
 

@@ -22,8 +22,10 @@ namespace {
 
 constexpr std::string_view kMark = ".partial";
 
-fs::path folder_of(const fs::path& path) {
-    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+/// "-" and hexadecimal digits, or nothing, as of version 0.1.
+bool is_random_part(std::string_view text) {
+    return text.empty() || (text.front() == '-' && text.size() > 1 &&
+                            text.find_first_not_of("0123456789abcdef", 1) == text.npos);
 }
 
 /// The name of a process; empty if there is none.
@@ -64,9 +66,14 @@ bool PartialOutput::running() const {
     return error || began(process).value_or(written) <= written + std::chrono::minutes(1);
 }
 
-fs::path partial_path(const fs::path& final_path, int process) {
-    return folder_of(final_path) / fmt::format(".{}.{}{}{}", final_path.stem().string(), process,
-                                               kMark, final_path.extension().string());
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+fs::path partial_path(const fs::path& final_path, int process, std::uint32_t random) {
+    return folder_of(final_path) / fmt::format(".{}.{}-{:08x}{}{}", final_path.stem().string(),
+                                               process, random, kMark,
+                                               final_path.extension().string());
 }
 
 std::optional<PartialOutput> partial_output(const fs::path& path) {
@@ -80,7 +87,8 @@ std::optional<PartialOutput> partial_output(const fs::path& path) {
     PartialOutput found{path, path.parent_path() / (name.substr(1, dot - 1) + extension)};
     const char* const end = name.data() + mark;
     const auto [read_to, error] = std::from_chars(name.data() + dot + 1, end, found.process);
-    if (error != std::errc() || read_to != end || found.process < 1) return std::nullopt;
+    if (error != std::errc() || found.process < 1) return std::nullopt;
+    if (!is_random_part({read_to, end})) return std::nullopt;
     return found;
 }
 
@@ -102,6 +110,13 @@ std::optional<fs::path> partial_of(const fs::path& final_path) {
              fs::last_write_time(partial.path, error) > fs::last_write_time(*newest, error)))
             newest = partial.path;
     return newest;
+}
+
+bool exchange_names(const fs::path& a, const fs::path& b) {
+    if (renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
+    // EXDEV: a folder of a lower layer of an overlay, as in a container.
+    if (errno == EINVAL || errno == ENOSYS || errno == EXDEV) return false;
+    throw fs::filesystem_error("rename", std::error_code(errno, std::generic_category()));
 }
 
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {

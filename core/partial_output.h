@@ -1,13 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
 
 namespace stipple {
 
-/// An output that is not yet complete, as its hidden name says: ".name.PROCESS.partial.ext" for
-/// "name.ext" (docs/cli.md). It stays where its process was killed.
+/// An output that is not yet complete, as its hidden name says: ".name.PROCESS-RANDOM.partial.ext"
+/// for "name.ext" (docs/cli.md). It stays where its process was killed.
 struct PartialOutput {
     std::filesystem::path path;
     std::filesystem::path final_path;
@@ -18,9 +19,13 @@ struct PartialOutput {
     [[nodiscard]] bool running() const;
 };
 
-/// The path to which process `process` writes `final_path`, until it is complete.
+/// The folder that `path` is in: "." for a bare name.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
+
+/// The path to which process `process` writes `final_path`, until it is complete. `random` keeps
+/// two runs apart that have the same number, and others from guessing the name.
 [[nodiscard]] std::filesystem::path partial_path(const std::filesystem::path& final_path,
-                                                 int process);
+                                                 int process, std::uint32_t random);
 
 /// What the name of `path` says; nothing if it is not one of a partial output.
 [[nodiscard]] std::optional<PartialOutput> partial_output(const std::filesystem::path& path);
@@ -32,6 +37,10 @@ struct PartialOutput {
 /// while it did; the newest of several.
 [[nodiscard]] std::optional<std::filesystem::path> partial_of(
     const std::filesystem::path& final_path);
+
+/// Gives each of two files or folders the name of the other at once; false, with nothing done,
+/// where the file system does not know how. \throws std::filesystem::filesystem_error.
+[[nodiscard]] bool exchange_names(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Renames, unless the name is taken: false. Never replaces anything.
 /// \throws std::filesystem::filesystem_error.

@@ -1,16 +1,23 @@
 #include "core/pending_output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/magic.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <random>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "core/disk_sync.h"
 #include "core/error.h"
 #include "core/partial_output.h"
 
@@ -59,10 +66,6 @@ bool all_digits(std::string_view text) {
     return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-fs::path folder_of(const fs::path& path) {
-    return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
 }  // namespace
 
 bool is_frame_name(std::string_view name) {
@@ -86,21 +89,49 @@ fs::path foreign_entry(const fs::path& folder, IsOwnName is_own) {
     return {};
 }
 
+/// Removes a folder that holds nothing but files of ours; fails, and keeps them, if others have
+/// come in since.
+void remove_own_files(const fs::path& folder, IsOwnName is_own) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (is_own(entry.path().filename().string())) fs::remove(entry.path());
+    fs::remove(folder);
+}
+
+/// What the link `path` leads to, by further links too; `path` if it is none.
+fs::path link_target(const fs::path& path) {
+    constexpr int kMostLinks = 40;  // as of Linux
+    fs::path target = path;
+    std::error_code error;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+        struct statfs system {};
+        if (statfs(folder_of(target).c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC)
+            throw InputError(path.string(),
+                             "stands for a file that is open, which no other can replace; give "
+                             "a name, or for --json \"-\"");
+        target = folder_of(target) / fs::read_symlink(target, error);
+    }
+    if (target == path) return path;
+    if (!fs::exists(target, error))
+        throw InputError(path.string(),
+                         fmt::format("is a link to \"{}\", which does not exist; give another name",
+                                     target.string()));
+    return fs::canonical(target, error);
+}
+
 }  // namespace
 
 PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind,
                              IsOwnName is_own)
     : final_(tidy(final_path, kind)), force_(force), kind_(kind), is_own_(is_own) {
+    if (kind == OutputKind::kFile) final_ = link_target(final_);
     const fs::path parent = folder_of(final_);
     std::error_code error;
     if (!fs::is_directory(parent, error))
         throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
                                                       parent.string()));
     if (fs::exists(fs::symlink_status(final_, error))) check_replaceable();
-    partial_ = partial_path(final_, getpid());
-    fs::remove_all(partial_, error);  // left by an earlier process of the same number
-    if (kind == OutputKind::kFolder && !fs::create_directory(partial_, error))
-        throw DeviceError(final_.string(), "cannot be created: " + error.message());
+    partial_ = partial_path(final_, getpid(), std::random_device()());
+    if (kind == OutputKind::kFolder) create_partial();
     place_in_list_ = list_partial(partial_.c_str());
 }
 
@@ -109,17 +140,16 @@ void PendingOutput::check_replaceable() const {
         throw InputError(final_.string(), problem);
     };
     std::error_code error;
-    if (kind_ == OutputKind::kFolder && fs::is_directory(fs::symlink_status(final_, error)) &&
-        fs::is_empty(final_, error))
+    const auto status = fs::symlink_status(final_, error);
+    if (kind_ == OutputKind::kFile && fs::is_directory(status))
+        refuse("is a folder; name a file in it");
+    if (kind_ == OutputKind::kFile && !fs::is_regular_file(status))
+        refuse("exists already and is not a regular file; give another name");
+    if (kind_ == OutputKind::kFolder && fs::is_directory(status) && fs::is_empty(final_, error))
         return;
     if (!force_) refuse("exists already; give another name, or --force to replace it");
-    const auto status = fs::status(final_, error);
-    if (kind_ == OutputKind::kFile) {
-        if (!fs::is_regular_file(status)) refuse("is not a regular file; give another name");
-        return;
-    }
-    if (!fs::is_directory(fs::symlink_status(final_, error)))
-        refuse("is not a folder; give another name");
+    if (kind_ == OutputKind::kFile) return;
+    if (!fs::is_directory(status)) refuse("is not a folder; give another name");
     try {
         const fs::path foreign = foreign_entry(final_, is_own_);
         if (!foreign.empty())
@@ -132,52 +162,94 @@ void PendingOutput::check_replaceable() const {
     }
 }
 
+void PendingOutput::create_partial() const {
+    // What lies there under that name is somebody else's: a link into another folder, say.
+    constexpr int kNew = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    const int made = kind_ == OutputKind::kFolder ? mkdir(partial_.c_str(), 0777)
+                                                  : open(partial_.c_str(), kNew, 0666);
+    if (made < 0)
+        throw DeviceError(final_.string(),
+                          "cannot be created: " + std::generic_category().message(errno));
+    if (kind_ == OutputKind::kFile) close(made);
+    created_ = true;
+}
+
+const fs::path& PendingOutput::partial() const {
+    if (!created_) create_partial();
+    return partial_;
+}
+
 PendingOutput::~PendingOutput() {
     unlist_partial(place_in_list_);
     std::error_code error;
-    if (!committed_) fs::remove_all(partial_, error);
+    if (created_ && !kept_) fs::remove_all(partial_, error);
 }
 
-void PendingOutput::remove_replaced_folder() const {
-    for (const auto& entry : fs::directory_iterator(final_))
-        if (is_own_(entry.path().filename().string())) fs::remove(entry.path());
-    fs::remove(final_);  // fails, and keeps them, if other files have come in since
+void PendingOutput::keep() {
+    kept_ = true;
+    unlist_partial(std::exchange(place_in_list_, kListedOutputs));
 }
 
 void PendingOutput::commit() {
+    fs::path name = final_;
     try {
-        const auto status = fs::symlink_status(final_);
-        if (kind_ == OutputKind::kFolder && force_ && fs::is_directory(status))
-            remove_replaced_folder();
-        if (kind_ == OutputKind::kFolder && !force_) rmdir(final_.c_str());  // only if it is empty
-        if (force_) {
-            fs::rename(partial_, final_);
-        } else if (!rename_to_free_name(partial_, final_)) {
-            keep_under_another_name();
-        }
+        sync_all_to_disk(partial_);
+        if (!put_in_place()) name = put_beside();
     } catch (const fs::filesystem_error& e) {
-        throw DeviceError(final_.string(), "cannot be put in place: " + e.code().message());
+        keep();
+        std::error_code error;
+        throw DeviceError(
+            final_.string(),
+            fmt::format("cannot be put in place: {}{}", e.code().message(),
+                        fs::exists(partial_, error)
+                            ? fmt::format("; what was written is in {}, rename it to keep it",
+                                          partial_.string())
+                            : ""));
     }
-    set_committed();
-}
-
-void PendingOutput::keep_under_another_name() {
-    for (int number = 2;; ++number) {
-        const fs::path name =
-            final_.parent_path() /
-            fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
-        if (!rename_to_free_name(partial_, name)) continue;
-        set_committed();
+    committed_ = true;
+    keep();
+    settle(name);
+    if (name != final_)
         throw DeviceError(final_.string(),
                           fmt::format("was created by another program meanwhile; what was "
                                       "written is in {}",
                                       name.string()));
+}
+
+void PendingOutput::settle(const fs::path& name) const {
+    std::string problem = "its name may not be on the disk";
+    try {
+        sync_to_disk(folder_of(name));
+        problem = fmt::format("{}, what it replaces, cannot be removed", partial_.string());
+        if (replaced_) remove_own_files(partial_, is_own_);
+    } catch (const fs::filesystem_error& e) {
+        throw DeviceError(name.string(),
+                          fmt::format("is complete, but {}: {}", problem, e.code().message()));
     }
 }
 
-void PendingOutput::set_committed() {
-    committed_ = true;
-    unlist_partial(std::exchange(place_in_list_, kListedOutputs));
+bool PendingOutput::put_in_place() {
+    if (kind_ == OutputKind::kFolder && !force_) rmdir(final_.c_str());  // only if it is empty
+    if (!force_) return rename_to_free_name(partial_, final_);
+    if (kind_ == OutputKind::kFolder && fs::is_directory(fs::symlink_status(final_))) {
+        if (!foreign_entry(final_, is_own_).empty())
+            throw fs::filesystem_error("rename",
+                                       std::make_error_code(std::errc::directory_not_empty));
+        replaced_ = exchange_names(partial_, final_);
+        if (replaced_) return true;
+        remove_own_files(final_, is_own_);
+    }
+    fs::rename(partial_, final_);
+    return true;
+}
+
+fs::path PendingOutput::put_beside() const {
+    for (int number = 2;; ++number) {
+        const fs::path name =
+            final_.parent_path() /
+            fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
+        if (rename_to_free_name(partial_, name)) return name;
+    }
 }
 
 void visit_partial_outputs(void (*visit)(const char* path)) noexcept {

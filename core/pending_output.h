@@ -14,11 +14,12 @@ using IsOwnName = bool (*)(std::string_view name);
 /// frame_0000.exr ...
 [[nodiscard]] bool is_frame_name(std::string_view name);
 
-/// An output that appears under its final name only when it is complete. Write to `partial()`,
-/// then `commit()`; if it is destroyed without, the partial file or folder is removed.
+/// An output that appears under its final name only when it is complete and on the disk
+/// (docs/reliability.md). Write to `partial()`, then `commit()`; if it is destroyed without, the
+/// partial file or folder is removed.
 class PendingOutput {
   public:
-    /// Creates the folder `partial()` if `kind` is a folder.
+    /// Creates the folder `partial()` if `kind` is a folder. A link to a file stands for that file.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
     /// missing. An empty folder gives way to a folder. With `force` a regular file gives way to a
     /// file, and a folder that holds nothing but files of our own names to a folder; anything else
@@ -31,26 +32,32 @@ class PendingOutput {
     PendingOutput& operator=(const PendingOutput&) = delete;
 
     [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
-    /// Path to write to: in the same folder, hidden, with the same extension and, so that two
-    /// programs never write to the same one, the process number.
-    [[nodiscard]] const std::filesystem::path& partial() const { return partial_; }
-    /// Moves the partial output to its final name. \throws DeviceError; if another program has made
-    /// a file of that name since, and not `force`, what was written is kept as "name_2.ext" or so
-    /// on, which the message says.
+    /// Path to write to: in the same folder, hidden, with the same extension, the process number
+    /// and a random one. Once asked for it is there, new and empty. \throws DeviceError.
+    [[nodiscard]] const std::filesystem::path& partial() const;
+    /// Waits until the partial output is on the disk (but see NoSync), and moves it to its final
+    /// name. \throws DeviceError if that fails; the partial output is then kept, and an output that
+    /// was to be replaced too. If another program has made a file of that name since, and not
+    /// `force`, what was written is kept as "name_2.ext" or so on. The message says where.
     void commit();
     [[nodiscard]] bool committed() const { return committed_; }
 
   private:
     void check_replaceable() const;
-    [[noreturn]] void keep_under_another_name();
-    void set_committed();
-    void remove_replaced_folder() const;
+    void create_partial() const;
+    void keep();
+    [[nodiscard]] bool put_in_place();
+    [[nodiscard]] std::filesystem::path put_beside() const;
+    void settle(const std::filesystem::path& name) const;
 
     std::filesystem::path final_;
     std::filesystem::path partial_;
     bool force_;
     OutputKind kind_;
     IsOwnName is_own_;
+    mutable bool created_ = false;
+    bool kept_ = false;      ///< whatever becomes of this object
+    bool replaced_ = false;  ///< partial_ is now the folder that was final_
     bool committed_ = false;
     std::size_t place_in_list_;  ///< of partial outputs
 };

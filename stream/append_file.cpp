@@ -13,7 +13,8 @@ namespace stipple {
 
 AppendFile::AppendFile(const std::filesystem::path& file, std::string place)
     : place_(std::move(place)),
-      descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      descriptor_(
+          ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) fail();
 }
 

@@ -1,5 +1,8 @@
 #include "stream/plain_text.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 
 namespace stipple {
@@ -14,31 +17,67 @@ std::size_t sequence_length(std::uint8_t lead) {
     return 0;
 }
 
-bool is_allowed(char32_t code, std::size_t length, bool lines) {
+/// A character of UTF-8.
+struct Character {
+    std::size_t bytes;  ///< 0: there is none
+    char32_t code;
+};
+
+/// The one that `text` begins with.
+Character first_character(std::string_view text) {
     constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-    if (code < kLeast[length] || code > 0x10FFFF) return false;
-    if (code >= 0xD800 && code <= 0xDFFF) return false;
-    if (code == '\t' || code == '\n' || code == '\r') return lines;
-    return code >= 0x20 && (code < 0x7F || code > 0x9F);
+    constexpr Character kNone{0, 0};
+    const auto lead = static_cast<std::uint8_t>(text.front());
+    const std::size_t length = sequence_length(lead);
+    if (length == 0 || length > text.size()) return kNone;
+    char32_t code = length == 1 ? lead : lead & (0x7FU >> length);
+    for (const char c : text.substr(1, length - 1)) {
+        const auto next = static_cast<std::uint8_t>(c);
+        if ((next & 0xC0U) != 0x80) return kNone;
+        code = code << 6U | (next & 0x3FU);
+    }
+    if (code < kLeast[length] || code > 0x10FFFF) return kNone;
+    if (code >= 0xD800 && code <= 0xDFFF) return kNone;
+    return {length, code};
+}
+
+bool is_control(char32_t code) {
+    return code < 0x20 || (code >= 0x7F && code <= 0x9F);
+}
+
+/// Line and paragraph separator, and what turns the direction of the text behind it.
+bool changes_layout(char32_t code) {
+    return (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
 }
 
 }  // namespace
 
 bool is_plain_text(std::string_view text, bool lines) {
     while (!text.empty()) {
-        const auto lead = static_cast<std::uint8_t>(text.front());
-        const std::size_t length = sequence_length(lead);
-        if (length == 0 || length > text.size()) return false;
-        char32_t code = length == 1 ? lead : lead & (0x7FU >> length);
-        for (const char c : text.substr(1, length - 1)) {
-            const auto next = static_cast<std::uint8_t>(c);
-            if ((next & 0xC0U) != 0x80) return false;
-            code = code << 6U | (next & 0x3FU);
-        }
-        if (!is_allowed(code, length, lines)) return false;
-        text.remove_prefix(length);
+        const auto [bytes, code] = first_character(text);
+        if (bytes == 0) return false;
+        const bool of_lines = code == '\t' || code == '\n' || code == '\r';
+        if (of_lines ? !lines : is_control(code)) return false;
+        text.remove_prefix(bytes);
     }
     return true;
+}
+
+std::string terminal_text(std::string_view text) {
+    std::string shown;
+    shown.reserve(text.size());
+    while (!text.empty()) {
+        const auto [bytes, code] = first_character(text);
+        const bool of_lines = code == '\t' || code == '\n';
+        if (bytes == 0)
+            shown += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(text.front()));
+        else if ((is_control(code) && !of_lines) || changes_layout(code))
+            shown += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(code));
+        else
+            shown += text.substr(0, bytes);
+        text.remove_prefix(std::max<std::size_t>(bytes, 1));
+    }
+    return shown;
 }
 
 }  // namespace stipple

@@ -134,5 +134,31 @@ class InputTest(ProgramTest):
         self.assertEqual(self.succeed("schedule", "show", "full4x", "--size", "4x9").count("("), 4)
 
 
+class TerminalTest(ProgramTest):
+    def test_what_controls_a_terminal_is_shown_as_its_code(self):
+        for text, shown in (("\x1b[31m", r"\u001b[31m"), ("\x7f", r"\u007f"), ("\u009b31m", r"\u009b31m"),
+                            ("\u202e", r"\u202e"), ("\u2069", r"\u2069"), ("\u2028", r"\u2028"),
+                            ("\r", r"\u000d"), ("Größe 大小 ☀", "Größe 大小 ☀")):
+            done = self.run_program("info", f"a{text}b.stipple")
+            self.assertEqual(done.returncode, INPUT)
+            self.assertIn(f"a{shown}b.stipple: ", done.stderr)
+            said = self.succeed("synth", "roll", "--frames", 3, "--size", "16x8", "-o", f"c{text}d.npy")
+            self.assertIn(f"c{shown}d.npy: 3 frames of 16 x 8", said)
+        done = subprocess.run([PROGRAM, "info", b"\xe9\x9b.stipple"], capture_output=True, timeout=60, check=False)
+        self.assertIn(rb"\xe9\x9b.stipple: ", done.stderr)
+
+    def test_what_a_file_says_does_not_reach_the_terminal_or_json_as_it_is(self):
+        (self.folder / "s.toml").write_text('kind = "\\u001b[31m\\u202e"\n')
+        done = self.run_program("schedule", "show", "s.toml")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn(r"\u001b[31m\u202e", done.stderr)
+        self.write_flat("a\u202eb.npy")
+        self.succeed("emulate", "a\u202eb.npy", "-o", "clip.stipple")
+        self.assertIn(r"a\u202eb.npy", self.succeed("info", "clip.stipple"))
+        text = self.succeed("info", "clip.stipple", "--json", "-")
+        self.assertNotIn("\u202e", text)
+        self.assertIn("a\u202eb.npy", self.figures("info", "clip.stipple")["provenance"])
+
+
 if __name__ == "__main__":
     unittest.main()

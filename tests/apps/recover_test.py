@@ -99,11 +99,12 @@ class RecoverTest(ProgramTest):
                                      "--set", "Loop=1", "--set", "AcquisitionFrameRate=100")
         self.addCleanup(program.communicate)
         self.addCleanup(program.kill)
-        name = f".clip.{program.pid}.partial.stipple"
         for _ in range(6000):
-            if (self.folder / name).exists() and (self.folder / name).stat().st_size > 4000:
+            found = list(self.folder.glob(f".clip.{program.pid}-*.partial.stipple"))
+            if found and found[0].stat().st_size > 4000:
                 break
             time.sleep(0.01)
+        name = found[0].name
         self.assertEqual(self.figures("recover")["left"], [])
         old = self.folder / f".old.{program.pid}.partial.npy"  # of a process that had that number before
         old.write_bytes(b"half")
@@ -118,7 +119,7 @@ class RecoverTest(ProgramTest):
                       self.run_program("info", name).stdout)
 
     def test_what_holds_nothing_whole_is_refused(self):
-        name = ".clip.999999999.partial.strec"
+        name = ".clip.999999999-0123abcd.partial.strec"
         left = self.killed_recording()
         content = (self.folder / left).read_bytes()
         second = content.index(b"\xc5FRM", content.index(b"\xc5FRM") + 1)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/output_file.h"
 #include "tests/core/temporary_folder.h"
 
 namespace stipple {
@@ -84,11 +85,15 @@ TEST(PendingOutputTest, NeverReplacesAFolderThatHoldsSomethingElse) {
 TEST(PendingOutputTest, KeepsAFileThatComesIntoTheFolderMeanwhile) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "out");
+    write_text(folder / "out/frame_0000.exr", "old");
     PendingOutput output(folder / "out", true, OutputKind::kFolder);
+    write_text(output.partial() / "frame_0000.exr", "new");
     write_text(folder / "out/notes.txt", "theirs");
     expect_parts(message_of<DeviceError>([&] { output.commit(); }),
-                 {"out: cannot be put in place"});
+                 {"out: cannot be put in place", "what was written is in", ".partial"});
     EXPECT_EQ(read_text(folder / "out/notes.txt"), "theirs");
+    EXPECT_EQ(read_text(folder / "out/frame_0000.exr"), "old");
+    EXPECT_EQ(read_text(output.partial() / "frame_0000.exr"), "new");
 }
 
 TEST(PendingOutputTest, KeepsAFileThatTookTheNameMeanwhile) {
@@ -111,9 +116,39 @@ TEST(PendingOutputTest, FileAndFolderDoNotReplaceEachOther) {
     EXPECT_EQ(folder.names(), (Names{"clip", "frames", "link"}));
 }
 
+TEST(PendingOutputTest, TakesNoNameThatAnotherHas) {
+    const TemporaryFolder folder;
+    const PendingOutput one(folder / "clip.npy", true);
+    const PendingOutput other(folder / "clip.npy", true);
+    EXPECT_NE(one.partial(), other.partial());
+    EXPECT_EQ(folder.names().size(), 2U);
+}
+
+TEST(PendingOutputTest, KeepsWhatAKilledProcessOfTheSameNumberHasLeft) {
+    const TemporaryFolder folder;
+    const auto left = folder / (".clip." + std::to_string(getpid()) + ".partial.npy");
+    write_text(left, "theirs");
+    PendingOutput output(folder / "clip.npy", false);
+    write_text(output.partial(), "ours");
+    output.commit();
+    EXPECT_EQ(read_text(left), "theirs");
+}
+
+TEST(PendingOutputTest, DoesNotWriteThroughALinkThatSomebodyHasPutThere) {
+    const TemporaryFolder folder;
+    write_text(folder / "precious", "theirs");
+    const PendingOutput output(folder / "clip.npy", false);
+    visit_partial_outputs([](const char* path) { fs::create_symlink("precious", path); });
+    expect_parts(message_of<DeviceError>([&] { return output.partial(); }),
+                 {"clip.npy: cannot be created: File exists"});
+    const fs::path link = folder / folder.names().front();
+    EXPECT_THROW(OutputFile(link, "clip.npy"), DeviceError);
+    EXPECT_EQ(read_text(folder / "precious"), "theirs");
+}
+
 TEST(PendingOutputTest, NeverReplacesADevice) {
     const auto message = message_of<InputError>([] { PendingOutput("/dev/null", true); });
-    expect_parts(message, {"/dev/null: is not a regular file"});
+    expect_parts(message, {"/dev/null: exists already", "is not a regular file"});
 }
 
 TEST(PendingOutputTest, RefusesAMissingParentFolderAndANamelessOutput) {

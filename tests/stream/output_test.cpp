@@ -65,6 +65,14 @@ TEST(OutputTest, AFullDeviceIsReported) {
                  {"/dev/full: cannot be written: No space left on device"});
 }
 
+TEST(OutputTest, ALinkIsNotWrittenThrough) {
+    const TemporaryFolder folder;
+    write_text(folder / "precious", "theirs");
+    std::filesystem::create_symlink("precious", folder / "clip.stipple");
+    EXPECT_THROW(StreamWriter(folder / "clip.stipple", varied_header()), DeviceError);
+    EXPECT_EQ(read_text(folder / "precious"), "theirs");
+}
+
 TEST(OutputTest, AFolderThatIsMissingIsReported) {
     const TemporaryFolder folder;
     expect_parts(message_of<DeviceError>(
