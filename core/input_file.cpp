@@ -22,6 +22,10 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& file) {
         throw InputError(file.string(),
                          "cannot be read: " + std::generic_category().message(errno));
     };
+    std::error_code unknown;  // then the file cannot be opened either
+    const auto type = std::filesystem::status(file, unknown).type();
+    if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::block)
+        throw InputError(file.string(), "is a device, not a file");
     const std::unique_ptr<std::FILE, Closer> stream(std::fopen(file.c_str(), "rb"));
     if (!stream) fail();
     constexpr std::size_t kStep = std::size_t{1} << 20U;
