@@ -16,6 +16,7 @@ struct DecodeOptions {
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
     StageSink stages = {};
+    bool fill_gaps = false;  ///< decode slots that are missing, however many they are
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for
