@@ -181,6 +181,16 @@ class ProportionTest(ProgramTest):
         self.write("a.exr", head.replace(window, struct.pack("<iiii", 0, 0, 8191, 8191)) + b"\0" * 4096)
         self.emulate_refuses("a.exr", "announces a picture of")
 
+    def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
+        side = 16_000
+        for packing, size in ((1, 100_000), (32773, 1_000_000), (8, 100_000)):
+            tags = ((256, side), (257, side), (258, 8), (259, packing), (262, 1), (273, 200), (277, 1),
+                    (278, side), (279, size))  # width, height, bits, ..., one strip and its bytes
+            content = b"II*\0" + struct.pack("<IH", 8, len(tags))
+            content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
+            self.write("a.tif", content + bytes(200 - len(content) + size))
+            self.emulate_refuses("a.tif", "announces a picture of 256000000 bytes")
+
     def test_pictures_are_files(self):
         (self.folder / "frames").mkdir()
         (self.folder / "frames" / "a.png").symlink_to("/dev/zero")
