@@ -29,12 +29,20 @@ struct Entry {
 constexpr std::size_t kAfterFile = std::size_t{1} << 40U;  ///< no file has so many lines
 using Entries = std::map<std::string, Entry, std::less<>>;
 
+/// Of a key: each value has its name, which begins with those of all sections around it.
+constexpr std::size_t kLongestName = 256;
+
 /// Adds all values of `table` under their dotted names. Empty tables count as values, so that a
 /// misspelt section is noticed.
 void flatten(const toml::table& table, const std::string& prefix, const std::string& file,
              Entries& entries) {
     for (const auto& [key, value] : table) {
         const std::string name = fmt::format("{}{}", prefix, key.str());
+        if (name.size() > kLongestName)
+            throw InputError(fmt::format("{}:{}", file, key.source().begin.line),
+                             fmt::format("a key is longer than {} characters, with those of its "
+                                         "sections",
+                                         kLongestName));
         const auto* inner = value.as_table();
         if (inner != nullptr && !inner->empty()) {
             flatten(*inner, fmt::format("{}.", name), file, entries);

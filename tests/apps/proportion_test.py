@@ -210,6 +210,11 @@ class ProportionTest(ProgramTest):
                             ("timing", "--sensor", "deep.toml"),
                             ("decode", "x.stipple", "-o", "x.npy", "--options", "deep.toml")):
                 self.refuses(["deep.toml:2", "more than 32 parts"], *command)
+        part = ".".join(["a" * 100] * 32)
+        for text in ("x=" + f"{{{part}=" * 250 + "1" + "}" * 250,
+                     f"[{'a' * 300_000}]\n" + "".join(f"k{i}=1\n" for i in range(5000))):
+            self.write("deep.toml", text.encode())
+            self.refuses(["deep.toml:", "longer than 256"], "schedule", "show", "deep.toml")
         self.write_flat("light.npy")
         self.refuses(["bit_depth"], "emulate", "light.npy", "-o", "x.stipple", "--set",
                      f"bit_depth={{{key}=1}}")

@@ -68,6 +68,13 @@ TEST_F(ConfigTest, RefusesKeysOfManyParts) {
     EXPECT_EQ(parse("", {fmt::format("a={{{}=1}}", dotted(33))}).text("a", "").front(), '{');
 }
 
+TEST_F(ConfigTest, RefusesLongKeysWithThoseOfTheirSections) {
+    const std::string section(253, 'a');
+    EXPECT_TRUE(parse(fmt::format("[{}]\nbc = 1\n", section)).contains(section + ".bc"));
+    expect_parts(parse_error(fmt::format("[{}]\nbcd = 1\n", section)),
+                 {"sensor.toml:2", "longer than 256"});
+}
+
 TEST_F(ConfigTest, TakesManyDotsThatAreInNoKey) {
     const std::string dots(100, '.');
     const std::string numbers = fmt::format("{}", fmt::join(std::vector(100, 1.5), ", "));
