@@ -57,11 +57,7 @@ void to_picture(const TiffPixels& pixels, Picture& picture) {
 }
 
 void read_image(const std::filesystem::path& file, Picture& picture) {
-    std::error_code unknown;  // then the file cannot be opened either
-    const auto status = std::filesystem::status(file, unknown);
-    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status) &&
-        !std::filesystem::is_regular_file(status))
-        throw InputError(file.string(), "is a device, pipe or socket; give a file");
+    refuse_special(file);
     switch (image_format(file)) {
         case ImageFormat::kPng:
             return read_png(file.string(), picture);

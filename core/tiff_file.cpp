@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/input_file.h"
 #include "core/light.h"
 
 namespace stipple {
@@ -200,6 +201,7 @@ TiffPixels::Sample sample_of(const Page& page) {
 
 /// \throws InputError if the file cannot be opened for reading.
 std::uintmax_t checked_file_bytes(const std::filesystem::path& file) {
+    refuse_special(file);
     errno = 0;
     if (!std::ifstream(file, std::ios::binary).good())
         throw InputError(file.string(),

@@ -198,6 +198,8 @@ class ProportionTest(ProgramTest):
         (self.folder / "frames" / "a.png").unlink()
         os.mkfifo(self.folder / "frames" / "a.png")
         self.refuses(["frames/a.png", "is a device, pipe"], "emulate", "frames", "-o", "x.stipple")
+        (self.folder / "frames" / "a.png").rename(self.folder / "a.tif")
+        self.emulate_refuses("a.tif", "is a device, pipe")
         self.write("clip.stipple", stream_header(4, 4))
         self.refuses(["/dev/zero", "is a device"], "decode", "clip.stipple", "-o", "x.npy",
                      "--options", "/dev/zero")
