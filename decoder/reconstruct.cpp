@@ -32,8 +32,8 @@ std::size_t index(std::int64_t value) {
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
-    PacketBuffer(StreamReader& reader, bool fill_gaps)
-        : reader_(reader), fill_gaps_(fill_gaps), counts_(reader.header()) {}
+    PacketBuffer(StreamReader& reader, const DecodeOptions& options)
+        : reader_(reader), options_(options), counts_(reader.header()) {}
 
     /// Reads on until every packet of slots below `slot` is here, or the stream ends.
     void read_up_to(std::int64_t slot) {
@@ -66,8 +66,9 @@ class PacketBuffer {
     void reach(std::int64_t slot) {
         if (slot <= slots_) return;
         missing_ += slot - slots_;
-        if (!fill_gaps_ && missing_ > most_missing_slots(present_, decoded_shape(reader_.header())))
-            throw InputError("sample stream",
+        const std::int64_t most = most_missing_slots(present_, decoded_shape(reader_.header()));
+        if (!options_.fill_gaps && missing_ > most)
+            throw InputError(options_.place,
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
                                          "decode them too, give --fill-gaps",
                                          slots_, slot - 1, missing_, missing_ + present_));
@@ -75,7 +76,7 @@ class PacketBuffer {
     }
 
     StreamReader& reader_;
-    bool fill_gaps_;
+    const DecodeOptions& options_;
     SaturatedSamples counts_;
     bool ended_ = false;
     std::int64_t slots_ = 0;
@@ -194,13 +195,16 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
 
 /// Slots without samples take few bytes, but are frames. \throws InputError if `slots` slots are
 /// many values of light (2^26, or 256 MB), and more than 128 for a sample.
-void check_proportion(const StreamHeader& header, std::int64_t slots, std::uint64_t samples) {
+void check_proportion(const StreamHeader& header, const DecodeOptions& options, std::int64_t slots,
+                      std::uint64_t samples) {
     const auto values = [&](FrameShape shape) {
         return static_cast<double>(slots) * static_cast<double>(shape.sites());
     };
     const double light = values(decoded_shape(header));
-    if (light <= 0x1p26 || values(header.shape) <= 128 * static_cast<double>(samples)) return;
-    throw InputError("sample stream",
+    if (options.fill_gaps || light <= 0x1p26 ||
+        values(header.shape) <= 128 * static_cast<double>(samples))
+        return;
+    throw InputError(options.place,
                      fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
                                  "to decode them nevertheless, give --fill-gaps",
                                  slots - 1, samples, light * sizeof(float) * 1e-6));
@@ -255,14 +259,14 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
                     const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
-    PacketBuffer buffer(reader, options.fill_gaps);
+    PacketBuffer buffer(reader, options);
     DecodeReport report;
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
     for (bool more = true; more;) {
         buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
         const Stretch slots = slot_stretch(report.slots, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
-        if (!options.fill_gaps) check_proportion(header, slots.core_end, buffer.counts().samples());
+        check_proportion(header, options, slots.core_end, buffer.counts().samples());
         buffer.drop_below(slots.begin);
         const auto checkpoint = [&](double fraction) {
             return monitor(static_cast<double>(slots.core_begin) +

@@ -84,7 +84,7 @@ class ProportionTest(ProgramTest):
             self.write("gap.stipple", stream_header(rows, rows) +
                        b"".join(dropped(slot, rows) for slot in slots))
             for method in ("naive", "fast"):
-                self.refuses([f"slots 1 to {slots[1] - 1} are missing", "--fill-gaps"], "decode",
+                self.refuses([f"gap.stipple: slots 1 to {slots[1] - 1} are missing", "--fill-gaps"], "decode",
                              "gap.stipple", "-o", "x.npy", "--method", method)
         code, said = self.measured("info", "gap.stipple")
         self.assertIn("of 900001 slots are incomplete", said)
@@ -102,7 +102,7 @@ class ProportionTest(ProgramTest):
     def test_frames_of_slots_without_samples_are_few(self):
         self.write("large.stipple", stream_header(16384, 16384) + dropped(0, 16384))
         for method in ("naive", "fast", "best"):
-            self.refuses(["slots up to 0 hold 0 samples", "1074 MB", "--fill-gaps"], "decode",
+            self.refuses(["large.stipple: slots up to 0 hold 0 samples", "1074 MB", "--fill-gaps"], "decode",
                          "large.stipple", "-o", "x.npy", "--method", method)
 
     def test_info_needs_no_more_than_the_schedule_for_a_long_period(self):
