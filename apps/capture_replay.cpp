@@ -23,6 +23,7 @@ struct ReplayOptions {
     std::string recording;
     std::string output;
     bool skip_gaps = false;
+    bool fill_gaps = false;
     bool keep_incomplete = false;
     double black_level_dn = 0;
 };
@@ -72,6 +73,7 @@ void say_what_is_wrong(const std::string& file, const RecordingFootage& footage)
 void replay(const ReplayOptions& options, const RunOptions& run) {
     RecordingFootage footage(options.recording, {.hold_missing = !options.skip_gaps,
                                                  .drop_incomplete = !options.keep_incomplete,
+                                                 .fill_gaps = options.fill_gaps,
                                                  .black_level_dn = options.black_level_dn});
     JsonFile json(run);
     FrameWriter writer(options.output, footage.shape(), {.force = run.force});
@@ -102,6 +104,8 @@ void add_capture_replay(Command& capture, Action& action) {
         .output(kVideoName);
     command.add_flag("--skip-gaps", options->skip_gaps,
                      "leave missing frames out; else the frame before stands in");
+    command.add_flag("--fill-gaps", options->fill_gaps,
+                     "hold for missing frames even if they are most of the recording");
     command.add_flag("--keep-incomplete", options->keep_incomplete,
                      "use incomplete frames, with black holes; else they count as missing");
     command.add_option("--black-level", options->black_level_dn, "DN without light (0)")

@@ -47,6 +47,8 @@ void add_decode(Command& app, Action& action) {
         .type_name("DIR")
         .output();
     command.add_flag("--strict", options->strict, "write nothing if the stream is damaged");
+    command.add_flag("--fill-gaps", options->fill_gaps,
+                     "decode missing slots even if they are most of the stream");
     command.add_option("--until", options->until, "stop after the first N frames")
         .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))
         .type_name("N");

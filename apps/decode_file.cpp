@@ -135,6 +135,8 @@ std::string schedule_hint(const StreamReport& report) {
 
 void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     DecodeOptions options = options_of(arguments);
+    options.fill_gaps = arguments.fill_gaps;
+    options.place = arguments.stream;
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);
     std::optional<ScheduleCheck> check;

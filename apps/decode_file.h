@@ -17,6 +17,7 @@ struct DecodeArguments {
     std::vector<std::string> settings;
     std::string stages;  ///< folder; empty: none
     bool strict = false;
+    bool fill_gaps = false;
     std::int64_t until = 0;      ///< frames wanted; 0: all
     bool follow = false;         ///< the stream is still being written
     double timeout_s = 10;       ///< with `follow`: without growth

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/toml_keys.h"
 #include "sensor_model/physical_keys.h"
 #include "stream/plain_text.h"
 
@@ -154,6 +155,7 @@ std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage
 }
 
 std::string command_of(const std::string& provenance) {
+    if (line_of_long_key(provenance) != 0) return {};
     try {
         const toml::table table = toml::parse(provenance);
         const auto footage = table["footage"];
@@ -173,6 +175,7 @@ std::string command_of(const std::string& provenance) {
 
 std::vector<std::string> timing_settings(const std::string& provenance) {
     std::vector<std::string> settings;
+    if (line_of_long_key(provenance) != 0) return settings;
     try {
         const toml::table table = toml::parse(provenance);
         if (const auto* timing = table["sensor"]["timing"].as_table())

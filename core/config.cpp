@@ -14,6 +14,7 @@
 #include "core/input_file.h"
 #include "core/joined.h"
 #include "core/suggestion.h"
+#include "core/toml_keys.h"
 
 namespace stipple {
 namespace {
@@ -28,12 +29,20 @@ struct Entry {
 constexpr std::size_t kAfterFile = std::size_t{1} << 40U;  ///< no file has so many lines
 using Entries = std::map<std::string, Entry, std::less<>>;
 
+/// Of a key: each value has its name, which begins with those of all sections around it.
+constexpr std::size_t kLongestName = 256;
+
 /// Adds all values of `table` under their dotted names. Empty tables count as values, so that a
 /// misspelt section is noticed.
 void flatten(const toml::table& table, const std::string& prefix, const std::string& file,
              Entries& entries) {
     for (const auto& [key, value] : table) {
         const std::string name = fmt::format("{}{}", prefix, key.str());
+        if (name.size() > kLongestName)
+            throw InputError(fmt::format("{}:{}", file, key.source().begin.line),
+                             fmt::format("a key is longer than {} characters, with those of its "
+                                         "sections",
+                                         kLongestName));
         const auto* inner = value.as_table();
         if (inner != nullptr && !inner->empty()) {
             flatten(*inner, fmt::format("{}.", name), file, entries);
@@ -48,8 +57,10 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
 /// "value = <text>", or the text as a string if it is not TOML.
 toml::table parse_value(std::string_view text) {
     try {
-        toml::table table = toml::parse(fmt::format("value = {}", text));
-        if (table.size() == 1) return table;
+        if (line_of_long_key(text) == 0) {
+            toml::table table = toml::parse(fmt::format("value = {}", text));
+            if (table.size() == 1) return table;
+        }
     } catch (const toml::parse_error&) {
         // A bare word.
     }
@@ -130,6 +141,9 @@ Config::Config(const std::filesystem::path& file, const std::vector<std::string>
     impl_->file = file.string();
     const auto bytes = read_file(file);
     const std::string text(bytes.begin(), bytes.end());
+    if (const std::size_t line = line_of_long_key(text); line != 0)
+        throw InputError(fmt::format("{}:{}", impl_->file, line),
+                         fmt::format("a key has more than {} parts", kMostKeyParts));
     try {
         impl_->tables.push_back(toml::parse(text, impl_->file));
     } catch (const toml::parse_error& e) {

@@ -17,13 +17,18 @@ std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
-/// The most of a pixel's exposures whose spans cover one slot of the period.
-int most_at_once(std::span<const Exposure> exposures, int period_slots) {
-    std::vector<int> under_way(index(period_slots), 0);
+/// The most of a pixel's exposures whose spans cover one slot of the period. `under_way` holds a
+/// zero for each slot, before and after.
+int most_at_once(std::span<const Exposure> exposures, std::span<int> under_way) {
+    const auto slot = [&](const Exposure& e, int i) -> int& {
+        return under_way[(e.first_slot + index(i)) % under_way.size()];
+    };
+    int most = 0;
     for (const Exposure& e : exposures)
-        for (int i = 0; i < e.span_slots(); ++i)
-            ++under_way[(e.first_slot + index(i)) % under_way.size()];
-    return *std::ranges::max_element(under_way);
+        for (int i = 0; i < e.span_slots(); ++i) most = std::max(most, ++slot(e, i));
+    for (const Exposure& e : exposures)
+        for (int i = 0; i < e.span_slots(); ++i) slot(e, i) = 0;
+    return most;
 }
 
 /// Bits of `stores_` for one pixel: exposures in the order in which they begin, over some periods,
@@ -61,12 +66,13 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
     if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
         first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
         throw InputError(kPlace, "the list of exposures does not match the tile");
-    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel);
+    std::vector<int> zeros(index(period_slots), 0);
+    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel, zeros);
     if (most_at_once_ == 2) assign_stores();
     list_due_pixels();
 }
 
-void ExposureSchedule::check_pixel(int pixel) {
+void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
     const auto fail = [&](std::uint32_t slot, std::string_view problem) {
         throw InputError(kPlace, fmt::format("pixel ({}, {}) slot {}: {}", pixel / tile_cols_,
                                              pixel % tile_cols_, slot, problem));
@@ -76,7 +82,10 @@ void ExposureSchedule::check_pixel(int pixel) {
     std::sort(begin, end,
               [](const Exposure& a, const Exposure& b) { return a.first_slot < b.first_slot; });
     const auto period = static_cast<std::uint32_t>(period_slots_);
-    std::vector<bool> open(period, false);
+    const auto visit_open = [&](const Exposure& e, const auto& visit) {
+        for (std::uint64_t rest = e.open_slots; rest != 0; rest &= rest - 1)
+            visit((e.first_slot + static_cast<std::uint32_t>(std::countr_zero(rest))) % period);
+    };
     std::uint32_t covered_slots = 0;
     bool interleaved = false;
     for (auto e = begin; e != end; ++e) {
@@ -84,20 +93,19 @@ void ExposureSchedule::check_pixel(int pixel) {
         if ((e->open_slots & 1U) == 0)
             fail(e->first_slot, "an exposure is closed in its first slot");
         if (e->span_slots() > period_slots_) fail(e->first_slot, "an exposure exceeds the period");
-        for (std::uint64_t rest = e->open_slots; rest != 0; rest &= rest - 1) {
-            const auto slot =
-                (e->first_slot + static_cast<std::uint32_t>(std::countr_zero(rest))) % period;
-            if (open[slot]) fail(slot, "two exposures share this slot");
-            open[slot] = true;
-        }
+        visit_open(*e, [&](std::uint32_t slot) {
+            if (zeros[slot]++ != 0) fail(slot, "two exposures share this slot");
+        });
         covered_slots += static_cast<std::uint32_t>(e->span_slots());
         longest_span_slots_ = std::max(longest_span_slots_, e->span_slots());
         const auto next_begin = e + 1 == end ? begin->first_slot + period : (e + 1)->first_slot;
         if (e->first_slot + static_cast<std::uint32_t>(e->span_slots()) > next_begin)
             interleaved = true;
     }
+    for (auto e = begin; e != end; ++e)
+        visit_open(*e, [&](std::uint32_t slot) { zeros[slot] = 0; });
     if (interleaved || covered_slots > period)
-        most_at_once_ = std::max(most_at_once_, most_at_once({begin, end}, period_slots_));
+        most_at_once_ = std::max(most_at_once_, most_at_once({begin, end}, zeros));
 }
 
 void ExposureSchedule::assign_stores() {

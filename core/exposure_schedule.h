@@ -85,7 +85,9 @@ class ExposureSchedule {
         return static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_cols_) +
                static_cast<std::size_t>(tile_col);
     }
-    void check_pixel(int pixel);
+    /// `zeros` holds a zero for each slot of the period, before and after: to clear as many for
+    /// each pixel would take seconds.
+    void check_pixel(int pixel, std::span<int> zeros);
     void assign_stores();
     void list_due_pixels();
 

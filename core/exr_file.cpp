@@ -71,13 +71,28 @@ std::uint64_t side(int low, int high) {
     return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
 }
 
+/// \throws InputError if the file is too short for its pixels.
+void check_size(const Imf::Header& header, const std::vector<std::string>& names, FrameShape shape,
+                const std::string& place) {
+    std::uint64_t pixel_bytes = 0;
+    for (const auto& name : names)
+        pixel_bytes += header.channels()[name.c_str()].type == Imf::HALF ? 2U : 4U;
+    // DWA packs what Deflate takes by blocks of 8 x 8 pixels.
+    const auto packing = header.compression();
+    const bool blocks = packing == Imf::DWAA_COMPRESSION || packing == Imf::DWAB_COMPRESSION;
+    check_packed(pixel_bytes * shape.pixels(), std::filesystem::file_size(place), place,
+                 blocks ? 64 * kDeflateRatio : kDeflateRatio);
+}
+
 void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {
     const Imath::Box2i window = checked_window(input.header(), place);
     const auto names = picture_channels(input.header().channels(), place);
     picture.traits = {.floating = true,
                       .has_alpha = input.header().channels().findChannel("A") != nullptr};
-    picture.resize(checked_shape(side(window.min.y, window.max.y), side(window.min.x, window.max.x),
-                                 names.size(), place));
+    const FrameShape shape = checked_shape(side(window.min.y, window.max.y),
+                                           side(window.min.x, window.max.x), names.size(), place);
+    check_size(input.header(), names, shape, place);
+    picture.resize(shape);
     Imf::FrameBuffer planes;
     for (std::size_t i = 0; i < names.size(); ++i)
         planes.insert(names[i], plane_slice(picture.values.data() + i * picture.shape.pixels(),

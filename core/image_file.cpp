@@ -57,6 +57,7 @@ void to_picture(const TiffPixels& pixels, Picture& picture) {
 }
 
 void read_image(const std::filesystem::path& file, Picture& picture) {
+    refuse_special(file);
     switch (image_format(file)) {
         case ImageFormat::kPng:
             return read_png(file.string(), picture);

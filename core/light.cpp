@@ -36,6 +36,14 @@ FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t p
     return {static_cast<int>(rows), static_cast<int>(cols), static_cast<int>(planes)};
 }
 
+void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view place,
+                  std::uint64_t ratio) {
+    if (bytes / ratio / 2 > file_bytes)
+        throw InputError(place, fmt::format("announces a picture of {} bytes, but the file holds "
+                                            "{}; it is damaged or ends too early",
+                                            bytes, file_bytes));
+}
+
 void linearise(std::span<float> values, Transfer transfer) {
     if (transfer == Transfer::kGamma22)
         for (float& value : values) value = value > 0.0F ? std::pow(value, 2.2F) : value;

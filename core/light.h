@@ -18,6 +18,16 @@ inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
 [[nodiscard]] FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
                                        std::string_view place);
 
+/// What Deflate makes of bytes that are all alike, and the other ways in which pictures are packed
+/// do not reach, but those that say so.
+inline constexpr std::uint64_t kDeflateRatio = 1032;
+
+/// \throws InputError at `place` if a picture of `bytes` is more than a file of `file_bytes`,
+/// packed `ratio` times, can hold (by more than a factor of 2: headers). Said before memory is
+/// taken.
+void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view place,
+                  std::uint64_t ratio = kDeflateRatio);
+
 /// Turns encoded values into light, in place. Values below 0 stay as they are.
 void linearise(std::span<float> values, Transfer transfer);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -10,7 +11,8 @@
 
 namespace stipple {
 
-/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame.
+/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame. The header of one that was
+/// not finished lacks the frames of its last second at most.
 class NpyWriter {
   public:
     /// Creates `file`; messages say `place`. \throws DeviceError.
@@ -22,12 +24,15 @@ class NpyWriter {
     void finish();
 
   private:
+    using Clock = std::chrono::steady_clock;
     void write_header();
 
     OutputFile file_;
     FrameShape shape_;
     int slots_ = 0;
-    std::vector<float> pixels_;
+    int told_slots_ = 0;  ///< by the header
+    Clock::time_point told_at_;
+    std::vector<float> pixels_;  ///< by row, column and plane; empty before the first frame
 };
 
 }  // namespace stipple

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "core/light.h"
 
 namespace stipple {
 namespace {
@@ -43,6 +44,17 @@ bool is_type(std::span<const std::uint8_t> chunk, std::string_view type) {
     return std::equal(type.begin(), type.end(), chunk.begin() + 4);
 }
 
+/// Looks at the size that the data of an IHDR chunk announce. \throws InputError.
+void check_size(std::span<const std::uint8_t> header, std::uint64_t file_bytes,
+                std::string_view place) {
+    const std::uint8_t colour_type = header[9];
+    const bool grey = colour_type == 0 || colour_type == 4;
+    const FrameShape shape =
+        checked_shape(big_endian(header.subspan(4)), big_endian(header), grey ? 1 : 3, place);
+    const std::uint64_t samples = colour_type == 3 ? shape.pixels() : shape.sites();
+    check_packed(samples * header[8] / 8, file_bytes, place);
+}
+
 /// The chunk that begins at `offset`, CRC included.
 std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> bytes, std::size_t offset,
                                        std::string_view place) {
@@ -73,6 +85,7 @@ PngChunks critical_png_chunks(std::span<const std::uint8_t> bytes, std::string_v
         if (offset == kSignature.size()) {
             if (!is_type(chunk, "IHDR") || chunk.size() != kHeaderBytes + kChunkFrame)
                 throw InputError(place, "offset 8: the PNG header is missing");
+            check_size(chunk.subspan(8), bytes.size(), place);
             const std::uint8_t colour_type = chunk[8 + 9];
             result.grey = colour_type == 0 || colour_type == 4;
             result.has_alpha = colour_type == 4 || colour_type == 6;

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/input_file.h"
 #include "core/light.h"
 
 namespace stipple {
@@ -48,15 +49,17 @@ struct Page {
     std::uint16_t kind = SAMPLEFORMAT_UINT;
     std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
     std::uint16_t orientation = ORIENTATION_TOPLEFT;
+    std::uint16_t compression = COMPRESSION_NONE;
     bool apart = false;  ///< one channel after the other
 
     explicit Page(TIFF* tiff);
     [[nodiscard]] std::string problem() const;
+    /// How many bytes of pixels a byte of the file can hold at most.
+    [[nodiscard]] std::uint64_t most_packed() const;
 };
 
 Page::Page(TIFF* tiff) {
     std::uint16_t planar = PLANARCONFIG_CONTIG;
-    std::uint16_t compression = COMPRESSION_NONE;
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &rows);
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &cols);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
@@ -98,6 +101,20 @@ std::string Page::problem() const {
         return fmt::format(
             "its rows do not run from the top left (orientation {}); save it upright", orientation);
     return {};
+}
+
+std::uint64_t Page::most_packed() const {
+    switch (compression) {
+        case COMPRESSION_NONE:
+            return 1;
+        case COMPRESSION_PACKBITS:
+            return 64;
+        case COMPRESSION_DEFLATE:
+        case COMPRESSION_ADOBE_DEFLATE:
+            return kDeflateRatio;
+        default:
+            return std::uint64_t{1} << 16U;
+    }
 }
 
 /// A page while it is read.
@@ -184,6 +201,7 @@ TiffPixels::Sample sample_of(const Page& page) {
 
 /// \throws InputError if the file cannot be opened for reading.
 std::uintmax_t checked_file_bytes(const std::filesystem::path& file) {
+    refuse_special(file);
     errno = 0;
     if (!std::ifstream(file, std::ios::binary).good())
         throw InputError(file.string(),
@@ -277,9 +295,8 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.sample = sample_of(about);
     pixels.channels = about.channels;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, place(page));
-    constexpr std::uintmax_t kMostCompression = std::uintmax_t{1} << 16U;
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
-    if (bytes / kMostCompression > impl_->file_bytes) impl_->fail(place(page));
+    check_packed(bytes, impl_->file_bytes, place(page), about.most_packed());
     pixels.bytes.resize(bytes);
     if (!PageReader(tiff, about, pixels).read()) impl_->fail(place(page));
     if (about.photometric == PHOTOMETRIC_MINISWHITE)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/config.h"
 #include "decoder/collaborative.h"
 #include "decoder/decode_method.h"
@@ -16,6 +18,8 @@ struct DecodeOptions {
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
     StageSink stages = {};
+    bool fill_gaps = false;               ///< decode slots that are missing, however many they are
+    std::string place = "sample stream";  ///< its name, for messages
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/gap_limit.h"
 #include "decoder/block_partition.h"
 #include "decoder/collaborative.h"
 #include "decoder/decode_options.h"
@@ -28,13 +29,11 @@ std::size_t index(std::int64_t value) {
     return static_cast<std::size_t>(value);
 }
 
-/// Slots without any sample that are filled in; more are not a gap but a wrong number.
-constexpr std::int64_t kMaxMissingSlots = 100000;
-
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
-    explicit PacketBuffer(StreamReader& reader) : reader_(reader), counts_(reader.header()) {}
+    PacketBuffer(StreamReader& reader, const DecodeOptions& options)
+        : reader_(reader), options_(options), counts_(reader.header()) {}
 
     /// Reads on until every packet of slots below `slot` is here, or the stream ends.
     void read_up_to(std::int64_t slot) {
@@ -42,16 +41,15 @@ class PacketBuffer {
             SamplePacket packet;
             ended_ = !reader_.next(packet);
             if (ended_) break;
-            if (packet.slot - slots_ > kMaxMissingSlots)
-                throw InputError("sample stream",
-                                 fmt::format("slot {} follows slot {}: more than {} slots are "
-                                             "missing, which is no recording to decode",
-                                             packet.slot, slots_ - 1, kMaxMissingSlots));
-            slots_ = std::max(slots_, packet.slot + 1);
+            if (packet.slot >= slots_) {
+                ++present_;
+                reach(packet.slot);
+                ++slots_;
+            }
             counts_.add(packet);
             packets_.push_back(std::move(packet));
         }
-        if (ended_) slots_ = std::max(slots_, reader_.slots().value_or(0));
+        if (ended_) reach(reader_.slots().value_or(0));
     }
     void drop_below(std::int64_t slot) {
         std::erase_if(packets_, [&](const SamplePacket& packet) { return packet.slot < slot; });
@@ -63,10 +61,27 @@ class PacketBuffer {
     [[nodiscard]] const SaturatedSamples& counts() const { return counts_; }
 
   private:
+    /// Takes the slots below `slot` that have not come for missing. \throws InputError if they are
+    /// out of proportion.
+    void reach(std::int64_t slot) {
+        if (slot <= slots_) return;
+        missing_ += slot - slots_;
+        const std::int64_t most = most_missing_slots(present_, decoded_shape(reader_.header()));
+        if (!options_.fill_gaps && missing_ > most)
+            throw InputError(options_.place,
+                             fmt::format("slots {} to {} are missing, which makes {} of {}; to "
+                                         "decode them too, give --fill-gaps",
+                                         slots_, slot - 1, missing_, missing_ + present_));
+        slots_ = slot;
+    }
+
     StreamReader& reader_;
+    const DecodeOptions& options_;
     SaturatedSamples counts_;
     bool ended_ = false;
     std::int64_t slots_ = 0;
+    std::int64_t present_ = 0;  ///< slots of these with a packet
+    std::int64_t missing_ = 0;
     std::vector<SamplePacket> packets_;
 };
 
@@ -178,6 +193,23 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     return video;
 }
 
+/// Slots without samples take few bytes, but are frames. \throws InputError if `slots` slots are
+/// many values of light (2^26, or 256 MB), and more than 128 for a sample.
+void check_proportion(const StreamHeader& header, const DecodeOptions& options, std::int64_t slots,
+                      std::uint64_t samples) {
+    const auto values = [&](FrameShape shape) {
+        return static_cast<double>(slots) * static_cast<double>(shape.sites());
+    };
+    const double light = values(decoded_shape(header));
+    if (options.fill_gaps || light <= 0x1p26 ||
+        values(header.shape) <= 128 * static_cast<double>(samples))
+        return;
+    throw InputError(options.place,
+                     fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
+                                 "to decode them nevertheless, give --fill-gaps",
+                                 slots - 1, samples, light * sizeof(float) * 1e-6));
+}
+
 /// By the methods that have a prior on the video, `fast` and `best`.
 Block decode_by_prior(Measurements& measurements, const SampleNoise& noise,
                       const DecodeOptions& options, const Checkpoint& checkpoint) {
@@ -227,13 +259,14 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
                     const DecodeMonitor& monitor) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
-    PacketBuffer buffer(reader);
+    PacketBuffer buffer(reader, options);
     DecodeReport report;
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
     for (bool more = true; more;) {
         buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
         const Stretch slots = slot_stretch(report.slots, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
+        check_proportion(header, options, slots.core_end, buffer.counts().samples());
         buffer.drop_below(slots.begin);
         const auto checkpoint = [&](double fraction) {
             return monitor(static_cast<double>(slots.core_begin) +

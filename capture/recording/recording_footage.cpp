@@ -5,11 +5,17 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/gap_limit.h"
 
 namespace stipple {
 namespace {
 
-constexpr std::uint64_t kMaxHeld = std::uint64_t{1} << 20U;
+/// Counted of one gap: sums do not overflow.
+constexpr std::uint64_t kLongestGap = std::uint64_t{1} << 40U;
+
+FrameShape shape_of(const FrameLayout& layout) {
+    return {layout.height, layout.width, layout.format->planes};
+}
 
 }  // namespace
 
@@ -22,7 +28,7 @@ RecordingFootage::RecordingFootage(const std::filesystem::path& file,
       light_((has_coming_ ? coming_.record.layout
                           : throw InputError(file.string(), "holds no frame that can be used")),
              options.black_level_dn) {
-    to_hold_ = missing_ = 0;  // nothing stands in for what came before the first frame
+    missing_ = 0;
     gaps_.clear();
 }
 
@@ -35,7 +41,7 @@ bool RecordingFootage::advance() {
         const std::uint64_t lost = last_id_ ? missing_after(*last_id_, record) : record.lost_before;
         last_id_ = record.id;
         rate_.add(record);
-        const std::uint64_t gap = std::min(lost, kMaxHeld + 1) + (usable ? 0 : 1);
+        const std::uint64_t gap = std::min(lost, kLongestGap) + (usable ? 0 : 1);
         missing_ += gap;
         to_hold_ += gap;
         if (gap > 0) note(gap);
@@ -45,16 +51,27 @@ bool RecordingFootage::advance() {
                              fmt::format("frame {} has another region or pixel format than those "
                                          "before; footage has one",
                                          record.id));
-        if (options_.hold_missing && to_hold_ > kMaxHeld)
-            throw InputError(file_.string(),
-                             fmt::format("more than 2^20 frames are missing before frame {}; leave "
-                                         "them out with --skip-gaps",
-                                         record.id));
-        if (!options_.hold_missing) to_hold_ = 0;
+        // Nothing stands in for what came before the first frame.
+        if (!options_.hold_missing || layout.format == nullptr) to_hold_ = 0;
+        check_proportion(record);
         return true;
     }
     to_hold_ = 0;
     return false;
+}
+
+/// Counts a frame that is used and the slots held before it. \throws InputError if these are too
+/// many.
+void RecordingFootage::check_proportion(const FrameRecord& record) {
+    ++usable_;
+    holding_ += static_cast<std::int64_t>(to_hold_);
+    if (options_.fill_gaps || holding_ <= most_missing_slots(usable_, shape_of(record.layout)))
+        return;
+    throw InputError(file_.string(),
+                     fmt::format("{} frames are missing or incomplete before frame {}, which makes "
+                                 "{} of {}; \"stipple capture replay\" holds the frame before for "
+                                 "them with --fill-gaps, and leaves them out with --skip-gaps",
+                                 to_hold_, record.id, holding_, holding_ + usable_));
 }
 
 /// Frames one after the other that are missing are one place.

@@ -18,6 +18,8 @@ struct RecordingFootageOptions {
     bool hold_missing = true;
     /// Incomplete frames count as missing; else they are used, with black holes.
     bool drop_incomplete = true;
+    /// Holds for as many frames as are missing, even if these are out of proportion.
+    bool fill_gaps = false;
     double black_level_dn = 0;
 };
 
@@ -40,8 +42,8 @@ class RecordingFootage {
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const { return light_.filter(); }
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
-    /// Returns false at the end. \throws InputError for a frame of another layout, and for more
-    /// than 2^20 missing frames at once.
+    /// Returns false at the end. \throws InputError for a frame of another layout, and where more
+    /// frames are to be held than most_missing_slots.
     bool read(std::span<float> frame);
 
     /// Slots that repeat the frame before.
@@ -60,6 +62,7 @@ class RecordingFootage {
   private:
     /// False at the end; else `coming_` is the next frame that is used and `to_hold_` is set.
     bool advance();
+    void check_proportion(const FrameRecord& record);
     void note(std::uint64_t frames);
 
     std::filesystem::path file_;
@@ -69,6 +72,8 @@ class RecordingFootage {
     CapturedFrame coming_;
     std::int64_t slots_ = 0;  ///< that were read
     std::vector<RecordingGap> gaps_;
+    std::int64_t usable_ = 0;    ///< frames so far
+    std::int64_t holding_ = 0;   ///< slots that were or will be held
     std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing
     std::uint64_t held_ = 0;
     std::uint64_t missing_ = 0;

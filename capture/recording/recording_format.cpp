@@ -1,6 +1,7 @@
 #include "capture/recording/recording_format.h"
 
 #define XXH_INLINE_ALL
+#include <fmt/format.h>
 #include <sys/utsname.h>
 #include <xxhash.h>
 
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/light.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
 
@@ -103,6 +105,8 @@ std::string layout_problem(const FrameLayout& layout) {
     if (layout.stride_bytes < layout.format->row_bytes(layout.width) ||
         layout.stride_bytes > kMaxPayloadBytes / static_cast<std::uint64_t>(layout.height))
         return "a stride that does not fit its width";
+    if (1.0 * layout.width * layout.height * layout.format->planes > double{kMaxFrameSites})
+        return "more than 2^28 values";
     return {};
 }
 
@@ -223,6 +227,9 @@ std::string decode_frame_record(std::span<const std::uint8_t> bytes, std::uint64
     record.stamp_source = static_cast<StampSource>(stamp_source);
     record.layout.format = decode_format(fields.at);
     if (std::string problem = layout_problem(record.layout); !problem.empty()) return problem;
+    if (record.status == FrameStatus::kComplete && payload_bytes < record.layout.payload_bytes())
+        return fmt::format("{} of the {} bytes of its layout, but is said to be complete",
+                           payload_bytes, record.layout.payload_bytes());
     if (holes > kMaxHoles || bytes.size() != kFrameRecordBytes + holes * kHoleBytes)
         return "a number of holes that does not fit its length";
     return take_holes({bytes.data() + kFrameRecordBytes}, holes, payload_bytes, frame);

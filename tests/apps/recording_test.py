@@ -10,7 +10,7 @@ import unittest
 
 import numpy as np
 from program import DEVICE, INPUT, PROGRAM, STOPPED, ProgramTest, project_path
-from sample_stream import samples
+from sample_stream import crc32c, samples
 
 DOCUMENT = project_path("docs/recording_format.md")
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
@@ -18,15 +18,6 @@ FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
 
 def lines_of_the_document():
     return re.search(r"```python\n(.*?)```", DOCUMENT.read_text(), re.S)[1]
-
-
-def crc32c(content):
-    crc = 0xFFFFFFFF
-    for byte in content:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
-    return struct.pack("<I", crc ^ 0xFFFFFFFF)
 
 
 class RecordingTest(ProgramTest):
@@ -141,8 +132,8 @@ class RecordingTest(ProgramTest):
         for frame in (2, 3):
             block = starts[frame]
             content[block + 32 + 121] = 1  # status: packets are missing
-            content[block + 24:block + 28] = crc32c(content[block + 32:block + 32 + 160])
-            content[block + 28:block + 32] = crc32c(content[block:block + 28])
+            content[block + 24:block + 28] = crc32c(content[block + 32:block + 32 + 160]).to_bytes(4, "little")
+            content[block + 28:block + 32] = crc32c(content[block:block + 28]).to_bytes(4, "little")
         clip.write_bytes(content)
         self.succeed("emulate", "clip.strec", "-o", "a.stipple")
         figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)

@@ -1,5 +1,6 @@
 #include "core/config.h"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -51,6 +52,49 @@ TEST_F(ConfigTest, ReadsOneNumberOrAListOfNumbers) {
     Config text = parse("a = [1, \"x\"]\n");
     expect_parts(message_of<InputError>([&] { return text.numbers("a", {}, 0, 10); }),
                  {"sensor.toml:1: a", "a number or a list of numbers"});
+}
+
+TEST_F(ConfigTest, RefusesKeysOfManyParts) {
+    const auto dotted = [](int parts) {
+        std::string key = "a";
+        for (int i = 1; i < parts; ++i) key += ". \"b\"";
+        return key;
+    };
+    for (const char* form : {"{} = 1", "[{}]", "[[{}]]", "x = {{ y = 1, {} = 1 }}"}) {
+        EXPECT_NO_THROW(parse(fmt::format(fmt::runtime(form), dotted(32))));
+        expect_parts(parse_error("# more\n" + fmt::format(fmt::runtime(form), dotted(33))),
+                     {"sensor.toml:2", "more than 32 parts"});
+    }
+    EXPECT_EQ(parse("", {fmt::format("a={{{}=1}}", dotted(33))}).text("a", "").front(), '{');
+}
+
+TEST_F(ConfigTest, RefusesLongKeysWithThoseOfTheirSections) {
+    const std::string section(253, 'a');
+    EXPECT_TRUE(parse(fmt::format("[{}]\nbc = 1\n", section)).contains(section + ".bc"));
+    expect_parts(parse_error(fmt::format("[{}]\nbcd = 1\n", section)),
+                 {"sensor.toml:2", "longer than 256"});
+}
+
+TEST_F(ConfigTest, TakesManyDotsThatAreInNoKey) {
+    const std::string dots(100, '.');
+    const std::string numbers = fmt::format("{}", fmt::join(std::vector(100, 1.5), ", "));
+    Config config = parse(fmt::format(R"(# {0}
+a = "{0}\"{0}"  # {0}
+b = '{0}\'
+c = """{0}"
+{0}"""
+d = '''{0}'
+'''
+"{0}" = 1
+e = [{1}]
+)",
+                                      dots, numbers));
+    EXPECT_EQ(config.text("a", ""), dots + '"' + dots);
+    EXPECT_EQ(config.text("b", ""), dots + '\\');
+    EXPECT_EQ(config.text("c", ""), dots + "\"\n" + dots);
+    EXPECT_EQ(config.text("d", ""), dots + "'\n");
+    EXPECT_EQ(config.integer(dots, 0, 0, 1), 1);
+    EXPECT_EQ(config.numbers("e", {}, 1, 2).size(), 100U);
 }
 
 TEST_F(ConfigTest, TellsWhetherAKeyIsGivenWithoutMakingItKnown) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/npy_header.h"
+#include "core/npy_writer.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/core/test_images.h"
 
@@ -71,6 +74,19 @@ TEST(FrameWriterTest, WritesMonoNpyOfThreeDimensions) {
     writer.finish();
     EXPECT_EQ(read_all(folder / "clip.npy"), (Floats{1, 2, 3, 4}));
     EXPECT_NE(read_text(folder / "clip.npy").find("'shape': (1, 2, 2), }"), std::string::npos);
+}
+
+TEST(FrameWriterTest, ANpyFileWhoseWriterWasKilledSaysHowManyFramesItHolds) {
+    const TemporaryFolder folder;
+    NpyWriter writer(folder / "clip.npy", "clip.npy", {2, 2, 1});
+    for (int slots = 1; slots <= 8; ++slots) {
+        writer.write(Floats{1, 2, 3, 4});
+        if (std::popcount(static_cast<unsigned>(slots)) != 1) continue;
+        const std::string file = read_text(folder / "clip.npy");
+        const auto header =
+            parse_npy_header(std::as_bytes(std::span(file)), file.size(), "clip.npy");
+        EXPECT_EQ(header.slots, slots);
+    }
 }
 
 TEST(FrameWriterTest, LeavesNothingBehindWithoutFinish) {

@@ -40,6 +40,22 @@ struct Sample {
     std::string bytes;
 };
 
+TEST(RecordingDamageTest, AFrameThatIsCompleteHasTheBytesOfItsLayout) {
+    const TemporaryFolder folder;
+    for (const auto status : {FrameStatus::kComplete, FrameStatus::kSizeMismatch}) {
+        auto frames = test_frames(3);
+        frames[1].payload.pop_back();
+        frames[1].record.status = status;
+        write_recording(folder / "a", frames);
+        RecordingReader reader(folder / "a");
+        const bool damaged = status == FrameStatus::kComplete;
+        EXPECT_EQ(read_frames(reader).size(), damaged ? 2U : 3U);
+        ASSERT_EQ(reader.report().damage.size(), damaged ? 2U : 0U);  // and the block is missing
+        if (damaged)
+            expect_parts(reader.report().damage[0].cause, {"119 of the 120 bytes of its layout"});
+    }
+}
+
 TEST(RecordingDamageTest, EveryPrefixHoldsItsWholeFrames) {
     const Sample sample;
     for (std::size_t length = sample.starts[0]; length < sample.bytes.size(); length += 37) {

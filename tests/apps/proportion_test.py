@@ -1,0 +1,229 @@
+"""Small files that announce much: memory and disk are in proportion to what is really there."""
+
+import os
+import re
+import resource
+import struct
+import subprocess
+import unittest
+import zlib
+from pathlib import Path
+
+import numpy as np
+from program import INPUT, OK, PROGRAM, ProgramTest
+
+SANITIZED = b"__asan_init" in Path(PROGRAM).read_bytes()  # which takes memory of its own
+MOST_BYTES = (1024 if SANITIZED else 256) * 2**20
+XXH3_OF_NOTHING = 0x2D06800538D394C2
+
+
+def crc_table():
+    for number in range(256):
+        for _ in range(8):
+            number = number >> 1 ^ (0x82F63B78 if number & 1 else 0)
+        yield number
+
+
+TABLE = tuple(crc_table())
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc = crc >> 8 ^ TABLE[(crc ^ byte) & 0xFF]
+    return struct.pack("<I", crc ^ 0xFFFFFFFF)
+
+
+FULL = struct.pack("<HHH", 1, 1, 1) + b"\1\0\1"  # all pixels in every slot
+
+
+def stream_header(rows, cols, schedule=FULL, provenance=b""):
+    """docs/stream_format.md, version 1, 8 bits."""
+    size = 92 + len(provenance) + len(schedule) + 4
+    head = b"\x89STPL\r\n\x1a" + struct.pack("<HHIHHBBBB", 1, 0, size, rows, cols, 1, 0, 8, 0)
+    head += struct.pack("<6d", 5000, 0, 20, 10, 5000, 1000)
+    head += struct.pack("<IIIBBH", 0, len(provenance), len(schedule), 0, 0, 0) + crc32c(schedule)
+    head += provenance + schedule
+    return head + crc32c(head)
+
+
+def dropped(slot, rows):
+    """A packet of a slot whose samples were given up."""
+    head = b"\xc5SPK" + struct.pack("<BBHQHHIII", 1, 2, 0, slot, 0, rows, 0, 0, 0)
+    return head + crc32c(head)
+
+
+class ProportionTest(ProgramTest):
+    def measured(self, *arguments):
+        """Exit code and messages of a run that keeps within the memory and the disk of all."""
+        limit = 256 * 2**20
+        with subprocess.Popen(
+                [PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))) as program:
+            said = program.stdout.read()
+            _, status, usage = os.wait4(program.pid, 0)
+            program.returncode = os.waitstatus_to_exitcode(status)
+        self.assertLess(usage.ru_maxrss * 1024, MOST_BYTES, said)
+        return program.returncode, said
+
+    def refuses(self, parts, *arguments):
+        before = self.names()
+        code, said = self.measured(*arguments)
+        self.assertEqual(code, INPUT, said)
+        for part in parts:
+            self.assertIn(part, said)
+        self.assertEqual(self.names(), before)
+
+    def write(self, name, content):
+        (self.folder / name).write_bytes(content)
+        return name
+
+    def test_slots_that_are_missing_are_few_beside_those_that_are_there(self):
+        for rows, slots in ((512, (0, 99_999)), (8, range(0, 1_000_000, 100_000))):
+            self.write("gap.stipple", stream_header(rows, rows) +
+                       b"".join(dropped(slot, rows) for slot in slots))
+            for method in ("naive", "fast"):
+                self.refuses([f"gap.stipple: slots 1 to {slots[1] - 1} are missing", "--fill-gaps"], "decode",
+                             "gap.stipple", "-o", "x.npy", "--method", method)
+        code, said = self.measured("info", "gap.stipple")
+        self.assertIn("of 900001 slots are incomplete", said)
+
+    def test_missing_slots_are_decoded_up_to_the_limit_and_beyond_it_if_told(self):
+        decode = ("decode", "gap.stipple", "-o", "x.npy", "--method", "naive", "--force")
+        self.write("gap.stipple", stream_header(4, 4) + dropped(0, 4) + dropped(1033, 4))
+        self.assertEqual(self.measured(*decode)[0], INPUT)  # damage is told
+        self.assertEqual(len(self.array("x.npy")), 1034)  # 16 for each of 2, and 1000
+        self.write("gap.stipple", stream_header(4, 4) + dropped(0, 4) + dropped(1034, 4))
+        self.assertIn("--fill-gaps", self.measured(*decode)[1])
+        self.assertIn("1033 of 1035 slots are incomplete", self.measured(*decode, "--fill-gaps")[1])
+        self.assertEqual(len(self.array("x.npy")), 1035)
+
+    def test_frames_of_slots_without_samples_are_few(self):
+        self.write("large.stipple", stream_header(16384, 16384) + dropped(0, 16384))
+        for method in ("naive", "fast", "best"):
+            self.refuses(["large.stipple: slots up to 0 hold 0 samples", "1074 MB", "--fill-gaps"], "decode",
+                         "large.stipple", "-o", "x.npy", "--method", method)
+
+    def test_info_needs_no_more_than_the_schedule_for_a_long_period(self):
+        pixel = b"\2" + b"\0\5" + b"\1\5"  # slots 0 and 2, 1 and 3: interleaved
+        schedule = struct.pack("<HHH", 1, 20_000, 65535) + pixel * 20_000
+        self.write("long.stipple", stream_header(8, 8, schedule))
+        code, said = self.measured("info", "long.stipple")
+        self.assertEqual(code, OK, said)
+        self.assertIn("period 65535 slots", said)
+
+    def recorded(self, frames=2, size=8):
+        self.write_flat("light.npy", frames, size, size)
+        self.succeed("capture", "record", "replay:light.npy", "-o", "clip.strec", "--force", "--set",
+                     "AcquisitionFrameRate=0", "--set", "PixelFormat=Mono8", "--buffers", 64)
+
+    def change_frame(self, which, fields, payload=None):
+        """Writes numbers (offset in the record: code, value) of docs/recording_format.md to a frame."""
+        content = (self.folder / "clip.strec").read_bytes()
+        at = [found.start() for found in re.finditer(rb"\xc5FRM", content)][1 + which]
+        kind, number, length, size = struct.unpack_from("<IIIQ", content, at + 4)
+        record = bytearray(content[at + 32:at + 32 + length])
+        kept = content[at + 32 + length:at + 32 + length + size]
+        if payload is not None:
+            kept, fields = payload, {**fields, 80: ("<Q", XXH3_OF_NOTHING)}
+        for offset, (code, value) in fields.items():
+            struct.pack_into(code, record, offset, value)
+        head = b"\xc5FRM" + struct.pack("<IIIQ", kind, number, length, len(kept)) + crc32c(record)
+        self.write("clip.strec", content[:at] + head + crc32c(head) + record + kept +
+                   content[at + 32 + length + size:])
+
+    def test_a_frame_that_is_complete_has_the_bytes_of_its_layout(self):
+        for side, problem in ((16384, "0 of the 268435456 bytes"), (65535, "more than 2^28 values")):
+            self.recorded()
+            self.change_frame(0, {88: ("<Q", side), 108: ("<I", side), 112: ("<I", side)}, b"")
+            code, said = self.measured("capture", "replay", "clip.strec", "-o", "x.npy", "--force")
+            self.assertEqual(code, INPUT, said)
+            self.assertIn(problem, said)
+            self.assertEqual(len(self.array("x.npy")), 1)
+            self.assertIn("damaged", self.measured("emulate", "clip.strec", "-o", "x.stipple",
+                                                   "--force")[1])
+
+    def test_frames_that_are_missing_are_few_beside_those_that_are_there(self):
+        for size in (8, 512):
+            self.recorded(size=size)
+            self.change_frame(1, {16: ("<Q", 2**20)})
+            said = [f"{2**20} frames are missing", "--fill-gaps", "--skip-gaps"]
+            self.refuses(said, "capture", "replay", "clip.strec", "-o", "x.npy")
+            self.refuses(said, "emulate", "clip.strec", "-o", "x.stipple")
+            replay = ("capture", "replay", "clip.strec", "-o", "x.npy", "--force")
+            self.assertEqual(self.measured(*replay, "--skip-gaps")[0], OK)
+            self.assertEqual(len(self.array("x.npy")), 2)
+            (self.folder / "x.npy").unlink()
+        self.recorded()
+        for lost, code in ((1032, OK), (1033, INPUT)):
+            self.change_frame(1, {16: ("<Q", lost)})
+            self.assertEqual(self.measured(*replay)[0], code)
+            self.assertEqual(self.measured(*replay, "--fill-gaps")[0], OK)
+            self.assertEqual(len(self.array("x.npy")), lost + 2)
+
+    def emulate_refuses(self, name, *parts):
+        self.refuses([name, *parts], "emulate", name, "-o", "x.stipple")
+
+    def test_pictures_are_not_larger_than_their_files_can_hold(self):
+        content = bytearray((self.folder / self.write_png("a.png", np.zeros((4, 4)))).read_bytes())
+        for side, part in ((20_000, "outside"), (16_000, "announces a picture of 256000000 bytes")):
+            struct.pack_into(">II", content, 16, side, side)
+            struct.pack_into(">I", content, 29, zlib.crc32(content[12:29]))
+            self.write("a.png", content)
+            self.emulate_refuses("a.png", part)
+        self.succeed("synth", "pan", "-o", "frames", "--size", "32x32", "--frames", 1)
+        picture = next((self.folder / "frames").iterdir()).read_bytes()
+        window = struct.pack("<iiii", 0, 0, 31, 31)
+        self.assertEqual(picture.count(window), 2)  # data and display
+        last = b"screenWindowWidth\0float\0"
+        head = picture[:picture.index(last) + len(last) + 8 + 1]  # size, value, end of the header
+        self.write("a.exr", head.replace(window, struct.pack("<iiii", 0, 0, 8191, 8191)) + b"\0" * 4096)
+        self.emulate_refuses("a.exr", "announces a picture of")
+
+    def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
+        side = 16_000
+        for packing, size in ((1, 100_000), (32773, 1_000_000), (8, 100_000)):
+            tags = ((256, side), (257, side), (258, 8), (259, packing), (262, 1), (273, 200), (277, 1),
+                    (278, side), (279, size))  # width, height, bits, ..., one strip and its bytes
+            content = b"II*\0" + struct.pack("<IH", 8, len(tags))
+            content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
+            self.write("a.tif", content + bytes(200 - len(content) + size))
+            self.emulate_refuses("a.tif", "announces a picture of 256000000 bytes")
+
+    def test_pictures_are_files(self):
+        (self.folder / "frames").mkdir()
+        (self.folder / "frames" / "a.png").symlink_to("/dev/zero")
+        self.refuses(["frames/a.png", "is a device"], "emulate", "frames", "-o", "x.stipple")
+        (self.folder / "frames" / "a.png").unlink()
+        os.mkfifo(self.folder / "frames" / "a.png")
+        self.refuses(["frames/a.png", "is a device, pipe"], "emulate", "frames", "-o", "x.stipple")
+        (self.folder / "frames" / "a.png").rename(self.folder / "a.tif")
+        self.emulate_refuses("a.tif", "is a device, pipe")
+        self.write("clip.stipple", stream_header(4, 4))
+        self.refuses(["/dev/zero", "is a device"], "decode", "clip.stipple", "-o", "x.npy",
+                     "--options", "/dev/zero")
+
+    def test_keys_of_many_parts_are_refused_wherever_they_are(self):
+        key = ".".join(["a"] * 30_000)
+        for text in (f"{key}=1", f"[{key}]", f"[[{key}]]", f"x={{{key}=1}}"):
+            self.write("deep.toml", b"# a comment\n" + text.encode())
+            for command in (("schedule", "show", "deep.toml"),
+                            ("timing", "--sensor", "deep.toml"),
+                            ("decode", "x.stipple", "-o", "x.npy", "--options", "deep.toml")):
+                self.refuses(["deep.toml:2", "more than 32 parts"], *command)
+        part = ".".join(["a" * 100] * 32)
+        for text in ("x=" + f"{{{part}=" * 250 + "1" + "}" * 250,
+                     f"[{'a' * 300_000}]\n" + "".join(f"k{i}=1\n" for i in range(5000))):
+            self.write("deep.toml", text.encode())
+            self.refuses(["deep.toml:", "longer than 256"], "schedule", "show", "deep.toml")
+        self.write_flat("light.npy")
+        self.refuses(["bit_depth"], "emulate", "light.npy", "-o", "x.stipple", "--set",
+                     f"bit_depth={{{key}=1}}")
+        self.write("deep.stipple", stream_header(8, 8, provenance=f"{key}=1".encode()) + dropped(0, 8))
+        code, said = self.measured("info", "deep.stipple")
+        self.assertEqual(code, OK, said)
+
+
+if __name__ == "__main__":
+    unittest.main()
