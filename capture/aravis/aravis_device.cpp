@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
@@ -94,13 +95,17 @@ std::string choices_of(ArvDevice* device, const char* feature) {
 struct NumberFeature {
     std::string_view name;
     gboolean (*is_available)(ArvCamera*, GError**);
+    void (*bounds)(ArvCamera*, double*, double*, GError**);
     void (*set)(ArvCamera*, double, GError**);
 };
 constexpr std::array<NumberFeature, 4> kNumbers{{
-    {"AcquisitionFrameRate", arv_camera_is_frame_rate_available, arv_camera_set_frame_rate},
-    {"ExposureTime", arv_camera_is_exposure_time_available, arv_camera_set_exposure_time},
-    {"Gain", arv_camera_is_gain_available, arv_camera_set_gain},
-    {"BlackLevel", arv_camera_is_black_level_available, arv_camera_set_black_level},
+    {"AcquisitionFrameRate", arv_camera_is_frame_rate_available, arv_camera_get_frame_rate_bounds,
+     arv_camera_set_frame_rate},
+    {"ExposureTime", arv_camera_is_exposure_time_available, arv_camera_get_exposure_time_bounds,
+     arv_camera_set_exposure_time},
+    {"Gain", arv_camera_is_gain_available, arv_camera_get_gain_bounds, arv_camera_set_gain},
+    {"BlackLevel", arv_camera_is_black_level_available, arv_camera_get_black_level_bounds,
+     arv_camera_set_black_level},
 }};
 
 /// The values that an integer feature takes.
@@ -199,6 +204,14 @@ void AravisDevice::Impl::set_number(const std::string& place, const NumberFeatur
                                     const std::string& value) const {
     const auto number = parsed<double>(value);
     if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+    // Aravis sets some to the nearest value that can be.
+    double least = 0, most = 0;
+    Complaint no_bounds;
+    feature.bounds(camera, &least, &most, no_bounds.slot());
+    const double rounding = 1e-6 * std::abs(most);
+    if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
+        throw InputError(place,
+                         fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
     Complaint complaint;
     feature.set(camera, *number, complaint.slot());
     if (complaint.any())
