@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
@@ -118,6 +119,9 @@ std::string range_of(ArvDevice* device, const char* feature) {
     return fmt::format("; it takes {} to {}{}", least, most,
                        step > 1 ? fmt::format(" in steps of {}", step) : "");
 }
+
+/// Of a camera; large ones have some thousand.
+constexpr std::size_t kMostFeatures = 20'000;
 
 constexpr std::uint64_t kPrimaryApplicationPort = 0x0A10;  // GigE Vision 2.0, 27.38
 constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
@@ -294,6 +298,7 @@ void AravisDevice::set(const std::string& feature, const std::string& value) {
 std::map<std::string, std::string> AravisDevice::features() const {
     std::map<std::string, std::string> found;
     std::vector<std::string> categories{"Root"};
+    std::set<std::string> seen{"Root"};  // a category may name itself
     while (!categories.empty()) {
         ArvGcNode* category = arv_device_get_feature(impl_->device, categories.back().c_str());
         categories.pop_back();
@@ -301,6 +306,8 @@ std::map<std::string, std::string> AravisDevice::features() const {
         const GSList* names = arv_gc_category_get_features(ARV_GC_CATEGORY(category));
         for (; names != nullptr; names = names->next) {
             const std::string name(static_cast<const char*>(names->data));
+            if (seen.size() == kMostFeatures) return found;
+            if (!seen.insert(name).second) continue;
             ArvGcNode* node = arv_device_get_feature(impl_->device, name.c_str());
             if (node != nullptr && ARV_IS_GC_CATEGORY(node)) categories.push_back(name);
             if (const auto value = read(name)) found.emplace(name, *value);
