@@ -161,7 +161,7 @@ void AravisStream::Impl::check_buffers() const {
 bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) const {
     if (said.format == nullptr || said.width <= 0 || said.height <= 0) return false;
     const std::size_t bytes = said.payload_bytes();
-    return bytes <= came ||
+    return said == layout || bytes <= came ||
            (bytes <= arv_camera_get_payload(camera, nullptr) && has_room_for(bytes));
 }
 
