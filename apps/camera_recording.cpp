@@ -172,6 +172,7 @@ nlohmann::ordered_json CameraRecording::json() const {
     return {{"file", output_.final_path().string()},
             {"frames", totals.frames},
             {"incomplete", totals.incomplete},
+            {"repeated", session_.totals().repeated},
             {"lost", lost_json(session_.totals())},
             {"outages", session_.totals().outages},
             {"transport", transport_json(session_.transport())},
@@ -187,6 +188,8 @@ std::string CameraRecording::text() const {
         rate_.hz() ? fmt::format(", {:.1f} per second", *rate_.hz()) : "",
         static_cast<double>(totals.payload_bytes) * 1e-6);
     if (totals.incomplete > 0) text += fmt::format(", {} incomplete", totals.incomplete);
+    if (const auto repeated = session_.totals().repeated; repeated > 0)
+        text += fmt::format(", {} repeated and left out", repeated);
     return fmt::format("{}\nlost: {}", text, lost_text(session_.totals()));
 }
 

@@ -144,6 +144,8 @@ void add_capture_serve(Command& capture, Action& action) {
         .check(check_serial)
         .type_name("TEXT");
     command.add_flag("--repeat", options->server.repeat, "begin again at the end of the source");
+    command.add_flag("--allow-other-destination", options->server.allow_other_destination,
+                     "let a client send the frames to another address than its own");
     add_fault_arguments(command, options->server);
     add_threads(command, action.options);
     command.footer(

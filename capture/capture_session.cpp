@@ -23,6 +23,9 @@ constexpr int kStallPeriods = 5;
 /// a frame of a fast camera does.
 constexpr milliseconds kCountEvery{200};
 
+/// From one frame to the next, by which a counter that began anew is known.
+constexpr std::uint64_t kMostSteps = 8;
+
 /// A feature as a number; 0 if there is none.
 double number_of(const CameraDescription& camera, const char* feature) {
     const auto found = camera.features.find(feature);
@@ -69,6 +72,11 @@ GapCause cause_of(const TransportCounts& before, const TransportCounts& after,
     return GapCause::kDevice;
 }
 
+/// Whether both are stamped, by the same clock.
+bool have_stamps(const FrameRecord& a, const FrameRecord& b) {
+    return a.stamp_source == b.stamp_source && a.stamp_source != StampSource::kNone;
+}
+
 /// Frames that are missing before the next one.
 struct Gap {
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};
@@ -101,14 +109,16 @@ struct CaptureSession::Impl {
     std::uint32_t epoch = 0;
     SessionTotals totals;
     Gap gap;
-    bool reconnected = false;  ///< no frame since
+    bool reconnected = false;               ///< no frame since
+    std::optional<CapturedFrame> doubtful;  ///< a repeat, or the first of a counter that began anew
+    std::optional<CapturedFrame> coming;    ///< that showed it was the latter
 
     TransportCounts earlier_epochs;
     TransportCounts counted;  ///< of this epoch, at `counted_at`
     Clock::time_point counted_at;
     bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
 
-    Clock::time_point last_sign;             ///< start, or the last frame
+    Clock::time_point last_sign;             ///< start, or the last frame that was no repeat
     nanoseconds period_before{};             ///< of the epoch before
     std::optional<FrameRecord> first_frame;  ///< of this epoch
     std::optional<FrameRecord> last_frame;
@@ -123,6 +133,10 @@ struct CaptureSession::Impl {
     void count_last_underruns();
     void number(FrameRecord& record);
     void note_reconnection(const FrameRecord& record);
+    [[nodiscard]] bool begins_anew(const FrameRecord& record) const;
+    [[nodiscard]] bool follows_doubtful(const FrameRecord& record) const;
+    void drop_doubtful();
+    [[nodiscard]] SessionEvent take(CapturedFrame frame);
     [[nodiscard]] SessionEvent deliver(CapturedFrame frame);
 };
 
@@ -160,6 +174,7 @@ SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
         camera->stop();
         return DeviceLost{std::move(reason)};
     }
+    drop_doubtful();
     period_before = period();
     count_transport(true);
     earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
@@ -233,12 +248,42 @@ void CaptureSession::Impl::number(FrameRecord& record) {
     if (record.status != FrameStatus::kComplete) incomplete_since = true;
 }
 
+/// Of a frame with a past id: its clock went on, or, of a camera without clock, its counter stands.
+bool CaptureSession::Impl::begins_anew(const FrameRecord& record) const {
+    return have_stamps(record, *last_frame) ? record.device_ns > last_frame->device_ns
+                                            : record.wire_id == last_frame->wire_id;
+}
+
+bool CaptureSession::Impl::follows_doubtful(const FrameRecord& record) const {
+    const FrameRecord& first = doubtful->record;
+    const std::uint64_t steps = ids.steps(first.wire_id, record.wire_id);
+    const bool is_older = have_stamps(record, first) && record.device_ns < first.device_ns;
+    return steps > 0 && steps <= kMostSteps && !is_older;
+}
+
+void CaptureSession::Impl::drop_doubtful() {
+    if (doubtful) ++totals.repeated;
+    doubtful.reset();
+}
+
+SessionEvent CaptureSession::Impl::take(CapturedFrame frame) {
+    const FrameRecord& record = frame.record;
+    const bool is_past = !reconnected && ids.is_past(record.wire_id);
+    // A packet that was resent too late: Aravis makes a frame of it again, long after the frame.
+    if (is_past && record.status != FrameStatus::kComplete) return NoFrame{};
+    if (is_past && doubtful && follows_doubtful(record)) {
+        coming = std::move(frame);
+        return deliver(*std::exchange(doubtful, {}));
+    }
+    drop_doubtful();
+    if (!is_past || begins_anew(record)) return deliver(std::move(frame));
+    doubtful = std::move(frame);
+    return NoFrame{};
+}
+
 SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     FrameRecord& record = frame.record;
     last_sign = Clock::now();
-    // A packet that was resent too late: Aravis makes a frame of it again, long after the frame.
-    if (!reconnected && record.status != FrameStatus::kComplete && ids.is_past(record.wire_id))
-        return NoFrame{};
     number(record);
     last_frame = record;
     if (!first_frame) first_frame = record;
@@ -261,6 +306,7 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
 }
 
 SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
+    if (coming) return deliver(*std::exchange(coming, {}));
     const auto limit = patience();
     const auto silent = Clock::now() - last_sign;
     if (limit) {
@@ -268,7 +314,7 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
         timeout = std::clamp(left, milliseconds(0), std::max(timeout, milliseconds(0)));
     }
     Arrival arrival = camera->wait(timeout);
-    if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return deliver(std::move(*frame));
+    if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return take(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
         if (!lost->at_end && !lost->bad_file) return begin_outage(std::move(lost->reason));
         count_last_underruns();

@@ -34,6 +34,7 @@ struct SessionTotals {
     std::uint64_t incomplete = 0;  ///< of these, those whose status is not kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
     std::uint64_t outages = 0;                                ///< times that the camera was gone
+    std::uint64_t repeated = 0;  ///< whole frames that came again, and were left out
 };
 
 /// The camera is gone; it is being opened anew.
@@ -56,6 +57,8 @@ using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, Devi
 /// The cause of a gap is taken from what the transport counted meanwhile: buffers that were not
 /// free, then packets that the network or the socket lost, else it was the camera. Frames lost
 /// while the camera was gone are estimated from the frame period before.
+/// A frame whose id has been before is a repeat, and left out, or the first of a counter that began
+/// anew: the latter if its stamp is newer, or if the next frame follows it.
 /// Used from one thread; opening and closing happen in threads of its own.
 class CaptureSession {
   public:

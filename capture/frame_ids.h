@@ -23,12 +23,13 @@ class FrameIds {
     /// Whether this wire id is that of the last frame, or of one that came, or was missed, earlier.
     [[nodiscard]] bool is_past(std::uint64_t wire_id) const noexcept;
 
+    /// How far the counter moves from one wire id to another.
+    [[nodiscard]] std::uint64_t steps(std::uint64_t from, std::uint64_t to) const noexcept;
+
     /// The camera begins anew, after so many frames that nobody numbered.
     void restart(std::uint64_t period, std::uint64_t skipped = 0) noexcept;
 
   private:
-    [[nodiscard]] std::uint64_t forward(std::uint64_t wire_id) const noexcept;
-
     std::uint64_t period_;
     std::uint64_t next_id_ = 0;
     std::optional<std::uint64_t> last_wire_id_;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <set>
 
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
@@ -94,13 +96,17 @@ std::string choices_of(ArvDevice* device, const char* feature) {
 struct NumberFeature {
     std::string_view name;
     gboolean (*is_available)(ArvCamera*, GError**);
+    void (*bounds)(ArvCamera*, double*, double*, GError**);
     void (*set)(ArvCamera*, double, GError**);
 };
 constexpr std::array<NumberFeature, 4> kNumbers{{
-    {"AcquisitionFrameRate", arv_camera_is_frame_rate_available, arv_camera_set_frame_rate},
-    {"ExposureTime", arv_camera_is_exposure_time_available, arv_camera_set_exposure_time},
-    {"Gain", arv_camera_is_gain_available, arv_camera_set_gain},
-    {"BlackLevel", arv_camera_is_black_level_available, arv_camera_set_black_level},
+    {"AcquisitionFrameRate", arv_camera_is_frame_rate_available, arv_camera_get_frame_rate_bounds,
+     arv_camera_set_frame_rate},
+    {"ExposureTime", arv_camera_is_exposure_time_available, arv_camera_get_exposure_time_bounds,
+     arv_camera_set_exposure_time},
+    {"Gain", arv_camera_is_gain_available, arv_camera_get_gain_bounds, arv_camera_set_gain},
+    {"BlackLevel", arv_camera_is_black_level_available, arv_camera_get_black_level_bounds,
+     arv_camera_set_black_level},
 }};
 
 /// The values that an integer feature takes.
@@ -113,6 +119,9 @@ std::string range_of(ArvDevice* device, const char* feature) {
     return fmt::format("; it takes {} to {}{}", least, most,
                        step > 1 ? fmt::format(" in steps of {}", step) : "");
 }
+
+/// Of a camera; large ones have some thousand.
+constexpr std::size_t kMostFeatures = 20'000;
 
 constexpr std::uint64_t kPrimaryApplicationPort = 0x0A10;  // GigE Vision 2.0, 27.38
 constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
@@ -199,6 +208,14 @@ void AravisDevice::Impl::set_number(const std::string& place, const NumberFeatur
                                     const std::string& value) const {
     const auto number = parsed<double>(value);
     if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+    // Aravis sets some to the nearest value that can be.
+    double least = 0, most = 0;
+    Complaint no_bounds;
+    feature.bounds(camera, &least, &most, no_bounds.slot());
+    const double rounding = 1e-6 * std::abs(most);
+    if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
+        throw InputError(place,
+                         fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
     Complaint complaint;
     feature.set(camera, *number, complaint.slot());
     if (complaint.any())
@@ -281,6 +298,7 @@ void AravisDevice::set(const std::string& feature, const std::string& value) {
 std::map<std::string, std::string> AravisDevice::features() const {
     std::map<std::string, std::string> found;
     std::vector<std::string> categories{"Root"};
+    std::set<std::string> seen{"Root"};  // a category may name itself
     while (!categories.empty()) {
         ArvGcNode* category = arv_device_get_feature(impl_->device, categories.back().c_str());
         categories.pop_back();
@@ -288,6 +306,8 @@ std::map<std::string, std::string> AravisDevice::features() const {
         const GSList* names = arv_gc_category_get_features(ARV_GC_CATEGORY(category));
         for (; names != nullptr; names = names->next) {
             const std::string name(static_cast<const char*>(names->data));
+            if (seen.size() == kMostFeatures) return found;
+            if (!seen.insert(name).second) continue;
             ArvGcNode* node = arv_device_get_feature(impl_->device, name.c_str());
             if (node != nullptr && ARV_IS_GC_CATEGORY(node)) categories.push_back(name);
             if (const auto value = read(name)) found.emplace(name, *value);

@@ -35,7 +35,7 @@ class AravisDevice {
     /// \throws InputError if there is no such feature, the text is no value of it or out of range;
     /// DeviceError if the camera refuses or sets something else.
     void set(const std::string& feature, const std::string& value);
-    /// All features under Root that can be read.
+    /// All features under Root that can be read, of the first 20 000.
     [[nodiscard]] std::map<std::string, std::string> features() const;
     [[nodiscard]] std::string genicam_xml() const;
 

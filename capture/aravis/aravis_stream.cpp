@@ -2,6 +2,7 @@
 
 #include <arv.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,12 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
+
+/// What the buffers of a camera may take together, whatever it says of its frames.
+std::size_t most_buffer_bytes() {
+    const auto size = [](int name) { return static_cast<std::size_t>(sysconf(name)); };
+    return size(_SC_PHYS_PAGES) / 4 * size(_SC_PAGESIZE);
+}
 
 /// Memory of a buffer.
 struct Slot {
@@ -85,11 +92,14 @@ struct AravisStream::Impl {
     Impl& operator=(const Impl&) = delete;
 
     void create(std::optional<int> packet_bytes);
+    void check_buffers() const;
     void push_buffers();
     void hand_back(ArvBuffer* buffer, bool complete);
     void reuse(ArvBuffer* buffer) const;
     void rebuild();
     [[nodiscard]] std::size_t wanted_bytes() const;
+    [[nodiscard]] bool has_room_for(std::size_t bytes) const;
+    [[nodiscard]] bool is_credible(const FrameLayout& said, std::size_t came) const;
     [[nodiscard]] std::uint64_t mismatches() const;
     [[nodiscard]] std::uint64_t info(const char* name) const;
     [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer);
@@ -106,6 +116,7 @@ AravisStream::Impl::~Impl() {
 
 void AravisStream::Impl::create(std::optional<int> packet_bytes) {
     if (device.is_gige()) link.emplace(device, packet_bytes);
+    check_buffers();
     GError* error = nullptr;
     stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
     if (stream == nullptr) {
@@ -126,8 +137,32 @@ std::size_t AravisStream::Impl::wanted_bytes() const {
     const std::size_t payload = arv_camera_get_payload(camera, nullptr);
     // By USB as much is asked for as a buffer holds: no more than the camera sends.
     const bool exactly = !link && payload > 0;
-    return std::clamp(exactly ? payload : std::max(payload, layout.payload_bytes()), std::size_t{1},
-                      kMostPayloadBytes);
+    return std::max(exactly ? payload : std::max(payload, layout.payload_bytes()), std::size_t{1});
+}
+
+/// Whether buffers of so many bytes can be had.
+bool AravisStream::Impl::has_room_for(std::size_t bytes) const {
+    return bytes <= std::min(kMostPayloadBytes,
+                             most_buffer_bytes() / static_cast<std::size_t>(buffers.frames));
+}
+
+void AravisStream::Impl::check_buffers() const {
+    const std::size_t bytes = wanted_bytes();
+    if (has_room_for(bytes)) return;
+    throw InputError(
+        fmt::format("{}: PayloadSize", device.address()),
+        fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes, a "
+                    "quarter of this machine's memory, and each {}; set fewer --buffers, or a "
+                    "smaller Width and Height",
+                    buffers.frames, bytes, most_buffer_bytes(), kMostPayloadBytes));
+}
+
+/// A leader may be forged: it is believed as far as bytes came, or the camera itself says so.
+bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) const {
+    if (said.format == nullptr || said.width <= 0 || said.height <= 0) return false;
+    const std::size_t bytes = said.payload_bytes();
+    return said == layout || bytes <= came ||
+           (bytes <= arv_camera_get_payload(camera, nullptr) && has_room_for(bytes));
 }
 
 void AravisStream::Impl::push_buffers() {
@@ -226,11 +261,13 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
     stamp_arrival(buffer, record);
+    std::size_t came = slot.memory.size();
     if (status == ARV_BUFFER_STATUS_SUCCESS) {
+        arv_buffer_get_data(buffer, &came);
         const FrameLayout now = layout_of(buffer);
-        const bool usable = now.format != nullptr && now.payload_bytes() <= kMostPayloadBytes;
-        if (usable) layout = now;
-        if (!usable) record.status = FrameStatus::kDeviceError;
+        const bool credible = is_credible(now, std::min(came, slot.memory.size()));
+        if (credible) layout = now;
+        if (!credible) record.status = FrameStatus::kDeviceError;
         if (arv_buffer_has_chunks(buffer) != FALSE) read_chunks(buffer, record);
     }
     record.layout = layout;
@@ -239,12 +276,8 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     frame.payload.assign(slot.memory.begin(),
                          slot.memory.begin() + static_cast<std::ptrdiff_t>(kept));
     record.bytes_received = kept;
-    if (status == ARV_BUFFER_STATUS_SUCCESS) {
-        std::size_t size = 0;
-        arv_buffer_get_data(buffer, &size);
-        if (size < wanted && record.status == FrameStatus::kComplete)
-            record.status = FrameStatus::kSizeMismatch;
-    }
+    if (came < wanted && record.status == FrameStatus::kComplete)
+        record.status = FrameStatus::kSizeMismatch;
     if (record.status == FrameStatus::kSizeMismatch) ++cut_frames;
     if (record.status != FrameStatus::kComplete) {
         if (!link) erase_usb_packets(frame.payload, record.wire_id);
@@ -319,8 +352,9 @@ Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
         mismatches != impl_->mismatches_seen) {
         impl_->mismatches_seen = mismatches;
         const std::size_t wanted = impl_->wanted_bytes();
-        if (impl_->link ? wanted > impl_->buffer_bytes : wanted != impl_->buffer_bytes)
-            impl_->rebuild();
+        const bool other =
+            impl_->link ? wanted > impl_->buffer_bytes : wanted != impl_->buffer_bytes;
+        if (other && impl_->has_room_for(wanted)) impl_->rebuild();
     }
     return frame;
 }

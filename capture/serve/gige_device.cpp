@@ -10,8 +10,6 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint32_t kMinHeartbeatMs = 500;
-
 void append(std::vector<std::uint8_t>& to, const std::string& text, std::size_t from,
             std::size_t bytes) {
     for (std::size_t i = from; i < from + bytes; ++i)
@@ -26,7 +24,10 @@ std::size_t text_bytes(const std::string& text) {
 }  // namespace
 
 GigeDevice::GigeDevice(const GigeIdentity& identity, const ServedImage& image)
-    : image_(image), xml_(gige_xml(image)), registers_(gige::kRegisterEnd) {
+    : image_(image),
+      allow_other_destination_(identity.allow_other_destination),
+      xml_(gige_xml(image)),
+      registers_(gige::kRegisterEnd) {
     fill_bootstrap(identity);
     fill_features();
 }
@@ -36,10 +37,7 @@ GigeOutcome GigeDevice::execute(const GvcpCommand& command, UdpEndpoint peer, Ti
     if (is_controller(peer)) last_heard_ = now;
     GigeOutcome outcome;
     if (const auto* resend = std::get_if<GvcpPacketResend>(&command.body)) {
-        const bool can = (word(gige::kCapability) & gige::kCanResend) != 0;
-        // Clients ask from the port of their stream, which is not that of their commands.
-        const bool allowed = controller_ && controller_->address == peer.address;
-        if (can && allowed && resend->channel == 0) outcome.resend = *resend;
+        if (may_resend(peer) && resend->channel == 0) outcome.resend = *resend;
         return outcome;
     }
     const Reply reply =
@@ -75,6 +73,7 @@ void GigeDevice::release() {
     controller_.reset();
     set_word(gige::kControl, 0);
     set_word(gige::kStreamPort, 0);
+    set_word(gige::kStreamDestination, 0);
     stop();
 }
 
@@ -94,6 +93,12 @@ bool GigeDevice::read(std::uint32_t address, std::size_t bytes,
     };
     return read_text(gige::kXmlText, xml_) ||
            (!image_.coded_header.empty() && read_text(gige::kCodedHeader, image_.coded_header));
+}
+
+/// Clients ask from the port of their commands or from that of their stream.
+bool GigeDevice::may_resend(UdpEndpoint peer) const {
+    const bool can = (word(gige::kCapability) & gige::kCanResend) != 0;
+    return can && controller_ && (is_controller(peer) || peer == stream().destination);
 }
 
 bool GigeDevice::may_read(UdpEndpoint peer, std::uint32_t address) const {
@@ -199,7 +204,7 @@ GvcpStatus GigeDevice::write_feature(std::uint32_t address, std::uint32_t value)
             stop();
             return GvcpStatus::kSuccess;
         case gige::kHeartbeatMs:
-            value = std::max(value, kMinHeartbeatMs);
+            value = std::clamp(value, gige::kMinHeartbeatMs, gige::kMaxHeartbeatMs);
             break;
         case gige::kStreamPacketSize:
             fire_test_packet_ = (value & gige::kFireTestPacket) != 0;

@@ -23,13 +23,14 @@ struct GigeIdentity {
     std::string version;
     std::string serial;
     bool can_resend = true;
+    bool allow_other_destination = false;  ///< else the stream goes to the controller's address
 };
 
 /// What the registers say about the stream.
 struct GigeStreamSettings {
     bool running = false;
     std::uint64_t starts = 0;  ///< AcquisitionStart commands so far
-    UdpEndpoint destination;   ///< port 0: nobody listens
+    UdpEndpoint destination;   ///< address or port 0: nobody listens
     std::size_t packet_bytes = 0;
     bool do_not_fragment = false;
     std::chrono::nanoseconds packet_delay{0};
@@ -92,6 +93,7 @@ class GigeDevice {
     [[nodiscard]] bool read(std::uint32_t address, std::size_t bytes,
                             std::vector<std::uint8_t>& to) const;
     [[nodiscard]] bool is_controller(UdpEndpoint peer) const { return controller_ == peer; }
+    [[nodiscard]] bool may_resend(UdpEndpoint peer) const;
     [[nodiscard]] bool may_read(UdpEndpoint peer, std::uint32_t address) const;
     [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value, UdpEndpoint peer,
                                    Time now);
@@ -109,6 +111,7 @@ class GigeDevice {
     Reply on(const GvcpRefused& command, UdpEndpoint peer, Time now);
 
     ServedImage image_;
+    bool allow_other_destination_ = false;
     std::string xml_;
     std::vector<std::uint8_t> registers_;
     std::optional<UdpEndpoint> controller_;

@@ -130,9 +130,11 @@ GvcpStatus GigeDevice::check_write(std::uint32_t address, std::uint32_t value) c
     };
     switch (address) {
         case gige::kHeartbeatMs:
-        case gige::kStreamDestination:
-        case gige::kStreamPacketDelay:
             return GvcpStatus::kSuccess;
+        case gige::kStreamDestination:
+            return when(value == 0 || value == controller_->address || allow_other_destination_);
+        case gige::kStreamPacketDelay:
+            return when(value <= gige::kMaxPacketDelayNs);
         case gige::kStreamPort:
             return when(value <= 0xFFFF);
         case gige::kStreamPacketSize:
@@ -151,7 +153,7 @@ GvcpStatus GigeDevice::check_write(std::uint32_t address, std::uint32_t value) c
             return when(value >= 1);
         case gige::kFrameRate: {
             const float rate = std::bit_cast<float>(value);
-            return when(rate >= 0.01F && rate <= 100000.0F);
+            return when(rate >= 0.01F && rate <= static_cast<float>(image_.frames_per_s));
         }
         case gige::kChunkModeActive:
             return when(value <= 1);

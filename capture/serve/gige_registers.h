@@ -69,6 +69,11 @@ inline constexpr std::uint32_t kFireTestPacket = 0x80000000;
 inline constexpr std::uint32_t kDoNotFragment = 0x40000000;
 inline constexpr std::uint32_t kCanResend = 4;
 
+// Limits of what clients may set, so that nobody keeps the camera, or has it flood a network.
+inline constexpr std::uint32_t kMinHeartbeatMs = 500;
+inline constexpr std::uint32_t kMaxHeartbeatMs = 10'000;
+inline constexpr std::uint32_t kMaxPacketDelayNs = 100'000'000;
+
 // Values of kAcquisitionMode.
 inline constexpr std::uint32_t kSingleFrame = 0;
 inline constexpr std::uint32_t kMultiFrame = 1;

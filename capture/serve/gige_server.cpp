@@ -75,7 +75,7 @@ struct GigeServer::Impl {
 
     void run_control(const std::function<bool()>& stop);
     void answer(const UdpSocket& socket);
-    void act_on(const GigeOutcome& outcome);
+    void act_on(const GigeOutcome& outcome, const GigeStreamSettings& now);
 
     void run_streams();
     void stream(const GigeStreamSettings& settings);
@@ -120,7 +120,8 @@ GigeServer::Impl::Impl(FrameSource& frames, const GigeServerOptions& settings)
               .model = options.model,
               .version = options.version,
               .serial = options.serial.empty() ? ipv4_text(address) : options.serial,
-              .can_resend = options.can_resend},
+              .can_resend = options.can_resend,
+              .allow_other_destination = options.allow_other_destination},
              source.image()) {
     data.set_send_buffer(kSendBufferBytes);
     // Discovery comes as broadcasts. Without them the camera is still found by its address.
@@ -138,7 +139,10 @@ void GigeServer::Impl::run_control(const std::function<bool()>& stop) {
         answer(control);
         for (const UdpSocket& socket : broadcasts) answer(socket);
         const std::scoped_lock lock(mutex);
-        if (device.check_heartbeat(device_time(Clock::now()))) changed.notify_all();
+        if (device.check_heartbeat(device_time(Clock::now()))) {
+            sender.forget();
+            changed.notify_all();
+        }
         if (failure) std::rethrow_exception(failure);
     }
 }
@@ -153,18 +157,20 @@ void GigeServer::Impl::answer(const UdpSocket& socket) {
         const auto command = decode_gvcp(datagram->bytes);
         if (!command) continue;
         if (broadcast && !std::holds_alternative<GvcpDiscovery>(command->body)) continue;
-        const std::unique_lock lock(mutex);
+        std::unique_lock lock(mutex);
         const GigeOutcome outcome =
             device.execute(*command, datagram->from, device_time(Clock::now()));
-        act_on(outcome);
+        const GigeStreamSettings now = device.stream();
+        if (!device.controller()) sender.forget();
+        lock.unlock();
         changed.notify_all();
+        act_on(outcome, now);
         if (!outcome.reply.empty()) control.send(datagram->from, outcome.reply);
     }
 }
 
-void GigeServer::Impl::act_on(const GigeOutcome& outcome) {
-    const GigeStreamSettings now = device.stream();
-    if (now.destination.port == 0) return;
+void GigeServer::Impl::act_on(const GigeOutcome& outcome, const GigeStreamSettings& now) {
+    if (!now.destination.is_somebody()) return;
     data.set_do_not_fragment(now.do_not_fragment);
     if (outcome.resend) sender.resend(*outcome.resend, now.destination);
     if (outcome.fire_test_packet) data.send(now.destination, gvsp_test_packet(now.packet_bytes));
@@ -237,8 +243,11 @@ void GigeServer::Impl::send(ServedFrame frame, const GigeStreamSettings& setting
     block->number = number;
     block->block = served_block(std::move(frame), source.image(), settings, stamp_ns);
     block->block.id = gvsp_block_id(number, faults.first_block);
-    if (settings.destination.port != 0)
-        sender.send(std::move(block), settings.destination, settings.packet_delay);
+    if (settings.destination.is_somebody() &&
+        !sender.send(std::move(block), settings.destination,
+                     {settings.packet_delay,
+                      [&](Clock::time_point due) { return wait_until(due, settings.starts); }}))
+        return;
     ++frames_sent;
 }
 

@@ -17,6 +17,7 @@ struct GigeServerOptions {
     std::string serial = {};  ///< empty: the address
     bool repeat = false;      ///< begin again at the end of the source
     bool can_resend = true;
+    bool allow_other_destination = false;  ///< else frames go to the client's own address
     GvspFaults faults = {};
 };
 

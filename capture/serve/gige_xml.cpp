@@ -137,7 +137,10 @@ std::string image_format(const ServedImage& image) {
            enumeration("PixelFormat", {gige::kPixelFormat, 4, "RW"}, formats, kLocked);
 }
 
-std::string acquisition() {
+std::string acquisition(double frames_per_s) {
+    // The register holds it as a float, which may be the larger.
+    const double most =
+        std::max(frames_per_s, static_cast<double>(static_cast<float>(frames_per_s)));
     const std::string modes = entry("SingleFrame", gige::kSingleFrame) +
                               entry("MultiFrame", gige::kMultiFrame) +
                               entry("Continuous", gige::kContinuous);
@@ -149,8 +152,10 @@ std::string acquisition() {
            integer("AcquisitionFrameCount", {gige::kAcquisitionFrameCount, 4, "RW"}, kLocked,
                    "<Min>1</Min><Max>4294967295</Max>") +
            "<Float Name=\"AcquisitionFrameRate\">" + std::string(kLocked) +
-           "<pValue>AcquisitionFrameRateReg</pValue><Min>0.01</Min><Max>100000</Max>"
-           "<Unit>Hz</Unit></Float>\n" +
+           fmt::format(
+               "<pValue>AcquisitionFrameRateReg</pValue><Min>0.01</Min><Max>{}</Max>"
+               "<Unit>Hz</Unit></Float>\n",
+               most) +
            fmt::format(
                "<FloatReg Name=\"AcquisitionFrameRateReg\">{}"
                "<Endianess>BigEndian</Endianess></FloatReg>\n",
@@ -194,7 +199,9 @@ std::string transport() {
                 "GevSCPSPacketSize", "GevSCPSFireTestPacket", "GevSCPSDoNotFragment", "GevSCPD"}) +
            integer("PayloadSize", {gige::kPayloadSize}) +
            integer("TLParamsLocked", {gige::kParametersLocked}, {}, "<Min>0</Min><Max>1</Max>") +
-           integer("GevHeartbeatTimeout", {gige::kHeartbeatMs, 4, "RW"}) +
+           integer("GevHeartbeatTimeout", {gige::kHeartbeatMs, 4, "RW"}, {},
+                   fmt::format("<Min>{}</Min><Max>{}</Max>", gige::kMinHeartbeatMs,
+                               gige::kMaxHeartbeatMs)) +
            integer("GevTimestampTickFrequency", {gige::kTickFrequency, 8}) +
            "<Integer Name=\"GevSCPSPacketSize\"><pIsLocked>TLParamsLocked</pIsLocked>"
            "<pValue>GevSCPSPacketSizeReg</pValue><Min>128</Min><Max>65532</Max><Inc>4</Inc>"
@@ -206,7 +213,8 @@ std::string transport() {
            "<Boolean Name=\"GevSCPSDoNotFragment\"><pValue>GevSCPSDoNotFragmentReg</pValue>"
            "<OnValue>1</OnValue><OffValue>0</OffValue></Boolean>\n" +
            bits("GevSCPSDoNotFragment", gige::kStreamPacketSize, 1, 1) +
-           integer("GevSCPD", {gige::kStreamPacketDelay, 4, "RW"}, kLocked);
+           integer("GevSCPD", {gige::kStreamPacketDelay, 4, "RW"}, kLocked,
+                   fmt::format("<Min>0</Min><Max>{}</Max>", gige::kMaxPacketDelayNs));
 }
 
 std::string source(const ServedImage& image) {
@@ -248,8 +256,8 @@ std::string gige_xml(const ServedImage& image) {
            "xmlns=\"http://www.genicam.org/GenApi/Version_1_1\">\n" +
            category("Root", {"DeviceControl", "ImageFormatControl", "AcquisitionControl",
                              "ChunkDataControl", "TransportLayerControl", "SourceControl"}) +
-           device_control() + image_format(image) + acquisition() + chunk_data() + transport() +
-           source(image) + "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
+           device_control() + image_format(image) + acquisition(image.frames_per_s) + chunk_data() +
+           transport() + source(image) + "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
 }
 
 }  // namespace stipple

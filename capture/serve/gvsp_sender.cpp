@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <thread>
 #include <utility>
 
 namespace stipple {
@@ -10,8 +9,6 @@ namespace {
 
 /// Packets that are handed to the system together.
 constexpr std::size_t kBatch = 32;
-/// Of one request, so that nobody makes us flood the network.
-constexpr std::uint32_t kMostResent = 4096;
 
 DatagramParts parts_of(const GvspPacket& packet) {
     return {std::span(packet.head).first(packet.head_bytes), packet.data};
@@ -19,11 +16,11 @@ DatagramParts parts_of(const GvspPacket& packet) {
 
 }  // namespace
 
-void GvspSender::send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
-                      std::chrono::nanoseconds delay) {
+bool GvspSender::send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
+                      const PacketPace& pace) {
     keep(block);
     const auto order = packets_to_send(faults_, block->number, block->block.packets());
-    const std::size_t batch = delay.count() > 0 ? 1 : kBatch;
+    const std::size_t batch = pace.delay.count() > 0 ? 1 : kBatch;
     std::array<GvspPacket, kBatch> packets;
     std::array<DatagramParts, kBatch> parts;
     auto due = std::chrono::steady_clock::now();
@@ -33,9 +30,10 @@ void GvspSender::send(const std::shared_ptr<const NumberedBlock>& block, UdpEndp
             packets[i] = gvsp_packet(block->block, order[at + i]);
             parts[i] = parts_of(packets[i]);
         }
-        if (delay.count() > 0) std::this_thread::sleep_until(due += delay);
+        if (pace.delay.count() > 0 && !pace.wait_until(due += pace.delay)) return false;
         sent_ += socket_.send(to, std::span(parts).first(count));
     }
+    return true;
 }
 
 void GvspSender::resend(const GvcpPacketResend& wanted, UdpEndpoint to) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -20,6 +21,13 @@ struct NumberedBlock {
     GvspBlock block;
 };
 
+/// The time between two packets.
+struct PacketPace {
+    std::chrono::nanoseconds delay{0};
+    /// Waits until then; false: the rest of the block is not wanted any more.
+    std::function<bool(std::chrono::steady_clock::time_point)> wait_until;
+};
+
 /// Sends blocks as packets and keeps the last ones, in case some are asked for again. `send` and
 /// `resend` may be called from different threads.
 class GvspSender {
@@ -27,12 +35,16 @@ class GvspSender {
     /// Blocks that can be sent again: as many as fit into kHistoryBytes, at least one.
     static constexpr std::size_t kHistoryBytes = std::size_t{64} << 20U;
 
+    /// Of one request, so that 20 bytes do not make us flood the network; clients ask again.
+    static constexpr std::uint32_t kMostResent = 512;
+
     GvspSender(const UdpSocket& socket, const GvspFaults& faults)
         : socket_(socket), faults_(faults) {}
 
-    /// `delay` passes between two packets.
-    void send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
-              std::chrono::nanoseconds delay);
+    /// Sends packet by packet. Returns whether all packets were: not if the wait was ended.
+    bool send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
+              const PacketPace& pace);
+    /// Sends packets of the block again, up to kMostResent of those that are asked for.
     void resend(const GvcpPacketResend& wanted, UdpEndpoint to);
     void forget();
 

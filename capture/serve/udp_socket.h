@@ -12,6 +12,8 @@ namespace stipple {
 struct UdpEndpoint {
     std::uint32_t address = 0;
     std::uint16_t port = 0;
+    /// Whether it names one receiver.
+    [[nodiscard]] bool is_somebody() const { return address != 0 && port != 0; }
     bool operator==(const UdpEndpoint&) const = default;
 };
 

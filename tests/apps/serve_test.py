@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import threading
@@ -119,6 +120,34 @@ class ServeTest(ProgramTest):
         time.sleep(0.5)  # the warning comes from another thread
         server.send_signal(signal.SIGINT)
         return server.communicate(timeout=60)[1]
+
+    def write_register(self, camera, register, value):
+        """Status of a GigE Vision WRITEREG from 127.0.0.1; control is taken first."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
+            client.bind(("127.0.0.1", 0))
+            client.settimeout(30)
+            client.sendto(struct.pack(">BBHHH4I", 0x42, 1, 0x82, 16, 7, 0xA00, 2, register, value),
+                          (camera, 3956))
+            return struct.unpack_from(">H", client.recv(576))[0]
+
+    def test_frames_go_elsewhere_only_where_that_is_allowed(self):
+        destination, own, other = 0xD18, 0x7F000001, 0x7F000042
+        address = self.serve(self.scene())
+        self.assertEqual(self.write_register(address, destination, own), 0)
+        address = self.serve("scene.npy")
+        self.assertEqual(self.write_register(address, destination, other), 0x8002)
+        address = self.serve("scene.npy", "--allow-other-destination")
+        self.assertEqual(self.write_register(address, destination, other), 0)
+
+    def test_no_client_asks_for_more_frames_a_second_than_are_offered(self):
+        address = self.serve(self.scene(), "--fps", 50)
+        for rate, code in ((50, 0), (51, INPUT)):
+            done = self.run_program("capture", "record", "gige:" + address, "-o", f"{rate}.strec", "--frames",
+                                    2, "--set", f"AcquisitionFrameRate={rate}")
+            if BUILT_WITHOUT in done.stderr:
+                self.skipTest(BUILT_WITHOUT)
+            self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn("AcquisitionFrameRate: 51 cannot be set; it takes 0.01 to 50", done.stderr)
 
     def test_light_that_is_clipped_and_damage_are_told(self):
         light = np.full((6, 8, 16), 0.5, np.float32)

@@ -6,62 +6,18 @@
 #include <future>
 
 #include "core/error.h"
-#include "tests/capture/scripted_camera.h"
+#include "tests/capture/scripted_session.h"
 
 namespace stipple {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLong = 10s;  // a bound that only a broken session reaches
-
-/// Opens one script after another; the last one for ever.
-CaptureSession::Opener plays(std::vector<std::deque<ScriptedStep>> scripts,
-                             CameraDescription description = {}) {
-    auto left = std::make_shared<std::vector<std::deque<ScriptedStep>>>(std::move(scripts));
-    return [left, description] {
-        auto camera = std::make_unique<ScriptedCamera>(left->front(), description);
-        if (left->size() > 1) left->erase(left->begin());
-        return camera;
-    };
-}
-
-std::deque<ScriptedStep> frames(const std::vector<std::uint64_t>& wire_ids) {
-    std::deque<ScriptedStep> steps;
-    for (const std::uint64_t id : wire_ids)
-        steps.push_back(arrives(scripted_frame(id, 5 * static_cast<std::int64_t>(id))));
-    return steps;
-}
-
-/// Waits for the next event of that kind, past those where nothing happened.
-template <typename Event>
-Event wait_for(CaptureSession& session) {
-    const auto end = std::chrono::steady_clock::now() + kLong;
-    while (std::chrono::steady_clock::now() < end) {
-        auto event = session.next(50ms);
-        if (auto* wanted = std::get_if<Event>(&event)) return std::move(*wanted);
-        if (!std::holds_alternative<NoFrame>(event)) {
-            ADD_FAILURE() << "another event came first, of kind " << event.index();
-            return {};
-        }
-    }
-    ADD_FAILURE() << "nothing came";
-    return {};
-}
-
-FrameRecord next_record(CaptureSession& session) {
-    return wait_for<CapturedFrame>(session).record;
-}
-
 CapturedFrame incomplete(std::uint64_t wire_id, bool with_holes = true) {
     CapturedFrame frame = scripted_frame(wire_id);
     frame.record.status = FrameStatus::kMissingPackets;
     if (with_holes) frame.holes = {{0, 4}};
     return frame;
-}
-
-std::uint64_t lost(const CaptureSession& session, GapCause cause) {
-    return session.totals().lost[static_cast<std::size_t>(cause)];
 }
 
 TEST(CaptureSessionTest, FramesThatFollowEachOtherHaveNoGap) {

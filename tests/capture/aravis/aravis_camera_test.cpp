@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
+#include "capture/aravis/aravis_device.h"
 #include "capture/capture_session.h"
 #include "capture/open_camera.h"
 #include "core/error.h"
@@ -299,6 +302,44 @@ TEST_F(AravisCameraTest, RowsThatEndWithinAByteAreRefused) {
                 << e.what();
         }
     }
+}
+
+TEST_F(AravisCameraTest, BuffersThatTheMachineHasNoRoomForAreRefused) {
+    FakeCameraProcess camera;
+    camera.write_register(kWidthRegister, 32768);
+    camera.write_register(kHeightRegister, 32768);
+    try {
+        static_cast<void>(open_camera("gige:127.0.0.1", {}, {.frames = 1024}));  // 1 TiB
+        ADD_FAILURE() << "were taken";
+    } catch (const InputError& e) {
+        for (const char* part : {"gige:127.0.0.1: PayloadSize: 1024 buffers of 1073741824 bytes",
+                                 "a quarter of this machine's memory", "--buffers"})
+            EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+}
+
+TEST_F(AravisCameraTest, FeaturesAreListedOnceHoweverTheirCategoriesNameEachOther) {
+    const auto category = [](const std::string& name, const std::string& feature) {
+        const std::string link = "<pFeature>" + feature + "</pFeature>";
+        return "<Category Name=\"" + name + "\">" + link + link + "</Category>\n";
+    };
+    const auto file = std::filesystem::path(testing::TempDir()) /
+                      ("genicam_" + std::to_string(getpid()) + ".xml");
+    std::ofstream xml(file);
+    xml << "<?xml version=\"1.0\"?>\n<RegisterDescription ModelName=\"Loop\" VendorName=\"Test\" "
+           "StandardNameSpace=\"None\" SchemaMajorVersion=\"1\" SchemaMinorVersion=\"0\" "
+           "SchemaSubMinorVersion=\"0\" MajorVersion=\"1\" MinorVersion=\"0\" "
+           "SubMinorVersion=\"0\" xmlns=\"http://www.genicam.org/GenApi/Version_1_0\">\n"
+        << "<Category Name=\"Root\"><pFeature>Root</pFeature><pFeature>C0</pFeature></Category>\n";
+    for (int i = 0; i < 40; ++i)  // 2^40 ways from the first to the last
+        xml << category("C" + std::to_string(i), "C" + std::to_string(i + 1));
+    xml << category("C40", "Width") << "<Integer Name=\"Width\"><Value>64</Value></Integer>\n"
+        << "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
+    xml.close();
+    const FakeCameraProcess camera({"genicam=" + file.string()});
+    const AravisDevice device("gige:127.0.0.1");
+    EXPECT_EQ(device.features(), (std::map<std::string, std::string>{{"Width", "64"}}));
+    std::filesystem::remove(file);
 }
 
 TEST_F(AravisCameraTest, WhereNoCameraAnswersTheMessageSaysWhatToCheck) {

@@ -4,6 +4,9 @@
 
 #include "capture/capture_session.h"
 #include "capture/open_camera.h"
+#include "capture/serve/gige_registers.h"
+#include "capture/serve/gvsp_codec.h"
+#include "tests/capture/serve/gige_client.h"
 #include "tests/capture/serve/gige_serving.h"
 #include "tests/support/private_network.h"
 
@@ -136,6 +139,34 @@ TEST_F(AravisResendTest, EveryIdIsAccountedForWhateverIsLost) {
     const std::uint64_t counted = std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
     EXPECT_EQ(missing, counted);
     EXPECT_GE(missing, 5U);
+}
+
+TEST_F(AravisResendTest, AForgedLeaderDoesNotChangeTheLayout) {
+    ASSERT_TRUE(drop_capabilities());  // a packet socket looks at the sender's address
+    NoiseFrames source(64, 48, {"Mono8"}, kFrames);
+    const GigeServing server(source, {.faults = {.freeze_at = 0}});
+    ASSERT_EQ(server.failure(), "");
+    const auto camera = open_camera("gige:" + ipv4_text(server.address()), {}, {.frames = 4});
+    camera->start();
+    GigeClient forger(server.address());
+    const auto port = forger.read(gige::kStreamPort);
+    ASSERT_TRUE(port && *port != 0);
+    GvspBlock block;
+    block.image = {pixel_format_named("Mono8")->pfnc, 3000, 2000, 0, 0};
+    block.payload.resize(64 * 48);
+    block.piece_bytes = block.payload.size();
+    for (std::uint32_t i = 0; i < block.packets(); ++i) {
+        const GvspPacket packet = gvsp_packet(block, i);
+        const DatagramParts parts{std::span(packet.head).first(packet.head_bytes), packet.data};
+        forger.data().send({0x7F000001, static_cast<std::uint16_t>(*port)}, std::span(&parts, 1));
+    }
+    Arrival arrival = camera->wait(kLong);
+    const auto* frame = std::get_if<CapturedFrame>(&arrival);
+    ASSERT_NE(frame, nullptr);
+    EXPECT_EQ(frame->record.status, FrameStatus::kDeviceError);
+    EXPECT_EQ(frame->record.layout.width, 64);
+    EXPECT_EQ(frame->payload.size(), 64U * 48U);
+    EXPECT_EQ(camera->layout().width, 64);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Aravis' own fake GigE Vision camera, which shares no code with our server, in a process of its
 // own, so that it can be killed: fake_gige_camera NAME=NUMBER ...
 //   address (last byte of 127.0.0.x, 1), width, height, format (PFNC code), period_us, first_id,
+//   genicam=FILE (its XML, of Aravis' own make if there is none)
 //   gap_at and gap (ids that it leaves out after so many frames), lost_permille (packets)
 // Prints READY. A line "ADDRESS VALUE" on standard input writes a register, which prints DONE; end
 // of input ends it.
@@ -47,13 +48,17 @@ void write_register(ArvFakeCamera* camera, guint32 address, long value) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const char* genicam = nullptr;
     for (int i = 1; i < argc; ++i) {
         const std::string text(argv[i]);
         const auto equals = text.find('=');
-        options[text.substr(0, equals)] = std::stol(text.substr(equals + 1), nullptr, 0);
+        if (text.starts_with("genicam="))
+            genicam = argv[i] + equals + 1;
+        else
+            options[text.substr(0, equals)] = std::stol(text.substr(equals + 1), nullptr, 0);
     }
     const std::string address = "127.0.0." + std::to_string(option("address", 1));
-    ArvGvFakeCamera* server = arv_gv_fake_camera_new_full(address.c_str(), "TEST", nullptr);
+    ArvGvFakeCamera* server = arv_gv_fake_camera_new_full(address.c_str(), "TEST", genicam);
     if (arv_gv_fake_camera_is_running(server) == FALSE) return 1;
     g_object_set(server, "gvsp-lost-ratio", static_cast<double>(option("lost_permille", 0)) / 1000,
                  nullptr);

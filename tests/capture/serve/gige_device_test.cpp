@@ -20,6 +20,7 @@ ServedImage image_of(std::string coded = {}) {
     image.width = 64;
     image.height = 48;
     image.formats = {pixel_format_named("Mono8"), pixel_format_named("Mono16")};
+    image.frames_per_s = 200;
     image.frames = 100;
     image.coded_header = std::move(coded);
     image.croppable = image.coded_header.empty();
@@ -91,6 +92,41 @@ TEST_F(GigeDeviceTest, ASilentControllerLosesControlAndStream) {
     EXPECT_EQ(write(gige::kControl, 2, kSecond), 0);
 }
 
+TEST_F(GigeDeviceTest, NoHeartbeatTimeoutKeepsAControllerThatHasGone) {
+    take_control();
+    EXPECT_EQ(write(gige::kHeartbeatMs, 0xFFFFFFFF), 0);
+    EXPECT_EQ(device_.word(gige::kHeartbeatMs), 10'000U);
+    now_ += seconds(10);
+    EXPECT_TRUE(device_.check_heartbeat(now_));
+    EXPECT_FALSE(device_.controller());
+}
+
+TEST_F(GigeDeviceTest, FramesGoToTheControllersAddressAlone) {
+    constexpr UdpEndpoint kElsewhere{0x7F000042, 5000};
+    take_control();
+    EXPECT_EQ(write(gige::kStreamDestination, kElsewhere.address), 0x8002);
+    EXPECT_EQ(write(gige::kStreamDestination, kFirst.address), 0);
+    EXPECT_EQ(write(gige::kStreamDestination, 0), 0);
+    EXPECT_EQ(write(gige::kStreamDestination, kFirst.address), 0);
+    EXPECT_EQ(write(gige::kControl, 0), 0);
+    // The next one does not send to the one before.
+    EXPECT_EQ(write(gige::kControl, 2, kElsewhere), 0);
+    EXPECT_EQ(write(gige::kStreamPort, 4000, kElsewhere), 0);
+    EXPECT_FALSE(device_.stream().destination.is_somebody());
+}
+
+TEST(OpenGigeDeviceTest, FramesGoElsewhereWhereThatIsAllowed) {
+    GigeIdentity identity;
+    identity.allow_other_destination = true;
+    GigeDevice device(identity, image_of());
+    const auto outcome = device.execute(
+        {0x82, 1, true,
+         GvcpWriteRegisters{{{gige::kControl, 2}, {gige::kStreamDestination, 0x7F000042}}}},
+        kFirst, seconds(1));
+    EXPECT_EQ(load_be<std::uint16_t>(outcome.reply.data()), 0);
+    EXPECT_EQ(device.stream().destination.address, 0x7F000042U);
+}
+
 TEST_F(GigeDeviceTest, OthersDoNotKeepTheHeartbeatGoing) {
     take_control();
     for (int i = 0; i < 10; ++i) {
@@ -157,9 +193,16 @@ TEST_F(GigeDeviceTest, FrameRatesOutsideTheLimitsAreRefused) {
         return write(gige::kFrameRate, std::bit_cast<std::uint32_t>(value));
     };
     EXPECT_EQ(rate(200.0F), 0);
-    for (const float wrong : {0.0F, -5.0F, 1e9F, std::bit_cast<float>(0x7FC00000U)})
+    for (const float wrong : {0.0F, -5.0F, 200.1F, 1e9F, std::bit_cast<float>(0x7FC00000U)})
         EXPECT_EQ(rate(wrong), 0x8002) << wrong;
     EXPECT_EQ(device_.stream().frames_per_s, 200);
+}
+
+TEST_F(GigeDeviceTest, PacketsAreAtMost100MillisecondsApart) {
+    take_control();
+    EXPECT_EQ(write(gige::kStreamPacketDelay, 100'000'000), 0);
+    EXPECT_EQ(write(gige::kStreamPacketDelay, 100'000'001), 0x8002);
+    EXPECT_EQ(device_.stream().packet_delay, milliseconds(100));
 }
 
 TEST_F(GigeDeviceTest, TheXmlIsWhereTheUrlSays) {
@@ -182,13 +225,18 @@ TEST_F(GigeDeviceTest, TheXmlIsWhereTheUrlSays) {
     EXPECT_EQ(read_status(end + 4), 0x8003);
 }
 
-TEST_F(GigeDeviceTest, OnlyTheMachineInControlCanAskForPackets) {
+TEST_F(GigeDeviceTest, OnlyTheControllersPortsCanAskForPackets) {
+    constexpr UdpEndpoint kStream{kFirst.address, 4000};
     const GvcpCommand resend{0x40, 1, false, GvcpPacketResend{0, 5, 1, 2}};
     EXPECT_FALSE(execute(resend, kFirst).resend);
     take_control();
     EXPECT_TRUE(execute(resend, kFirst).resend);
-    EXPECT_TRUE(execute(resend, kSecond).resend);  // another port of the same machine
-    EXPECT_FALSE(execute(resend, {0x7F000002, 5000}).resend);
+    EXPECT_FALSE(execute(resend, kStream).resend);
+    write(gige::kStreamDestination, kStream.address);
+    write(gige::kStreamPort, kStream.port);
+    EXPECT_TRUE(execute(resend, kStream).resend);
+    EXPECT_FALSE(execute(resend, kSecond).resend);  // another program on the same machine
+    EXPECT_FALSE(execute(resend, {0x7F000002, kStream.port}).resend);
     EXPECT_TRUE(execute(resend, kFirst).reply.empty());
 }
 

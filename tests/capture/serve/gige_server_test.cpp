@@ -34,10 +34,14 @@ struct Block {
 /// Streams from a server until `frames` blocks are whole or nothing comes any more.
 class GigeServerTest : public ::testing::Test {
   protected:
-    void open(GigeServerOptions options = {}) {
-        serving_ = std::make_unique<GigeServing>(source_, options);
+    void open(const GigeServerOptions& options = {}) { open(source_, options); }
+    void open(FrameSource& source, const GigeServerOptions& options = {}) {
+        serving_ = std::make_unique<GigeServing>(source, options);
         if (!serving_->failure().empty()) GTEST_SKIP() << serving_->failure();
         client_ = std::make_unique<GigeClient>(serving_->address());
+        take_control();
+    }
+    void take_control() {
         ASSERT_EQ(client_->write(gige::kControl, 2), 0);
         ASSERT_EQ(client_->write(gige::kStreamDestination, 0x7F000001), 0);
         ASSERT_EQ(client_->write(gige::kStreamPort, client_->data_port()), 0);
@@ -128,6 +132,69 @@ TEST_F(GigeServerTest, PacketsAreSentTheDelayApart) {
     // 64 x 48 / 128 packets, leader and trailer: each waits.
     EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::nanoseconds(26 * kDelayNs));
     EXPECT_EQ(blocks_[1].payload(), source_.bytes(0, *pixel_format_named("Mono8")));
+}
+
+/// A frame takes 205 s: 2050 packets, 100 ms apart.
+class SlowGigeServerTest : public GigeServerTest {
+  protected:
+    void SetUp() override {
+        open(large_);
+        if (IsSkipped()) return;
+        ASSERT_EQ(client_->write(gige::kStreamPacketSize, 128 + 36), 0);
+        ASSERT_EQ(client_->write(gige::kStreamPacketDelay, 100'000'000), 0);
+        start();
+        ASSERT_TRUE(client_->packet());
+    }
+    void TearDown() override { serving_.reset(); }  // before its source
+
+    /// Another stream, without delay, begins at once.
+    void expect_fast_stream() {
+        ASSERT_EQ(client_->write(gige::kStreamPacketDelay, 0), 0);
+        ASSERT_EQ(client_->write(gige::kStreamPacketSize, 8000), 0);
+        ASSERT_EQ(client_->write(gige::kHeight, 64), 0);  // so that a socket holds both frames
+        start();
+        while (!blocks_[2].is_whole()) {
+            const auto packet = client_->packet();
+            ASSERT_TRUE(packet);
+            take(*packet);
+        }
+        Bytes top = large_.bytes(1, *pixel_format_named("Mono8"));
+        top.resize(512 * 64);
+        EXPECT_EQ(blocks_[2].payload(), top);
+        while (client_->read(gige::kParametersLocked) == 1U) std::this_thread::yield();
+        EXPECT_EQ(serving_->server().counts().frames, 2U);  // not the slow one
+    }
+
+    NoiseFrames large_{512, 512, {"Mono8"}, 2};
+};
+
+TEST_F(SlowGigeServerTest, AStopEndsAFrameInTheMiddle) {
+    ASSERT_EQ(client_->write(gige::kAcquisitionStop, 1), 0);
+    expect_fast_stream();
+}
+
+TEST_F(SlowGigeServerTest, ReleasedControlEndsAFrameInTheMiddle) {
+    ASSERT_EQ(client_->write(gige::kControl, 0), 0);
+    take_control();
+    expect_fast_stream();
+}
+
+TEST_F(SlowGigeServerTest, TheEndOfTheServerEndsAFrameInTheMiddle) {
+    serving_->stop();
+    EXPECT_EQ(serving_->server().counts().frames, 0U);
+}
+
+TEST_F(SlowGigeServerTest, ARequestBringsABoundedNumberOfPackets) {
+    client_->tell(GvcpCode::kPacketResend, GigeClient::words({1, 0, 0xFFFFFF}));
+    EXPECT_EQ(client_->read(gige::kWidth), 512U);  // commands are carried out one by one
+    EXPECT_EQ(serving_->server().counts().packets_resent, 512U);
+}
+
+TEST_F(SlowGigeServerTest, AnotherProgramGetsNoPackets) {
+    GigeClient other(serving_->address());
+    other.tell(GvcpCode::kPacketResend, GigeClient::words({1, 0, 9}));
+    EXPECT_EQ(other.read(gige::kWidth), 512U);
+    EXPECT_EQ(serving_->server().counts().packets_resent, 0U);
 }
 
 TEST_F(GigeServerTest, AFrozenCameraStillAnswersButSendsNothing) {
