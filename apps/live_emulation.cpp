@@ -165,6 +165,7 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
     json["incomplete"] = totals_.incomplete;
+    json["repeated"] = totals_.repeated;
     json["lost"] = lost_json(totals_);
     json["transport"] = transport_json(camera_.transport());
     json["held_slots"] = held_slots_;
