@@ -153,7 +153,10 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
         const Bytes start = file.peek(kBlockHeaderBytes);
         report.tail_bytes = 0;
         if (start.size() < kBlockHeaderBytes) {
-            report.tail_bytes = start.size();
+            if (end && !start.empty())
+                skip_damage("bytes behind the end");
+            else
+                report.tail_bytes = start.size();
             return Found::kNothing;
         }
         const auto header = decode_block_header(start);

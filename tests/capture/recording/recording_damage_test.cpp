@@ -117,5 +117,18 @@ TEST(RecordingDamageTest, BytesInBetweenCostNothing) {
     EXPECT_EQ(reader.report().damage[0].bytes, 300000U);
 }
 
+TEST(RecordingDamageTest, BytesBehindTheEndAreReportedHoweverFew) {
+    const Sample sample;
+    for (const std::size_t more : {1U, 31U, 32U, 100U}) {
+        auto reader = sample.reader(sample.bytes + std::string(more, 'x'));
+        EXPECT_EQ(sample.ids(reader).size(), 6U);
+        EXPECT_TRUE(reader.end());
+        ASSERT_EQ(reader.report().damage.size(), 1U) << more;
+        EXPECT_EQ(reader.report().damage[0].offset, sample.bytes.size());
+        EXPECT_EQ(reader.report().damage[0].bytes, more);
+        EXPECT_EQ(reader.report().tail_bytes, 0U);
+    }
+}
+
 }  // namespace
 }  // namespace stipple
