@@ -245,7 +245,7 @@ bool PendingOutput::put_in_place() {
 
 fs::path PendingOutput::put_beside() const {
     for (int number = 2;; ++number) {
-        const fs::path name =
+        fs::path name =
             final_.parent_path() /
             fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
         if (rename_to_free_name(partial_, name)) return name;
