@@ -245,9 +245,8 @@ bool PendingOutput::put_in_place() {
 
 fs::path PendingOutput::put_beside() const {
     for (int number = 2;; ++number) {
-        fs::path name =
-            final_.parent_path() /
-            fmt::format("{}_{}{}", final_.stem().string(), number, final_.extension().string());
+        fs::path name = final_.parent_path() / fmt::format("{}_{}{}", final_.stem().string(),
+                                                           number, final_.extension().string());
         if (rename_to_free_name(partial_, name)) return name;
     }
 }
