@@ -103,7 +103,7 @@ std::string layout_problem(const FrameLayout& layout) {
     if (layout.width < 1 || layout.width > 65535 || layout.height < 1 || layout.height > 65535)
         return "a frame that is not 1 to 65535 pixels wide and high";
     if (layout.stride_bytes < layout.format->row_bytes(layout.width) ||
-        layout.stride_bytes > kMaxPayloadBytes / static_cast<std::uint64_t>(layout.height))
+        layout.stride_bytes > kMaxFramePayloadBytes / static_cast<std::uint64_t>(layout.height))
         return "a stride that does not fit its width";
     if (1.0 * layout.width * layout.height * layout.format->planes > double{kMaxFrameSites})
         return "more than 2^28 values";
@@ -154,7 +154,7 @@ std::optional<BlockHeader> decode_block_header(std::span<const std::uint8_t> byt
     const BlockHeader header{static_cast<BlockKind>(kind), load<std::uint32_t>(&bytes[8]),
                              load<std::uint32_t>(&bytes[12]), load<std::uint64_t>(&bytes[16]),
                              load<std::uint32_t>(&bytes[24])};
-    if (header.record_bytes > kMaxTextBytes || header.payload_bytes > kMaxPayloadBytes)
+    if (header.record_bytes > kMaxTextBytes || header.payload_bytes > kMaxFramePayloadBytes)
         return std::nullopt;
     return header;
 }

@@ -26,7 +26,7 @@ inline constexpr std::size_t kFrameRecordBytes = 160;
 inline constexpr std::size_t kHoleBytes = 16;
 inline constexpr std::size_t kMaxHoles = 65536;
 inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{1} << 26U;
-inline constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32U;
+inline constexpr std::uint64_t kMaxFramePayloadBytes = std::uint64_t{1} << 32U;
 
 enum class BlockKind : std::uint32_t { kSession = 1, kFrame = 2, kEnd = 3 };
 
