@@ -13,7 +13,6 @@
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
 #include "apps/session_report.h"
-#include "apps/sorted_quantile.h"
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
@@ -67,7 +66,7 @@ LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& r
 }
 
 bool LiveEmulation::wants_more(double seconds) const {
-    return !end_ && stop_signal() == 0 && !arguments_.limits.reached(latencies_us_.size(), seconds);
+    return !end_ && stop_signal() == 0 && !arguments_.limits.reached(latencies_.count(), seconds);
 }
 
 void LiveEmulation::run(const RunOptions& run) {
@@ -79,7 +78,7 @@ void LiveEmulation::run(const RunOptions& run) {
                 take(*frame);
             else
                 end_ = camera_.end();
-            progress.reach(static_cast<double>(latencies_us_.size()));
+            progress.reach(static_cast<double>(latencies_.count()));
             if (held_slots_ + late_slots_ > 0)
                 progress.note(fmt::format("{} held, {} late", held_slots_, late_slots_));
         }
@@ -88,11 +87,14 @@ void LiveEmulation::run(const RunOptions& run) {
     }
 }
 
-void LiveEmulation::hold(std::uint64_t slots) {
-    if (latencies_us_.empty()) return;  // nothing stands in for what came before the first frame
-    slots = std::min(slots, kMaxHeld);
+void LiveEmulation::hold_missing(const FrameRecord& record) {
+    if (latencies_.count() == 0) return;  // nothing stands in for what came before the first frame
+    const std::uint64_t incomplete = record.status == FrameStatus::kComplete ? 0 : 1;
+    const std::uint64_t slots = std::min(record.lost_before, kMaxHeld) + incomplete;
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     held_slots_ += slots;
+    totals_.lost[static_cast<std::size_t>(record.cause)] += record.lost_before;
+    totals_.incomplete += incomplete;
 }
 
 void LiveEmulation::expose(std::int64_t arrival_ns) {
@@ -105,17 +107,17 @@ void LiveEmulation::take(const CapturedFrame& frame) {
         end_ = DeviceLost{"the camera sends another region or pixel format"};
         return;
     }
-    hold(frame.record.lost_before);
+    hold_missing(frame.record);
     rate_.add(frame.record);
     if (rate_.seconds() >= kRateAfterS) compare_rates();
-    if (frame.record.status != FrameStatus::kComplete) return hold(1);
+    if (frame.record.status != FrameStatus::kComplete) return;
     to_light_.convert(frame.payload, light_);
     expose(frame.record.host_monotonic_ns);
     last_done_ns_ = monotonic_ns();
-    if (latencies_us_.empty()) first_done_ns_ = last_done_ns_;
+    if (latencies_.count() == 0) first_done_ns_ = last_done_ns_;
     const auto latency_us =
         static_cast<double>(last_done_ns_ - frame.record.host_monotonic_ns) * 1e-3;
-    latencies_us_.push_back(static_cast<float>(latency_us));
+    latencies_.add(latency_us);
     if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
     ++late_slots_;
     if (late_.size() < kMostLateListed)
@@ -144,8 +146,8 @@ void LiveEmulation::put_in_place() {
 }
 
 void LiveEmulation::finish() {
-    totals_ = camera_.stop();
-    if (latencies_us_.empty()) {
+    totals_.repeated = camera_.stop().repeated;
+    if (latencies_.count() == 0) {
         throw_if_stopped();
         if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
         throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
@@ -153,7 +155,6 @@ void LiveEmulation::finish() {
     compare_rates();
     put_in_place();
     if (preview_) preview_->finish();
-    std::sort(latencies_us_.begin(), latencies_us_.end());
     if (failure_) throw DeviceError(*failure_);
     if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
@@ -161,7 +162,7 @@ void LiveEmulation::finish() {
 
 nlohmann::ordered_json LiveEmulation::json() const {
     nlohmann::ordered_json json = recording_json(recording_, slots_per_s());
-    json["frames"] = latencies_us_.size();
+    json["frames"] = latencies_.count();
     json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
     json["incomplete"] = totals_.incomplete;
@@ -176,9 +177,9 @@ nlohmann::ordered_json LiveEmulation::json() const {
                                 {"arrival_monotonic_ns", late.arrival_ns},
                                 {"latency_us", late.latency_us}});
     json["queue_peak_frames"] = camera_.peak();
-    json["latency_us"] = {{"median", sorted_quantile(latencies_us_, 0.5)},
-                          {"p99", sorted_quantile(latencies_us_, 0.99)},
-                          {"max", sorted_quantile(latencies_us_, 1)}};
+    json["latency_us"] = {{"median", latencies_.quantile_us(0.5)},
+                          {"p99", latencies_.quantile_us(0.99)},
+                          {"max", latencies_.longest_us()}};
     if (preview_) json["preview"] = preview_->json();
     return json;
 }
@@ -190,10 +191,10 @@ std::string LiveEmulation::text() const {
         "lost: {}; incomplete: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         arguments_.output, recording_text(recording_, slots_per_s()),
-        counted(latencies_us_.size(), "frame"), counted(late_slots_, "slot"),
+        counted(latencies_.count(), "frame"), counted(late_slots_, "slot"),
         arguments_.late_after_slots, held_slots_, lost_text(totals_), totals_.incomplete,
-        sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
-        sorted_quantile(latencies_us_, 1) * 1e-3);
+        latencies_.quantile_us(0.5) * 1e-3, latencies_.quantile_us(0.99) * 1e-3,
+        latencies_.longest_us() * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());
     return text;
 }

@@ -16,6 +16,7 @@
 #include "apps/sensor_setup.h"
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
+#include "core/duration_histogram.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -52,7 +53,7 @@ class LiveEmulation {
   private:
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(const CapturedFrame& frame);
-    void hold(std::uint64_t slots);
+    void hold_missing(const FrameRecord& record);
     void expose(std::int64_t arrival_ns);
     void compare_rates();
     [[nodiscard]] std::optional<double> slots_per_s() const;
@@ -70,9 +71,9 @@ class LiveEmulation {
     SensorSetup setup_;
     Recording recording_;
     std::optional<LivePreview> preview_;
-    SessionTotals totals_;
+    SessionTotals totals_;  ///< from the first slot to the last
     std::vector<float> light_;
-    std::vector<float> latencies_us_;  ///< of each frame
+    DurationHistogram latencies_;  ///< of each frame
     std::uint64_t held_slots_ = 0;
     std::uint64_t late_slots_ = 0;
     std::vector<LateSlot> late_;  ///< the first of them

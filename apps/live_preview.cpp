@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "apps/interrupt.h"
-#include "apps/sorted_quantile.h"
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/disk_sync.h"
@@ -89,8 +88,7 @@ void LivePreview::show() {
         write_preview(file_, *frame);
         ++made_;
         last_slot_ = frame->slot;
-        delays_ms_.push_back(
-            static_cast<float>(static_cast<double>(monotonic_ns() - shown_arrival_ns_) * 1e-6));
+        delays_.add(static_cast<double>(monotonic_ns() - shown_arrival_ns_) * 1e-3);
         failure_.clear();
     } catch (const std::exception& e) {
         ++failed_;
@@ -109,7 +107,6 @@ void LivePreview::finish() {
             "the recording is complete; its preview ends slowly, as the machine is "
             "busy. Ctrl-C twice does not wait");
     thread_.join();
-    std::sort(delays_ms_.begin(), delays_ms_.end());
 }
 
 nlohmann::ordered_json LivePreview::json() const {
@@ -120,8 +117,8 @@ nlohmann::ordered_json LivePreview::json() const {
         {"skipped_slots", skipped_}, {"last_slot", nullptr}, {"delay_ms", nullptr}};
     if (made_ == 0) return json;
     json["last_slot"] = last_slot_;
-    json["delay_ms"] = {{"median", sorted_quantile(delays_ms_, 0.5)},
-                        {"max", sorted_quantile(delays_ms_, 1)}};
+    json["delay_ms"] = {{"median", delays_.quantile_us(0.5) * 1e-3},
+                        {"max", delays_.longest_us() * 1e-3}};
     return json;
 }
 
@@ -132,8 +129,7 @@ std::string LivePreview::text() const {
                     shape.cols, shape.rows, decoder_.slots(), made_.load(), failed_.load());
     if (made_ > 0)
         text += fmt::format("; {:.1f} s behind its slot, at most {:.1f} s",
-                            sorted_quantile(delays_ms_, 0.5) * 1e-3,
-                            sorted_quantile(delays_ms_, 1) * 1e-3);
+                            delays_.quantile_us(0.5) * 1e-6, delays_.longest_us() * 1e-6);
     return text;
 }
 

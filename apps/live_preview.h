@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/preview_decoder.h"
+#include "core/duration_histogram.h"
 
 namespace stipple {
 
@@ -59,7 +60,7 @@ class LivePreview {
     std::atomic<int> made_ = 0;
     std::atomic<int> failed_ = 0;
     std::int64_t last_slot_ = -1;  ///< that was shown
-    std::vector<float> delays_ms_;
+    DurationHistogram delays_;
     std::string failure_;  ///< the last one that was said
     std::thread thread_;   ///< last: starts when all else is there
 };

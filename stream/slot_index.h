@@ -19,7 +19,7 @@ inline constexpr std::size_t kIndexEntryBytes = 16;
 /// second one only, then every fourth ...
 class SlotIndex {
   public:
-    explicit SlotIndex(std::size_t most = std::size_t{1} << 20U) : most_(most) {}
+    explicit SlotIndex(std::size_t most = std::size_t{1} << 16U) : most_(most) {}
 
     /// Precondition: slots rise.
     void add(IndexEntry entry);

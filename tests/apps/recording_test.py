@@ -124,23 +124,32 @@ class RecordingTest(ProgramTest):
         self.assertEqual((self.folder / "a.stipple").read_bytes(),
                          (self.folder / "b.stipple").read_bytes())
 
-    def test_incomplete_frames_are_no_light_live_either(self):
+    def record_incomplete(self, *incomplete):
+        """A recording of which these frames say that packets of them are missing."""
         self.record()
         clip = self.folder / "clip.strec"
         content = bytearray(clip.read_bytes())
         starts = [found.start() for found in re.finditer(rb"\xc5FRM", content)][1:]  # of frames
-        for frame in (2, 3):
-            block = starts[frame]
+        for block in (starts[frame] for frame in incomplete):
             content[block + 32 + 121] = 1  # status: packets are missing
             content[block + 24:block + 28] = crc32c(content[block + 32:block + 32 + 160]).to_bytes(4, "little")
             content[block + 28:block + 32] = crc32c(content[block:block + 28]).to_bytes(4, "little")
         clip.write_bytes(content)
+
+    def test_incomplete_frames_are_no_light_live_either(self):
+        self.record_incomplete(2, 3)
         self.succeed("emulate", "clip.strec", "-o", "a.stipple")
         figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)
         self.assertEqual((figures["frames"], figures["incomplete"], figures["held_slots"], figures["slots"]),
                          (4, 2, 2, 6))
         self.assertEqual(figures["transport"]["packets_missing"], 0)
         self.assertEqual((self.folder / "a.stipple").read_bytes(), (self.folder / "b.stipple").read_bytes())
+
+    def test_live_counts_frames_from_its_first_slot_on(self):
+        self.record_incomplete(0, 3, 5)
+        figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)
+        self.assertEqual((figures["frames"], figures["incomplete"], figures["held_slots"], figures["slots"]),
+                         (3, 2, 2, 5))
 
     def test_ctrl_c_leaves_a_whole_stream(self):
         self.record()
