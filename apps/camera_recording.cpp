@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -54,6 +56,16 @@ SessionRecord session_record(const CameraDescription& camera, const CameraSettin
     return record;
 }
 
+std::string text_of(const std::exception_ptr& failure) {
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+        return "not enough memory";
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+}
+
 /// A recording at work, and what it has come to.
 class CameraRecording {
   public:
@@ -79,6 +91,8 @@ class CameraRecording {
         return open_picture_camera(arguments_.camera, settings_);
     }
     [[nodiscard]] bool wants_more(double seconds) const;
+    void note_failure();
+    [[nodiscard]] RecordingEnd end_record() const;
     void take(CapturedFrame frame);
     void take(const NoFrame&) {}
     void take(const Outage& outage) { say(outage); }
@@ -102,7 +116,7 @@ class CameraRecording {
     std::string end_reason_;
     bool at_end_ = false;  ///< of a replay
     std::optional<InputError> bad_file_;
-    std::optional<DeviceError> failure_;
+    std::exception_ptr failure_;  ///< the first: of the disk, or no memory
     FrameRate rate_;
     double seconds_ = 0;
 };
@@ -125,44 +139,56 @@ void CameraRecording::take(CapturedFrame frame) {
 
 void CameraRecording::run(const RunOptions& run) {
     Progress progress(run, "recording", arguments_.limits.total());
-    while (wants_more(progress.seconds())) {
-        std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
-                   session_.next(kPatience));
-        progress.reach(static_cast<double>(taken_));
-        progress.note(losses_text(session_.totals()));
+    try {
+        while (wants_more(progress.seconds())) {
+            std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
+                       session_.next(kPatience));
+            progress.reach(static_cast<double>(taken_));
+            progress.note(losses_text(session_.totals()));
+        }
+    } catch (...) {
+        note_failure();
     }
     seconds_ = progress.seconds();
 }
 
-void CameraRecording::finish() {
+/// Of what is being thrown.
+void CameraRecording::note_failure() {
+    if (!failure_) failure_ = std::current_exception();
+}
+
+RecordingEnd CameraRecording::end_record() const {
     RecordingEnd end;
-    try {
-        queue_.drain();
-    } catch (const DeviceError& e) {
-        end_reason_ = e.what();
-        failure_ = e;
-    }
     end.reason = end_reason_.empty() ? "stopped" : end_reason_;
+    if (failure_) end.reason = text_of(failure_);
     end.lost = session_.totals().lost;
     // Frames that the queue took and could not write after all.
     end.lost[static_cast<std::size_t>(GapCause::kOwnDrop)] += queue_.dropped() - refused_;
     end.transport = session_.transport();
+    return end;
+}
+
+void CameraRecording::finish() {
     try {
-        writer_.finish(end);
-    } catch (const DeviceError& e) {
-        if (!failure_) failure_ = e;
+        queue_.drain();
+    } catch (...) {
+        note_failure();
     }
-    if (writer_.totals().frames > 0)
+    try {
+        writer_.finish(end_record());
+    } catch (...) {
+        note_failure();
+    }
+    if (writer_.frames() > 0)
         output_.commit();
     else
         throw_if_stopped();
-    if (failure_ && output_.committed())
-        say_error("{}: {} kept", output_.final_path().string(),
-                  counted(writer_.totals().frames, "frame"));
-    if (failure_) throw DeviceError(*failure_);
+    if ((failure_ || bad_file_) && output_.committed())
+        say_error("{}: {} kept", output_.final_path().string(), counted(writer_.frames(), "frame"));
+    if (failure_) std::rethrow_exception(failure_);
     if (bad_file_) throw InputError(*bad_file_);
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);
-    if (writer_.totals().frames == 0)
+    if (writer_.frames() == 0)
         throw DeviceError(arguments_.camera.address,
                           "no frame came; record for longer, or see \"stipple capture doctor\"");
 }

@@ -1,13 +1,16 @@
 #include "apps/footage_origin.h"
 
 #include <fmt/format.h>
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <vector>
 
 #include "apps/interrupt.h"
@@ -26,6 +29,8 @@ std::vector<fs::path> files_of(const fs::path& footage) {
 }
 
 std::string sha256_of(const std::vector<fs::path>& files) {
+    // OpenSSL 3.0 uses its own state even if it had no memory for it.
+    if (OSSL_LIB_CTX_get0_global_default() == nullptr) throw std::bad_alloc();
     const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(),
                                                                   EVP_MD_CTX_free);
     if (!hash || EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
@@ -37,7 +42,9 @@ std::string sha256_of(const std::vector<fs::path>& files) {
             file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
             EVP_DigestUpdate(hash.get(), bytes.data(), static_cast<std::size_t>(file.gcount()));
         }
-        if (!file.eof()) throw InputError(path.string(), "cannot be read");
+        if (!file.eof())
+            throw InputError(path.string(),
+                             "cannot be read: " + std::generic_category().message(errno));
     }
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned length = 0;

@@ -48,7 +48,7 @@ void LiveCamera::take(CapturedFrame frame) {
     changed_.notify_all();
 }
 
-void LiveCamera::run(const std::stop_token& stop) {
+void LiveCamera::run(const std::stop_token& stop) noexcept try {
     if (replay_) {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, stop, [&] { return begun_; });
@@ -66,11 +66,16 @@ void LiveCamera::run(const std::stop_token& stop) {
             return;
         }
     }
+} catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+    changed_.notify_all();
 }
 
 std::optional<CapturedFrame> LiveCamera::next(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [&] { return !frames_.empty() || end_; });
+    changed_.wait_for(lock, timeout, [&] { return !frames_.empty() || end_ || failure_; });
+    if (frames_.empty() && failure_) std::rethrow_exception(failure_);
     if (frames_.empty()) return std::nullopt;
     CapturedFrame frame = std::move(frames_.front());
     frames_.pop_front();

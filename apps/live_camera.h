@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -31,7 +32,8 @@ class LiveCamera {
     [[nodiscard]] const CameraDescription& description() const { return description_; }
 
     void begin();
-    /// The next frame; nothing if none comes in time or the camera is lost for good.
+    /// The next frame; nothing if none comes in time or the camera is lost for good. Rethrows what
+    /// kept the frames from being taken: no memory.
     [[nodiscard]] std::optional<CapturedFrame> next(std::chrono::milliseconds timeout);
     /// Why no frame will come any more; nothing while one may.
     [[nodiscard]] std::optional<DeviceLost> end() const;
@@ -43,7 +45,7 @@ class LiveCamera {
     [[nodiscard]] TransportCounts transport() const { return session_.transport(); }
 
   private:
-    void run(const std::stop_token& stop);
+    void run(const std::stop_token& stop) noexcept;
     void take(CapturedFrame frame);
 
     bool replay_;
@@ -57,7 +59,8 @@ class LiveCamera {
     std::size_t peak_ = 0;
     bool begun_ = false;
     std::optional<DeviceLost> end_;
-    std::jthread thread_;  ///< last: starts when all else is there
+    std::exception_ptr failure_;  ///< of the thread
+    std::jthread thread_;         ///< last: starts when all else is there
 };
 
 }  // namespace stipple

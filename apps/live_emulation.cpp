@@ -82,8 +82,8 @@ void LiveEmulation::run(const RunOptions& run) {
             if (held_slots_ + late_slots_ > 0)
                 progress.note(fmt::format("{} held, {} late", held_slots_, late_slots_));
         }
-    } catch (const DeviceError& e) {
-        failure_ = e;
+    } catch (...) {  // the disk, or no memory: `finish` keeps what was written
+        failure_ = std::current_exception();
     }
 }
 
@@ -138,10 +138,10 @@ std::optional<double> LiveEmulation::slots_per_s() const {
 void LiveEmulation::put_in_place() {
     try {
         if (!failure_) return recording_.finish();
-    } catch (const DeviceError& e) {
-        failure_ = e;
+    } catch (...) {
+        failure_ = std::current_exception();
     }
-    recording_.keep();
+    if (!recording_.keep()) return;  // the message of the failure says where it is
     say_error("{}: what was written before is kept", arguments_.output);
 }
 
@@ -149,14 +149,18 @@ void LiveEmulation::finish() {
     totals_.repeated = camera_.stop().repeated;
     if (latencies_.count() == 0) {
         throw_if_stopped();
+        if (failure_) std::rethrow_exception(failure_);
         if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
         throw DeviceError(arguments_.camera.address, end_ ? end_->reason : "no frame came");
     }
     compare_rates();
     put_in_place();
     if (preview_) preview_->finish();
-    if (failure_) throw DeviceError(*failure_);
-    if (end_ && end_->bad_file) throw InputError(*end_->bad_file);
+    if (failure_) std::rethrow_exception(failure_);
+    if (end_ && end_->bad_file) {
+        say_error("{}: what was written before is kept", arguments_.output);
+        throw InputError(*end_->bad_file);
+    }
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);
 }
 

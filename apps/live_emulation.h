@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -17,7 +18,6 @@
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
 #include "core/duration_histogram.h"
-#include "core/error.h"
 
 namespace stipple {
 
@@ -79,8 +79,8 @@ class LiveEmulation {
     std::vector<LateSlot> late_;  ///< the first of them
     FrameRate rate_;
     bool rates_compared_ = false;
-    std::optional<DeviceError> failure_;  ///< of the disk
-    std::int64_t first_done_ns_ = 0;      ///< when the first slot was in the stream
+    std::exception_ptr failure_;      ///< of the disk, or no memory
+    std::int64_t first_done_ns_ = 0;  ///< when the first slot was in the stream
     std::int64_t last_done_ns_ = 0;
     std::optional<DeviceLost> end_;  ///< of the frames
 };

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -72,7 +73,11 @@ void LivePreview::run() {
     for (;;) {
         wake_.acquire();
         if (!handed_over_.load(std::memory_order_acquire)) break;  // `finish` has called
-        run_on_this_thread([this] { show(); });
+        try {
+            run_on_this_thread([this] { show(); });
+        } catch (const std::bad_alloc&) {
+            ++failed_;
+        }
         handed_over_.store(false, std::memory_order_release);
     }
     ended_.release();

@@ -1,12 +1,15 @@
+#include <cxxabi.h>
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <typeinfo>
 
 #include "apps/command_line.h"
 #include "apps/interrupt.h"
@@ -16,6 +19,7 @@
 #include "core/disk_sync.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/pending_output.h"
 
 namespace stipple {
 namespace {
@@ -33,40 +37,47 @@ constexpr auto kExamples =
     "2 wrong command line, 3 an output or device failed, 130 and 143 stopped by Ctrl-C or SIGTERM\n"
     "(outputs are then complete files of fewer frames).";
 
+constexpr std::string_view kNoThread =
+    "no further thread can be started; end other programs, or raise the limit (ulimit -u)";
+
+/// Names the partial outputs that no message has named. Needs no memory.
+void say_what_is_left() {
+    visit_partial_outputs([](const char* path) {
+        write_error_text("stipple: left beside the outputs: ");
+        write_error_text(path);
+        write_error_text("\n");
+    });
+}
+
 int fail(ExitCode code, std::string_view message) {
     say_error(message);
+    say_what_is_left();
     return code;
+}
+
+/// In place of std::abort(), for functions of libraries that promise to throw nothing and then have
+/// no memory.
+[[noreturn]] void end_in_a_library() {
+    const std::type_info* const thrown = abi::__cxa_current_exception_type();
+    if (thrown != nullptr && *thrown != typeid(std::bad_alloc)) std::abort();
+    std::_Exit(fail(kDevice, kNoMemory));
 }
 
 ExitCode signal_code() {
     return static_cast<ExitCode>(kSignal + stop_signal());
 }
 
-/// Does `action` and hands its last words on standard output to the system.
-int run(const Action& action) {
-    try {
-        const ThreadLimit limit(action.options.threads);
-        std::optional<NoSync> no_sync;
-        if (action.options.no_sync) no_sync.emplace();
-        action.run(action.options);
-        if (std::fflush(stdout) != 0)
-            throw std::system_error(errno, std::generic_category(), "standard output");
-    } catch (const InputError& e) {
-        // An input that a signal has cut short is none to complain of.
-        return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
-    } catch (const Interrupted& e) {
-        return fail(signal_code(), e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
-    } catch (const std::bad_alloc&) {
-        return fail(kDevice, "not enough memory");
-    } catch (const std::exception& e) {
-        return fail(kDevice, e.what());
-    }
-    if (stop_signal() == 0) return kOk;
-    return fail(signal_code(), "stopped; the output is shorter");
+void run(const Action& action) {
+    catch_signals();
+    const ThreadLimit limit(action.options.threads);
+    std::optional<NoSync> no_sync;
+    if (action.options.no_sync) no_sync.emplace();
+    action.run(action.options);
 }
 
-int main(int argc, char** argv) {
-    occupy_standard_streams();
+/// Does what the command line says, if it can be understood, and hands its last words on standard
+/// output to the system.
+CommandLine::Parsed run(int argc, char** argv) {
     Action action;
     CommandLine line(
         "stipple",
@@ -79,17 +90,33 @@ int main(int argc, char** argv) {
           add_timing, add_characterize, add_capture, add_demo, add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, action.options);
-    switch (line.parse(argc, argv)) {
-        case CommandLine::Parsed::kHelp:
-            action.run = [](const RunOptions&) {};  // standard output may be a full disk
-            return run(action);
-        case CommandLine::Parsed::kWrong:
-            return kUsage;
-        case CommandLine::Parsed::kAction:
-            break;
+    const auto parsed = line.parse(argc, argv);
+    if (parsed == CommandLine::Parsed::kAction) run(action);
+    if (std::fflush(stdout) != 0)
+        throw std::system_error(errno, std::generic_category(), "standard output");
+    return parsed;
+}
+
+int main(int argc, char** argv) {
+    occupy_standard_streams();
+    std::set_terminate(end_in_a_library);
+    try {
+        if (run(argc, argv) == CommandLine::Parsed::kWrong) return kUsage;
+    } catch (const InputError& e) {
+        // An input that a signal has cut short is none to complain of.
+        return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
+    } catch (const Interrupted& e) {
+        return fail(signal_code(), e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
+    } catch (const std::bad_alloc&) {
+        return fail(kDevice, kNoMemory);
+    } catch (const std::system_error& e) {
+        const bool no_thread = e.code() == std::errc::resource_unavailable_try_again;
+        return fail(kDevice, no_thread ? kNoThread : e.what());
+    } catch (const std::exception& e) {
+        return fail(kDevice, e.what());
     }
-    catch_signals();
-    return run(action);
+    if (stop_signal() == 0) return kOk;
+    return fail(signal_code(), "stopped; the output is shorter");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -73,7 +74,10 @@ void Progress::show(const std::stop_token& stop) const {
     std::condition_variable_any stopped;
     const auto never = [] { return false; };
     while (stopped.wait_for(lock, stop, interval, never), !stop.stop_requested()) {
-        terminal_ ? show_bar(line(terminal_columns())) : write_error_text(line(1000) + '\n');
+        try {
+            terminal_ ? show_bar(line(terminal_columns())) : write_error_text(line(1000) + '\n');
+        } catch (const std::bad_alloc&) {  // no memory: no line
+        }
     }
 }
 

@@ -29,6 +29,12 @@ void Recording::finish() {
     output_.commit();
 }
 
+bool Recording::keep() {
+    if (output_.kept()) return false;
+    output_.commit();
+    return true;
+}
+
 std::uint64_t Recording::samples() const {
     return stats().samples - (account() ? account()->totals().dropped_samples : 0);
 }

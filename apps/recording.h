@@ -27,8 +27,9 @@ class Recording {
     /// Puts the file in place. \throws DeviceError.
     void finish();
 
-    /// The same where writing has failed: a stream as far as it goes. \throws DeviceError.
-    void keep() { output_.commit(); }
+    /// The same where writing has failed: a stream as far as it goes. False, with nothing done, if
+    /// it was putting it in place that failed. \throws DeviceError.
+    bool keep();
 
     [[nodiscard]] const SensorSetup& setup() const { return emulator_.setup(); }
     [[nodiscard]] const ReadoutStats& stats() const { return emulator_.stats(); }

@@ -44,7 +44,9 @@ void say_error(std::string_view text) noexcept {
         std::string line(bar_is_shown.exchange(false) ? kClearLine : "");
         write_error_text(line.append("stipple: ").append(terminal_text(text)).append("\n"));
     } catch (...) {  // no memory for it
-        write_error_text("stipple: not enough memory\n");
+        write_error_text("stipple: ");
+        write_error_text(kNoMemory);
+        write_error_text("\n");
     }
 }
 

@@ -10,6 +10,9 @@ namespace stipple {
 // Standard error may be a full disk, a pipe that nobody reads, or closed: what cannot be shown
 // there is lost, and the run goes on.
 
+constexpr std::string_view kNoMemory =
+    "not enough memory; end other programs, or give smaller or fewer frames";
+
 /// Writes `text` as it is.
 void write_error_text(std::string_view text) noexcept;
 

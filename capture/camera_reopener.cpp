@@ -1,6 +1,6 @@
 #include "capture/camera_reopener.h"
 
-#include "core/error.h"
+#include <exception>
 
 namespace stipple {
 namespace {
@@ -40,10 +40,9 @@ void CameraReopener::open_until_back(const std::stop_token& stop, const Opener& 
             back_ = std::move(camera);
             changed_.notify_all();
             return;
-        } catch (const InputError&) {
-            // A setting that it took before: it is not up yet, or it is another camera.
-        } catch (const DeviceError&) {
-            // Not back yet.
+        } catch (const std::exception&) {
+            // Not back yet, or no memory for it. InputError, a setting that it took before: it is
+            // not up yet, or it is another camera.
         }
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, stop, kBetweenTries, [] { return false; });

@@ -1,5 +1,6 @@
 #include "core/exr_file.h"
 
+#include <IlmThreadPool.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -11,6 +12,7 @@
 #include <cassert>
 #include <cstddef>
 #include <exception>
+#include <new>
 #include <vector>
 
 #include "core/error.h"
@@ -20,6 +22,8 @@
 
 namespace stipple {
 namespace {
+
+constexpr int kThreads = 0;
 
 /// Names of the channels that make up the picture, one a plane.
 std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
@@ -101,14 +105,39 @@ void read_planes(Imf::InputFile& input, const std::string& place, Picture& pictu
     input.readPixels(window.min.y, window.max.y);
 }
 
+/// The file of a picture, in memory: OpenEXR swallows errors that occur when a file is closed.
+std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
+                    std::string_view place) {
+    // Here, as a pool that cannot be made while tasks wait for it is waited for without end.
+    static_cast<void>(IlmThread::ThreadPool::globalThreadPool());
+    try {
+        Imf::StdOSStream stream;
+        {
+            Imf::OutputFile output(stream, header, kThreads);
+            output.setFrameBuffer(planes);
+            output.writePixels(header.dataWindow().size().y + 1);
+        }
+        // Rows that zlib has no memory for are left out without a word.
+        Imf::StdISStream written;
+        written.str(stream.str());
+        if (!Imf::InputFile(written, kThreads).isComplete()) throw std::bad_alloc();
+        return stream.str();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw DeviceError(place, fmt::format("cannot be written as OpenEXR: {}", e.what()));
+    }
+}
+
 }  // namespace
 
 void read_exr(const std::filesystem::path& file, Picture& picture) {
-    constexpr int kThreads = 0;
     try {
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), picture);
     } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
         throw InputError(file.string(), fmt::format("cannot be read as OpenEXR: {}", e.what()));
@@ -118,7 +147,6 @@ void read_exr(const std::filesystem::path& file, Picture& picture) {
 void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
                std::span<const float> frame) {
     assert(frame.size() == shape.sites());
-    constexpr int kThreads = 0;
     Imf::Header header(shape.cols, shape.rows);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer planes;
@@ -129,14 +157,7 @@ void write_exr(const std::filesystem::path& file, std::string_view place, FrameS
         float* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
         planes.insert(name, plane_slice(plane, header.dataWindow(), shape));
     }
-    // Written to memory first: OpenEXR swallows errors that occur when a file is closed.
-    Imf::StdOSStream stream;
-    {
-        Imf::OutputFile output(stream, header, kThreads);
-        output.setFrameBuffer(planes);
-        output.writePixels(shape.rows);
-    }
-    const std::string bytes = stream.str();
+    const std::string bytes = encoded(header, planes, place);
     OutputFile output(file, std::string(place));
     output.write(std::as_bytes(std::span(bytes)));
     output.close();

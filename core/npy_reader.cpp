@@ -41,19 +41,24 @@ void to_planes(std::span<const std::byte> bytes, const NpyHeader& header, std::s
     }
 }
 
+[[noreturn]] void fail(const std::string& place) {
+    throw InputError(place, "cannot be read: " + std::generic_category().message(errno));
+}
+
 }  // namespace
 
 NpyReader::NpyReader(const std::filesystem::path& file)
     : name_(file.string()), file_(std::fopen(file.c_str(), "rb")) {
-    std::error_code error(errno, std::generic_category());
-    if (!file_) throw InputError(name_, "cannot be read: " + error.message());
+    if (!file_) fail(name_);
+    std::error_code error;
     const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
     if (error) throw InputError(name_, "cannot be read: " + error.message());
     std::vector<std::byte> start(std::min<std::uint64_t>(file_bytes, kMaxNpyHeaderBytes));
     start.resize(std::fread(start.data(), 1, start.size(), file_.get()));
+    if (std::ferror(file_.get()) != 0) fail(name_);
     header_ = parse_npy_header(start, file_bytes, name_);
     bytes_.resize(header_.frame_bytes());
-    std::fseek(file_.get(), static_cast<long>(header_.data_offset), SEEK_SET);
+    if (std::fseek(file_.get(), static_cast<long>(header_.data_offset), SEEK_SET) != 0) fail(name_);
 }
 
 std::string NpyReader::place() const {
@@ -63,7 +68,9 @@ std::string NpyReader::place() const {
 bool NpyReader::read(std::span<float> frame) {
     if (next_slot_ == header_.slots) return false;
     ++next_slot_;
-    if (std::fread(bytes_.data(), 1, bytes_.size(), file_.get()) != bytes_.size())
+    const bool whole = std::fread(bytes_.data(), 1, bytes_.size(), file_.get()) == bytes_.size();
+    if (std::ferror(file_.get()) != 0) fail(place());
+    if (!whole)
         throw InputError(place(), "cannot be read; the file was cut short while it was read");
     to_planes(bytes_, header_, frame);
     return true;

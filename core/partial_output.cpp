@@ -57,11 +57,15 @@ std::optional<fs::file_time_type> began(int process) {
 }  // namespace
 
 bool PartialOutput::running() const {
+    const std::string own_name = process_name("self");
     const std::string name = process_name(std::to_string(process));
-    if (name.empty() || name != process_name("self")) return false;
+    std::error_code error;
+    // A name that cannot be read, as where no further file can be opened, may be this program's.
+    if (own_name.empty() || name.empty())
+        return fs::exists(fmt::format("/proc/{}", process), error);
+    if (name != own_name) return false;
     // A process that is younger than the file has got the number of one that is gone; the clock of
     // a file server may be a little behind.
-    std::error_code error;
     const auto written = fs::last_write_time(path, error);
     return error || began(process).value_or(written) <= written + std::chrono::minutes(1);
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -37,21 +38,25 @@ class PendingOutput {
     [[nodiscard]] const std::filesystem::path& partial() const;
     /// Waits until the partial output is on the disk (but see NoSync), and moves it to its final
     /// name. \throws DeviceError if that fails; the partial output is then kept, and an output that
-    /// was to be replaced too. If another program has made a file of that name since, and not
-    /// `force`, what was written is kept as "name_2.ext" or so on. The message says where.
+    /// was to be replaced too. So it is for lack of memory. If another program has made a file of
+    /// that name since, and not `force`, what was written is kept as "name_2.ext" or so on. The
+    /// message says where.
     void commit();
     [[nodiscard]] bool committed() const { return committed_; }
+    /// Whether `commit` was called: what was written stays, under whichever name.
+    [[nodiscard]] bool kept() const { return kept_; }
 
   private:
     void check_replaceable() const;
     void create_partial() const;
-    void keep();
+    void unlist();
+    [[nodiscard]] bool remove_partial() const noexcept;
     [[nodiscard]] bool put_in_place();
     [[nodiscard]] std::filesystem::path put_beside() const;
-    void settle(const std::filesystem::path& name) const;
+    void settle(const std::filesystem::path& name);
 
     std::filesystem::path final_;
-    std::filesystem::path partial_;
+    std::unique_ptr<const std::filesystem::path> partial_;
     bool force_;
     OutputKind kind_;
     IsOwnName is_own_;
@@ -59,11 +64,11 @@ class PendingOutput {
     bool kept_ = false;      ///< whatever becomes of this object
     bool replaced_ = false;  ///< partial_ is now the folder that was final_
     bool committed_ = false;
-    std::size_t place_in_list_;  ///< of partial outputs
+    std::size_t place_in_list_;  ///< of partial outputs that no message names
 };
 
-/// Calls `visit` with the partial path of each output that is neither committed nor removed; of
-/// more than some dozens with the first ones. Safe in a signal handler.
+/// Calls `visit` with the partial path of each output that is neither committed nor removed, nor
+/// told in an exception; of more than some dozens with the first ones. Safe in a signal handler.
 void visit_partial_outputs(void (*visit)(const char* path)) noexcept;
 
 }  // namespace stipple

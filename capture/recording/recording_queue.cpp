@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error.h"
-
 namespace stipple {
 
 RecordingQueue::RecordingQueue(RecordingWriter& writer, std::size_t max_bytes)
@@ -39,7 +37,7 @@ void RecordingQueue::run() {
         std::exception_ptr failure;
         try {
             writer_.write(frame);
-        } catch (const DeviceError&) {
+        } catch (...) {
             failure = std::current_exception();
         }
         lock.lock();

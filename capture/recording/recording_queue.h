@@ -28,7 +28,8 @@ class RecordingQueue {
     bool push(CapturedFrame&& frame);
     /// True once a write has failed: all further frames are dropped, `drain` tells why.
     [[nodiscard]] bool failed() const;
-    /// Writes what waits and stops. \throws DeviceError of a write that failed, now or before.
+    /// Writes what waits and stops. \throws what a write that failed has thrown, now or before:
+    /// DeviceError, std::bad_alloc.
     void drain();
 
     [[nodiscard]] std::uint64_t dropped() const;

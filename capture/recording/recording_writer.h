@@ -32,6 +32,7 @@ class RecordingWriter {
     /// What `finish` writes, so far: frames, incomplete, payload bytes, clocks; and the losses as
     /// the frames tell them.
     [[nodiscard]] RecordingEnd totals() const;
+    [[nodiscard]] std::uint64_t frames() const { return totals_.frames; }
     [[nodiscard]] std::uint64_t bytes_written() const { return file_.bytes(); }
 
   private:
