@@ -16,6 +16,7 @@
 #include "apps/progress.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
+#include "capture/setting_value.h"
 #include "core/error.h"
 #include "core/pending_output.h"
 #include "stream/packet_order.h"
@@ -97,11 +98,14 @@ class SlotRecorder {
     std::int64_t damaged_ = 0;
 };
 
-/// How many slots there will be, 0 if that is not known.
+/// How many slots there will be, 0 if that is not known. What is no number says nothing.
 std::int64_t slots_to_come(const CameraDescription& camera,
                            const CameraRecordingArguments& arguments) {
     const auto told = camera.features.find("SourceFrameCount");
-    const std::int64_t of_source = told == camera.features.end() ? 0 : std::stoll(told->second);
+    const std::int64_t of_source =
+        told == camera.features.end()
+            ? 0
+            : std::max<std::int64_t>(integer_setting(told->second).value_or(0), 0);
     const auto limit = arguments.limits.total();
     if (!limit) return of_source;
     return of_source == 0 ? *limit : std::min(*limit, of_source);

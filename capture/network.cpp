@@ -61,7 +61,8 @@ std::uint32_t source_towards(std::uint32_t target) {
 
 std::optional<std::uint32_t> parse_ipv4(const std::string& text) {
     in_addr address{};
-    if (inet_pton(AF_INET, text.c_str(), &address) != 1) return {};
+    const bool is_c_text = text.find('\0') == std::string::npos;
+    if (!is_c_text || inet_pton(AF_INET, text.c_str(), &address) != 1) return {};
     return ntohl(address.s_addr);
 }
 

@@ -112,24 +112,23 @@ function(stipple_test module)
     endforeach()
 endfunction()
 
-# stipple_fuzz(NAME file.cpp LIBS lib ... [SECONDS n]): `file.cpp` defines LLVMFuzzerTestOneInput,
-# tests/fuzz/corpus/NAME holds its inputs. With STIPPLE_FUZZ a libFuzzer program that a test runs
-# for n seconds (default 5); without, the corpus alone is replayed, with any compiler.
+# stipple_fuzz(NAME file.cpp LIBS lib ... [MUTATOR file.cpp]): `file.cpp` defines LLVMFuzzerTestOneInput,
+# MUTATOR LLVMFuzzerCustomMutator, tests/fuzz/corpus/NAME holds its inputs. With STIPPLE_FUZZ a libFuzzer
+# program, which a test runs for 5 s and scripts/fuzz for longer; without, the corpus alone is replayed,
+# with any compiler.
 function(stipple_fuzz name source)
-    cmake_parse_arguments(arg "" "SECONDS" "LIBS" ${ARGN})
-    if(NOT arg_SECONDS)
-        set(arg_SECONDS 5)
-    endif()
+    cmake_parse_arguments(arg "" "MUTATOR" "LIBS" ${ARGN})
     stipple_reads(reads)
     set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     add_executable(fuzz_${name} ${source})
     target_link_libraries(fuzz_${name} PRIVATE stipple_test_support ${arg_LIBS})
     if(STIPPLE_FUZZ)
+        target_sources(fuzz_${name} PRIVATE ${arg_MUTATOR})
         target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
         set(found ${CMAKE_BINARY_DIR}/fuzz/${name})  # new inputs stay out of the source tree
         file(MAKE_DIRECTORY ${found})
         add_test(NAME fuzz_${name}_finds_nothing
-                 COMMAND fuzz_${name} -max_total_time=${arg_SECONDS} -timeout=10 -rss_limit_mb=2048
+                 COMMAND fuzz_${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048
                          -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
         set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz ENVIRONMENT "${reads}")
     else()

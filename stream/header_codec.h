@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,8 +27,10 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 [[nodiscard]] Framing framing_of(std::span<const std::uint8_t> header);
 
 /// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
-/// \throws InputError naming file and offset.
-[[nodiscard]] StreamHeader decode_header(std::span<const std::uint8_t> header,
-                                         std::string_view place);
+/// \throws InputError naming file and offset, also if the header asks for hundreds of MB out of
+/// proportion to the `file_bytes` of the whole file.
+[[nodiscard]] StreamHeader decode_header(
+    std::span<const std::uint8_t> header, std::string_view place,
+    std::uint64_t file_bytes = std::numeric_limits<std::uint64_t>::max());
 
 }  // namespace stipple

@@ -46,7 +46,9 @@ Opened read_header(FileWindow& window, const std::string& place, const WaitForMo
     if (header.size() < bytes)
         throw InputError(fmt::format("{}: byte {}", place, header.size()),
                          fmt::format("the file ends within its header of {} bytes", bytes));
-    Opened result{decode_header(header, place), framing_of(header)};
+    constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();  // there may be more later
+    const std::uint64_t file_bytes = wait ? kAny : window.file_bytes().value_or(kAny);
+    Opened result{decode_header(header, place, file_bytes), framing_of(header)};
     window.skip(bytes);
     return result;
 }

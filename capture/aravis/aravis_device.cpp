@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "capture/aravis/genicam_check.h"
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
@@ -72,6 +73,11 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
     throw DeviceError(address,
                       "no USB3 Vision camera has this serial number: check the cable, and "
                       "that this user may read and write its /dev/bus/usb node");
+}
+
+ArvDevice* open_device(const std::string& address) {
+    const std::string rest = address.substr(address.find(':') + 1);
+    return address.starts_with("gige:") ? open_gige(address, rest) : open_usb(address, rest);
 }
 
 template <typename Number>
@@ -140,15 +146,14 @@ struct AravisDevice::Impl {
     void set_other(const std::string& place, const char* feature, const std::string& value) const;
 };
 
-AravisDevice::AravisDevice(std::string address)
+AravisDevice::AravisDevice(std::string address) : AravisDevice(address, open_device(address)) {}
+
+AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
-    const auto colon = address_.find(':');
-    const std::string rest = address_.substr(colon + 1);
-    ArvDevice* device =
-        address_.starts_with("gige:") ? open_gige(address_, rest) : open_usb(address_, rest);
+    const std::unique_ptr<void, void (*)(void*)> opened(device, g_object_unref);
+    check_genicam(device, address_);
     Complaint complaint;
-    impl_->camera = arv_camera_new_with_device(device, complaint.slot());
-    g_object_unref(device);
+    impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), complaint.slot());
     if (impl_->camera == nullptr)
         throw DeviceError(address_, fmt::format("is no usable camera: {}", complaint.text()));
     impl_->device = arv_camera_get_device(impl_->camera);

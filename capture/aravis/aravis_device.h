@@ -15,6 +15,8 @@ class AravisDevice {
   public:
     /// `address` as for open_aravis_camera. \throws InputError, DeviceError.
     explicit AravisDevice(std::string address);
+    /// Takes `device`, an open ArvDevice. \throws DeviceError.
+    AravisDevice(std::string address, void* device);
     ~AravisDevice();
     AravisDevice(const AravisDevice&) = delete;
     AravisDevice& operator=(const AravisDevice&) = delete;

@@ -12,6 +12,7 @@ TEST(NetworkTest, AddressesAreNumbersInHostByteOrder) {
     EXPECT_EQ(ipv4_text(0xC0A80005U), "192.168.0.5");
     for (const char* text : {"", "camera", "192.168.0", "192.168.0.256", "::1"})
         EXPECT_FALSE(parse_ipv4(text).has_value()) << text;
+    EXPECT_FALSE(parse_ipv4(std::string("1.2.3.4\0 5", 10)).has_value());
 }
 
 TEST(NetworkTest, AnAddressLiesAtTheInterfaceOfItsNetwork) {

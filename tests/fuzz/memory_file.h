@@ -3,7 +3,11 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace stipple {
 
@@ -13,6 +17,8 @@ class MemoryFile {
     explicit MemoryFile(const std::string& content) : descriptor_(memfd_create("fuzz", 0)) {
         if (write(descriptor_, content.data(), content.size()) < 0) descriptor_ = -1;
     }
+    explicit MemoryFile(std::span<const std::uint8_t> bytes)
+        : MemoryFile(std::string(bytes.begin(), bytes.end())) {}
     ~MemoryFile() { close(descriptor_); }
     MemoryFile(const MemoryFile&) = delete;
     MemoryFile& operator=(const MemoryFile&) = delete;
@@ -23,6 +29,30 @@ class MemoryFile {
 
   private:
     int descriptor_;
+};
+
+/// The same under a name with an extension, for what is read by its kind.
+class NamedMemoryFile {
+  public:
+    NamedMemoryFile(std::span<const std::uint8_t> bytes, std::string_view extension)
+        : file_(bytes),
+          name_(std::filesystem::temp_directory_path() /
+                ("stipple_fuzz_" + std::to_string(getpid()) + std::string(extension))) {
+        std::filesystem::remove(name_);  // of a run that crashed
+        std::filesystem::create_symlink(file_.path(), name_);
+    }
+    ~NamedMemoryFile() {
+        std::error_code ignored;
+        std::filesystem::remove(name_, ignored);
+    }
+    NamedMemoryFile(const NamedMemoryFile&) = delete;
+    NamedMemoryFile& operator=(const NamedMemoryFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return name_; }
+
+  private:
+    MemoryFile file_;
+    std::filesystem::path name_;
 };
 
 }  // namespace stipple

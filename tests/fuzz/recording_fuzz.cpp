@@ -5,41 +5,16 @@
 #include <vector>
 
 #include "capture/pixel_unpack.h"
+#include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
-#include "stream/crc32c.h"
-#include "stream/little_endian.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace stipple {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
 void require(bool property) {
     if (!property) std::abort();
-}
-
-/// Makes CRCs and hashes good, so that the fuzzer gets beyond them.
-Bytes repaired(Bytes bytes) {
-    const std::span<std::uint8_t> view(bytes);
-    for (std::size_t at = kRecordingMagic.size(); at + kBlockHeaderBytes <= bytes.size();) {
-        const auto block = view.subspan(at);
-        if (!std::equal(kBlockSync.begin(), kBlockSync.end(), block.begin())) {
-            ++at;
-            continue;
-        }
-        const auto body = block.subspan(kBlockHeaderBytes);
-        const std::uint64_t record = load<std::uint32_t>(&block[12]);
-        const auto payload = load<std::uint64_t>(&block[16]);
-        const bool whole = record <= body.size() && payload <= body.size() - record;
-        if (whole && load<std::uint32_t>(&block[4]) == 2 && record >= kFrameRecordBytes)
-            store_payload_hash(body.first(record), payload_hash(body.subspan(record, payload)));
-        if (whole) store(&block[24], crc32c(body.first(record)));
-        store(&block[28], crc32c(block.first(28)));
-        at += kBlockHeaderBytes + (whole ? record + payload : 0);
-    }
-    return bytes;
 }
 
 /// A frame that is delivered can be used without further checks.
@@ -61,10 +36,9 @@ void check_frame(const CapturedFrame& frame) {
             static_cast<std::size_t>(layout.width * layout.height * layout.format->planes));
 }
 
-void read(const Bytes& bytes) {
-    const MemoryFile file({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+void read(std::span<const std::uint8_t> bytes, const std::string& file) {
     try {
-        RecordingReader reader(file.path());
+        RecordingReader reader(file);
         std::uint64_t frames = 0;
         std::uint64_t payload_bytes = 0;
         for (CapturedFrame frame; reader.next(frame); ++frames) {
@@ -83,14 +57,30 @@ void read(const Bytes& bytes) {
     }
 }
 
+/// As `emulate` reads it: what is light is a number and not negative.
+void read_footage(const std::string& file) {
+    constexpr std::size_t kMostSites = 1 << 16;
+    constexpr int kMostSlots = 64;
+    try {
+        RecordingFootage footage(file);
+        if (footage.shape().sites() > kMostSites) return;
+        std::vector<float> light(footage.shape().sites());
+        for (int slot = 0; slot < kMostSlots && footage.read(light); ++slot)
+            require(std::ranges::all_of(light, [](float value) { return value >= 0; }));
+    } catch (const InputError&) {
+        return;
+    }
+}
+
 }  // namespace
 }  // namespace stipple
 
-/// Input: a recording; it is read as it is, and with all CRCs and hashes made good.
+/// Input: a recording.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace stipple;
-    const Bytes bytes(data, data + size);
-    read(bytes);
-    read(repaired(bytes));
+    const std::span<const std::uint8_t> bytes(data, size);
+    const MemoryFile file(bytes);
+    read(bytes, file.path());
+    read_footage(file.path());
     return 0;
 }

@@ -1,11 +1,5 @@
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
-
-#include "core/error.h"
 #include "core/tiff_file.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/picture_fuzz.h"
 
 namespace stipple {
 namespace {
@@ -31,7 +25,9 @@ void read_pages(const std::string& path) {
 
 /// Input: a TIFF file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const stipple::MemoryFile file(std::string(reinterpret_cast<const char*>(data), size));
-    stipple::read_pages(file.path());
+    using namespace stipple;
+    const std::span<const std::uint8_t> bytes(data, size);
+    read_pages(MemoryFile(bytes).path());
+    read_picture(bytes, ".tif");
     return 0;
 }

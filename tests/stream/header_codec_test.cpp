@@ -45,6 +45,18 @@ TEST(HeaderCodecTest, DecodesWhatItEncodes) {
     EXPECT_EQ(decode(encode_header(header, "")), header);
 }
 
+TEST(HeaderCodecTest, AGeneratorOutOfProportionToTheFileIsRefused) {
+    const StreamHeader header = random_header({9, 11, 1}, 7);
+    Bytes bytes = encode_header(header, "");
+    EXPECT_EQ(decode_header(bytes, "a.stipple", bytes.size()), header);
+    store(&bytes[16], std::uint16_t{2160});
+    store(&bytes[18], std::uint16_t{3840});
+    seal(bytes);
+    expect_parts(
+        message_of<InputError>([&] { return decode_header(bytes, "a.stipple", bytes.size()); }),
+        {"a.stipple: byte 80: the schedule of 33177600 exposures is out of proportion"});
+}
+
 TEST(HeaderCodecTest, IntegersOutsideTheirLimitsAreRefused) {
     using U8 = std::uint8_t;
     using U16 = std::uint16_t;

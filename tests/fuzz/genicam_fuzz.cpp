@@ -1,0 +1,33 @@
+#include <arv.h>
+
+#include <string>
+
+#include "capture/aravis/aravis_device.h"
+#include "core/error.h"
+#include "tests/fuzz/memory_file.h"
+
+/// Input: the XML by which a camera describes itself. Its features are listed, read and set as
+/// `capture doctor` and `capture record` do.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace stipple;
+    g_log_set_default_handler([](auto...) {}, nullptr);  // what libxml2 says of each input
+    const MemoryFile xml({data, size});
+    arv_set_fake_camera_genicam_filename(xml.path().c_str());
+    ArvDevice* native = arv_fake_device_new("fuzz", nullptr);
+    if (native == nullptr) return 0;
+    try {
+        AravisDevice device("fake:fuzz", native);
+        if (device.genicam_xml().size() > size) std::abort();
+        for (const auto& [name, value] : device.features()) {
+            static_cast<void>(device.read_number(name));
+            try {
+                device.set(name, value);
+            } catch (const std::exception&) {
+                continue;  // the camera refuses it
+            }
+        }
+    } catch (const DeviceError&) {
+        return 0;
+    }
+    return 0;
+}

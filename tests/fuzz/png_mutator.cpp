@@ -1,0 +1,6 @@
+#include "tests/fuzz/png_pieces.h"
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+    return stipple::mutate_framed(stipple::kPngFormat, {data, most}, size, seed);
+}
