@@ -184,7 +184,8 @@ void CameraRecording::finish() {
     else
         throw_if_stopped();
     if ((failure_ || bad_file_) && output_.committed())
-        say_error("{}: {} kept", output_.final_path().string(), counted(writer_.frames(), "frame"));
+        say_kept(output_.final_path().c_str(),
+                 [this] { return counted(writer_.frames(), "frame"); });
     if (failure_) std::rethrow_exception(failure_);
     if (bad_file_) throw InputError(*bad_file_);
     if (!end_reason_.empty() && !at_end_) throw DeviceError(arguments_.camera.address, end_reason_);

@@ -14,6 +14,7 @@
 #include "apps/leftovers.h"
 #include "apps/number_text.h"
 #include "apps/progress.h"
+#include "apps/standard_error.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
 #include "capture/setting_value.h"
@@ -76,8 +77,18 @@ class SlotRecorder {
         }
     }
     void finish() {
-        writer_.finish();
+        try {
+            writer_.finish();
+        } catch (...) {
+            keep();
+            throw;
+        }
         output_.commit();
+    }
+    /// The same where writing has failed: a stream as far as it goes.
+    void keep() {
+        output_.commit();
+        say_kept(output_.final_path().c_str(), [] { return "what was written before is"; });
     }
 
     [[nodiscard]] std::int64_t slots() const { return order_.expected().slot; }
@@ -146,10 +157,14 @@ void record_coded_stream(const CameraRecordingArguments& arguments, const RunOpt
     JsonFile json(run);
     SlotRecorder recorder(arguments.output, run.force, header);
     camera->start();
-    const bool to_the_end = [&] {
+    bool to_the_end = false;
+    try {
         Progress progress(run, "recording", slots > 0 ? std::optional(slots) : std::nullopt);
-        return record_slots(*camera, recorder, slots, arguments.limits.seconds, progress);
-    }();
+        to_the_end = record_slots(*camera, recorder, slots, arguments.limits.seconds, progress);
+    } catch (...) {
+        if (recorder.slots() > 0) recorder.keep();
+        throw;
+    }
     camera->stop();
     if (recorder.slots() == 0) {
         throw_if_stopped();

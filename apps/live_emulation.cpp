@@ -23,6 +23,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{50};
+constexpr auto kBefore = [] { return "what was written before is"; };
 constexpr double kRateAfterS = 1;
 constexpr std::size_t kMostLateListed = 1000;
 constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
@@ -142,7 +143,7 @@ void LiveEmulation::put_in_place() {
         failure_ = std::current_exception();
     }
     if (!recording_.keep()) return;  // the message of the failure says where it is
-    say_error("{}: what was written before is kept", arguments_.output);
+    say_kept(arguments_.output.c_str(), kBefore);
 }
 
 void LiveEmulation::finish() {
@@ -158,7 +159,7 @@ void LiveEmulation::finish() {
     if (preview_) preview_->finish();
     if (failure_) std::rethrow_exception(failure_);
     if (end_ && end_->bad_file) {
-        say_error("{}: what was written before is kept", arguments_.output);
+        say_kept(arguments_.output.c_str(), kBefore);
         throw InputError(*end_->bad_file);
     }
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);

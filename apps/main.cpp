@@ -1,5 +1,6 @@
 #include <cxxabi.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -43,6 +44,7 @@ constexpr std::string_view kNoThread =
 /// Names the partial outputs that no message has named. Needs no memory.
 void say_what_is_left() {
     visit_partial_outputs([](const char* path) {
+        if (access(path, F_OK) != 0) return;  // not yet created
         write_error_text("stipple: left beside the outputs: ");
         write_error_text(path);
         write_error_text("\n");
@@ -56,7 +58,7 @@ int fail(ExitCode code, std::string_view message) {
 }
 
 /// In place of std::abort(), for functions of libraries that promise to throw nothing and then have
-/// no memory.
+/// no memory; of libstdc++ some end the program without an exception then.
 [[noreturn]] void end_in_a_library() {
     const std::type_info* const thrown = abi::__cxa_current_exception_type();
     if (thrown != nullptr && *thrown != typeid(std::bad_alloc)) std::abort();

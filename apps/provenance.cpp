@@ -150,6 +150,7 @@ std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage
     else
         text.insert("seed", std::to_string(setup.seed));
     std::ostringstream stream;
+    stream.exceptions(std::ios::badbit);  // else it ends early where there is no memory
     stream << text << '\n';
     return stream.str();
 }
@@ -181,6 +182,7 @@ std::vector<std::string> timing_settings(const std::string& provenance) {
         if (const auto* timing = table["sensor"]["timing"].as_table())
             for (const auto& [key, node] : *timing) {
                 std::ostringstream setting;
+                setting.exceptions(std::ios::badbit);
                 setting << "timing." << key.str() << '=';
                 node.visit([&](const auto& value) { setting << value; });
                 settings.push_back(setting.str());

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <new>
 #include <string_view>
 #include <utility>
+
+#include "stream/plain_text.h"
 
 namespace stipple {
 
@@ -32,6 +35,20 @@ template <typename... Arguments>
 requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments...> format,
                                                   Arguments&&... arguments) {
     say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
+}
+
+/// Says so much of what a run that failed has written to `output` is kept. Where there is no memory
+/// for that, without the name.
+template <typename Text>
+void say_kept(const char* output, Text what) noexcept {
+    try {
+        const std::string line =
+            fmt::format("stipple: {}: {} kept\n", terminal_text(output), what());
+        clear_bar();
+        write_error_text(line);
+    } catch (const std::bad_alloc&) {
+        write_error_text("stipple: what was written before is kept\n");
+    }
 }
 
 }  // namespace stipple

@@ -270,6 +270,7 @@ std::vector<std::pair<std::string, std::string>> Config::entries() const {
         if (text == nullptr && !entry.value->is_number() && !entry.value->is_boolean())
             impl_->fail_type(key, *entry.value, "text, a number, true or false");
         std::ostringstream out;
+        out.exceptions(std::ios::badbit);  // else it ends early where there is no memory
         if (text != nullptr)
             out << text->get();
         else
@@ -286,6 +287,7 @@ std::vector<std::pair<std::string, std::string>> Config::entries() const {
 std::string Config::as_toml(std::string_view section) const {
     const std::string prefix = section.empty() ? "" : fmt::format("{}.", section);
     std::ostringstream out;
+    out.exceptions(std::ios::badbit);
     for (const auto& [key, entry] : impl_->entries) {
         if (!key.starts_with(prefix)) continue;
         out << key.substr(prefix.size()) << " = ";

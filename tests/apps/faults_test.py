@@ -139,9 +139,9 @@ class FaultyRuns(ProgramTest):
 class FaultsTest(FaultyRuns):
     def faults(self):
         for kind, errors in ERRORS.items():
-            for number in some(self.calls[kind], 1000 if LONG else 4):
-                for error in errors if LONG else errors[number % len(errors):][:1]:
-                    yield Fault(kind, number, error, lasting=error != SHORT and number % 2 == 0)
+            for index, number in enumerate(some(self.calls[kind], 1000 if LONG else 4)):
+                for error in errors if LONG else [errors[index % len(errors)]]:
+                    yield Fault(kind, number, error, lasting=error != SHORT and index % 2 == 1)
         for number in some(self.calls["memory"], 600 if LONG else 8):
             yield Fault("memory", number, errno.ENOMEM, lasting=number % 2 == 0)
         for number in some(self.calls["memory"] // 3, 300 if LONG else 6):  # after the command line

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -218,6 +219,18 @@ class ServeTest(ProgramTest):
         self.assertEqual(report["slots"], 24)
         self.assertGreater(report["missing_slots"], 0)
         self.assertEqual(self.figures("info", "clip.stipple")["slots"], 24)
+
+    def test_a_full_disk_leaves_the_slots_of_a_coded_stream_before(self):
+        address = self.serve(self.scene(), "--mode", "coded")
+        done = self.run_program("capture", "record", "gige:" + address, "--coded", "-o", "clip.stipple",
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000)))
+        if BUILT_WITHOUT in done.stderr:
+            self.skipTest(BUILT_WITHOUT)
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        self.assertIn("clip.stipple: what was written before is kept\n", done.stderr)
+        self.assertIn("clip.stipple: cannot be written: File too large", done.stderr)
+        self.assertEqual(self.names(), ["clip.stipple", "scene.npy"])
+        self.assertIn(json.loads(self.run_program("info", "clip.stipple", "--json", "-").stdout)["slots"], range(1, 24))
 
     def test_no_two_live_streams_have_the_same_header(self):
         address = self.serve(self.scene(), "--repeat")
