@@ -84,7 +84,7 @@ std::string draw_chart(std::string_view extension, ChartSize size, const std::st
     if (pwrite(script.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
         fail("there is no room for its commands");
     std::array<int, 2> pipe{-1, -1};
-    static_cast<void>(pipe2(pipe.data(), O_CLOEXEC));
+    if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail(strerror(errno));
     const Descriptor output(pipe[0]);
     Descriptor input(pipe[1]);
     const pid_t child = start_gnuplot(script, input, log);

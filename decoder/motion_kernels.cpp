@@ -266,7 +266,7 @@ void add_shares(const Shares& shares, Index count, Index cols, float* gradient) 
 
 void scatter_stretch(const MotionLink& link, Position at, Index count, float* gradient) {
     const auto cols = static_cast<Index>(link.shape.cols);
-    Shares shares;
+    __attribute__((uninitialized)) Shares shares;  // to zero it would take a 20th of the time
     for (Index plane = 0; plane < link.shape.sites(); plane += link.shape.pixels()) {
         const float* dual = link.dual + plane + at.row * cols + at.col;
         for_each_vector(count, [&](auto d, Index i) {
