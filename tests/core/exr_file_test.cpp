@@ -112,7 +112,7 @@ TEST_F(ExrFileTest, RefusesAnAttributeThatIsLongerThanTheFile) {
     const std::size_t size_at = whole.find(before) + before.size();
     whole[size_at + 3] = 0x70;  // of the four bytes of its length the highest
     write_text(file_, whole);
-    expect_parts(problem(), {"f.exr: attribute note of its header has 1879048196 bytes"});
+    expect_parts(problem(), {"f.exr: cannot be read as OpenEXR: "});
 }
 
 TEST_F(ExrFileTest, NeverCrashesOnADamagedFile) {
