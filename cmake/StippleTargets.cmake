@@ -128,7 +128,7 @@ function(stipple_fuzz name source)
         set(found ${CMAKE_BINARY_DIR}/fuzz/${name})  # new inputs stay out of the source tree
         file(MAKE_DIRECTORY ${found})
         add_test(NAME fuzz_${name}_finds_nothing
-                 COMMAND fuzz_${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048
+                 COMMAND fuzz_${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=4096
                          -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
         set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz ENVIRONMENT "${reads}")
     else()

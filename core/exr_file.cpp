@@ -9,12 +9,9 @@
 #include <ImfStdIO.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <cassert>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
-#include <fstream>
 #include <new>
 #include <vector>
 
@@ -78,33 +75,6 @@ std::uint64_t side(int low, int high) {
     return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
 }
 
-/// OpenEXR takes memory for an attribute of a header before it reads it. \throws InputError if the
-/// file is too short for one.
-void check_attributes(const std::filesystem::path& file) {
-    constexpr std::size_t kMostName = 255;
-    std::ifstream input(file, std::ios::binary);
-    const std::uint64_t bytes = std::filesystem::file_size(file);
-    std::array<std::uint8_t, 8> start{};  // magic, version and flags
-    input.read(reinterpret_cast<char*>(start.data()), start.size());
-    const bool several_headers = (start[5] & 0x10U) != 0;
-    bool ended = false;
-    for (std::string name, type; std::getline(input, name, '\0');) {
-        if (name.empty() && (ended || !several_headers)) return;
-        ended = name.empty();
-        if (ended) continue;
-        std::getline(input, type, '\0');
-        std::uint32_t value = 0;  // its length
-        input.read(reinterpret_cast<char*>(&value), sizeof(value));
-        if (!input || name.size() > kMostName) return;  // OpenEXR says that the file is damaged
-        if (value > bytes - static_cast<std::uint64_t>(input.tellg()))
-            throw InputError(file.string(),
-                             fmt::format("attribute {} of its header has {} bytes, more than the "
-                                         "file; it is damaged or ends too early",
-                                         name, value));
-        input.seekg(value, std::ios::cur);
-    }
-}
-
 /// \throws InputError if the file is too short for its pixels.
 void check_size(const Imf::Header& header, const std::vector<std::string>& names, FrameShape shape,
                 const std::string& place) {
@@ -163,7 +133,6 @@ std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
 
 void read_exr(const std::filesystem::path& file, Picture& picture) {
     try {
-        check_attributes(file);
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), picture);
     } catch (const InputError&) {
