@@ -17,6 +17,7 @@
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
+#include "core/gap_limit.h"
 
 namespace stipple {
 namespace {
@@ -26,7 +27,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPatience{50};
 constexpr double kRateAfterS = 1;
 constexpr std::size_t kMostLateListed = 1000;
-constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// A random number: packets of two recordings with the same settings are told apart by it
 /// (docs/stream_format.md, "Packet").
@@ -90,9 +90,25 @@ void LiveEmulation::run(const RunOptions& run) {
 
 void LiveEmulation::hold(std::uint64_t slots) {
     if (latencies_us_.empty()) return;  // nothing stands in for what came before the first frame
-    slots = std::min(slots, kMaxHeld);
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     held_slots_ += slots;
+}
+
+/// As many of the slots before a frame as are in proportion to the frames: what a camera or a clock
+/// says of them has no limit.
+void LiveEmulation::hold_lost(std::uint64_t slots) {
+    if (latencies_us_.empty()) return;
+    const auto frames = static_cast<std::int64_t>(latencies_us_.size()) + 1;
+    const auto most = static_cast<std::uint64_t>(most_missing_slots(frames, to_light_.shape()));
+    const std::uint64_t held = std::min(slots, most - std::min(most, held_slots_));
+    if (held < slots && unheld_slots_ == 0)
+        say_warning(fmt::format(
+            "{}: {} are missing before a frame, too many beside those that came: the frame before "
+            "stands in for {} of them, so slots from {} on come too early",
+            arguments_.camera.address, counted(slots, "frame"), held,
+            recording_.stats().slots + static_cast<std::int64_t>(held)));
+    unheld_slots_ += slots - held;
+    hold(held);
 }
 
 void LiveEmulation::expose(std::int64_t arrival_ns) {
@@ -105,7 +121,7 @@ void LiveEmulation::take(const CapturedFrame& frame) {
         end_ = DeviceLost{"the camera sends another region or pixel format"};
         return;
     }
-    hold(frame.record.lost_before);
+    hold_lost(frame.record.lost_before);
     rate_.add(frame.record);
     if (rate_.seconds() >= kRateAfterS) compare_rates();
     if (frame.record.status != FrameStatus::kComplete) return hold(1);
@@ -169,6 +185,7 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["lost"] = lost_json(totals_);
     json["transport"] = transport_json(camera_.transport());
     json["held_slots"] = held_slots_;
+    json["unheld_slots"] = unheld_slots_;
     json["late_slots"] = late_slots_;
     json["late"] = nlohmann::ordered_json::array();
     for (const LateSlot& late : late_)
@@ -186,14 +203,15 @@ nlohmann::ordered_json LiveEmulation::json() const {
 std::string LiveEmulation::text() const {
     std::string text = fmt::format(
         "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing or "
-        "incomplete\n"
+        "incomplete{}\n"
         "lost: {}; incomplete: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         arguments_.output, recording_text(recording_, slots_per_s()),
         counted(latencies_us_.size(), "frame"), counted(late_slots_, "slot"),
-        arguments_.late_after_slots, held_slots_, lost_text(totals_), totals_.incomplete,
-        sorted_quantile(latencies_us_, 0.5) * 1e-3, sorted_quantile(latencies_us_, 0.99) * 1e-3,
-        sorted_quantile(latencies_us_, 1) * 1e-3);
+        arguments_.late_after_slots, held_slots_,
+        unheld_slots_ == 0 ? "" : fmt::format(", {} left out", unheld_slots_), lost_text(totals_),
+        totals_.incomplete, sorted_quantile(latencies_us_, 0.5) * 1e-3,
+        sorted_quantile(latencies_us_, 0.99) * 1e-3, sorted_quantile(latencies_us_, 1) * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());
     return text;
 }

@@ -53,6 +53,7 @@ class LiveEmulation {
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(const CapturedFrame& frame);
     void hold(std::uint64_t slots);
+    void hold_lost(std::uint64_t slots);
     void expose(std::int64_t arrival_ns);
     void compare_rates();
     [[nodiscard]] std::optional<double> slots_per_s() const;
@@ -74,6 +75,7 @@ class LiveEmulation {
     std::vector<float> light_;
     std::vector<float> latencies_us_;  ///< of each frame
     std::uint64_t held_slots_ = 0;
+    std::uint64_t unheld_slots_ = 0;  ///< left out: too many beside the frames
     std::uint64_t late_slots_ = 0;
     std::vector<LateSlot> late_;  ///< the first of them
     FrameRate rate_;
