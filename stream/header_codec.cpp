@@ -252,7 +252,7 @@ Framing framing_of(Bytes header) {
     return {version, version == 1 ? 0 : crc};
 }
 
-StreamHeader decode_header(Bytes header, std::string_view place) {
+StreamHeader decode_header(Bytes header, std::string_view place, const ScheduleUse& use) {
     const std::size_t crc_offset = header.size() - kCrcBytes;
     if (crc32c(header.first(crc_offset)) != load<std::uint32_t>(&header[crc_offset]))
         fail_at(place, crc_offset, "the header is damaged (CRC mismatch); get another copy");
@@ -264,10 +264,10 @@ StreamHeader decode_header(Bytes header, std::string_view place) {
     check(kScheduleKind, kind, place);
     const Parts parts = split(header, place);
     check_texts(parts.name, parts.provenance, place);
-    auto stored =
-        decode_schedule(ScheduleSource::Kind{kind}, parts.schedule, numbers.shape,
-                        crc_offset - parts.calibration.size() - parts.schedule.size(), place);
-    if (schedule_crc(stored.schedule) != load<std::uint32_t>(&header[kScheduleCrc]))
+    const std::size_t schedule_at = crc_offset - parts.calibration.size() - parts.schedule.size();
+    auto stored = decode_schedule({ScheduleSource::Kind{kind}, parts.schedule, schedule_at},
+                                  numbers.shape, place, use);
+    if (stored.crc != load<std::uint32_t>(&header[kScheduleCrc]))
         fail_at(place, kScheduleCrc, "the schedule is not the one that was recorded");
     if (!parts.calibration.empty())
         decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), place,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stream/framing.h"
+#include "stream/schedule_codec.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -26,8 +27,8 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 [[nodiscard]] Framing framing_of(std::span<const std::uint8_t> header);
 
 /// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
-/// \throws InputError naming file and offset.
+/// \throws InputError naming file and offset, or as check_memory.
 [[nodiscard]] StreamHeader decode_header(std::span<const std::uint8_t> header,
-                                         std::string_view place);
+                                         std::string_view place, const ScheduleUse& use = {});
 
 }  // namespace stipple
