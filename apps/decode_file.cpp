@@ -23,6 +23,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/frame_writer.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
@@ -137,6 +138,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     DecodeOptions options = options_of(arguments);
     options.fill_gaps = arguments.fill_gaps;
     options.place = arguments.stream;
+    if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);
     std::optional<ScheduleCheck> check;

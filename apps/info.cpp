@@ -13,6 +13,7 @@
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -33,10 +34,10 @@ std::string stretched_text(const StretchedSlots& stretched, const StreamReader& 
 
 void info(const std::string& file, const RunOptions& run) {
     if (is_recording(file)) return recording_info(file, run);
-    StreamReader reader(file);
+    StreamReader reader(file, ReadPolicy::kCounts);
     JsonFile json(run);
     SamplePacket packet;
-    StretchedSlots stretched(reader.header());
+    StretchedSlots stretched(reader.header(), most_memory(input_bytes(file)));
     while (reader.next(packet)) {
         throw_if_stopped();
         stretched.add(packet);

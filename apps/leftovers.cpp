@@ -23,7 +23,7 @@ struct Whole {
 };
 
 Whole whole_of_stream(const fs::path& file) {
-    StreamReader reader(file);
+    StreamReader reader(file, ReadPolicy::kCounts);
     SamplePacket packet;
     while (reader.next(packet)) throw_if_stopped();
     const StreamReport& report = reader.report();
@@ -40,7 +40,10 @@ Whole whole_of_recording(const fs::path& file) {
 }  // namespace
 
 void say_leftover(const fs::path& output) {
-    const fs::path name = output.has_filename() ? output : output.parent_path();
+    std::error_code error;
+    const bool linked = fs::is_symlink(fs::symlink_status(output, error));
+    const fs::path file = linked ? fs::canonical(output, error) : output;
+    const fs::path name = file.has_filename() ? file : file.parent_path();
     const fs::path folder = folder_of(name);
     for (const PartialOutput& partial : partial_outputs(folder)) {
         if (partial.final_path.filename() != name.filename() || partial.running()) continue;
@@ -62,7 +65,7 @@ Recoverable recoverable(const fs::path& partial) {
     if (!fs::is_regular_file(partial, error)) return Recoverable::kNo;
     try {
         if (is_recording(partial)) return Recoverable::kRecording;
-        const StreamReader header_of(partial);
+        const StreamReader header_of(partial, ReadPolicy::kCounts);
         return Recoverable::kStream;
     } catch (const InputError&) {
         return Recoverable::kNo;

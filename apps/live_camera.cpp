@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/session_report.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -20,7 +21,8 @@ LiveCamera::LiveCamera(const CameraArguments& camera, const SessionOptions& sess
                session_options(camera, session)),
       layout_(session_.layout()),
       description_(session_.description()),
-      most_(waiting_frames),
+      most_(std::clamp<std::size_t>(
+          most_memory() / std::max<std::size_t>(layout_.payload_bytes(), 1), 1, waiting_frames)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 LiveCamera::~LiveCamera() {

@@ -16,7 +16,8 @@
 namespace stipple {
 
 /// A camera whose frames a thread takes and keeps, a few of them, until somebody has time. When as
-/// many as that wait, further ones are dropped; the next frame says how many (kOwnDrop).
+/// many as that wait, or as `most_memory` holds, further ones are dropped; the next frame says how
+/// many (kOwnDrop).
 class LiveCamera {
   public:
     /// Opens and starts the camera; until `begin`, its frames are let go, but those of a replay

@@ -16,6 +16,7 @@
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
+#include "core/gap_limit.h"
 
 namespace stipple {
 namespace {
@@ -26,7 +27,6 @@ constexpr milliseconds kPatience{50};
 constexpr auto kBefore = [] { return "what was written before is"; };
 constexpr double kRateAfterS = 1;
 constexpr std::size_t kMostLateListed = 1000;
-constexpr std::uint64_t kMaxHeld = 65536;  // at a time: an estimate after an outage has no limit
 
 /// A random number: packets of two recordings with the same settings are told apart by it
 /// (docs/stream_format.md, "Packet").
@@ -88,10 +88,26 @@ void LiveEmulation::run(const RunOptions& run) {
     }
 }
 
+/// As many of the slots before a frame as are in proportion to the frames: what a camera or a clock
+/// says of them has no limit.
+std::uint64_t LiveEmulation::lost_to_hold(std::uint64_t lost) {
+    const auto frames = static_cast<std::int64_t>(latencies_.count()) + 1;
+    const auto most = static_cast<std::uint64_t>(most_missing_slots(frames, to_light_.shape()));
+    const std::uint64_t held = std::min(lost, most - std::min(most, held_slots_));
+    if (held < lost && unheld_slots_ == 0)
+        say_warning(fmt::format(
+            "{}: {} are missing before a frame, too many beside those that came: the frame before "
+            "stands in for {} of them, so slots from {} on come too early",
+            arguments_.camera.address, counted(lost, "frame"), held,
+            recording_.stats().slots + static_cast<std::int64_t>(held)));
+    unheld_slots_ += lost - held;
+    return held;
+}
+
 void LiveEmulation::hold_missing(const FrameRecord& record) {
     if (latencies_.count() == 0) return;  // nothing stands in for what came before the first frame
     const std::uint64_t incomplete = record.status == FrameStatus::kComplete ? 0 : 1;
-    const std::uint64_t slots = std::min(record.lost_before, kMaxHeld) + incomplete;
+    const std::uint64_t slots = lost_to_hold(record.lost_before) + incomplete;
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     held_slots_ += slots;
     totals_.lost[static_cast<std::size_t>(record.cause)] += record.lost_before;
@@ -175,6 +191,7 @@ nlohmann::ordered_json LiveEmulation::json() const {
     json["lost"] = lost_json(totals_);
     json["transport"] = transport_json(camera_.transport());
     json["held_slots"] = held_slots_;
+    json["unheld_slots"] = unheld_slots_;
     json["late_slots"] = late_slots_;
     json["late"] = nlohmann::ordered_json::array();
     for (const LateSlot& late : late_)
@@ -192,13 +209,14 @@ nlohmann::ordered_json LiveEmulation::json() const {
 std::string LiveEmulation::text() const {
     std::string text = fmt::format(
         "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing or "
-        "incomplete\n"
+        "incomplete{}\n"
         "lost: {}; incomplete: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         arguments_.output, recording_text(recording_, slots_per_s()),
         counted(latencies_.count(), "frame"), counted(late_slots_, "slot"),
-        arguments_.late_after_slots, held_slots_, lost_text(totals_), totals_.incomplete,
-        latencies_.quantile_us(0.5) * 1e-3, latencies_.quantile_us(0.99) * 1e-3,
+        arguments_.late_after_slots, held_slots_,
+        unheld_slots_ == 0 ? "" : fmt::format(", {} left out", unheld_slots_), lost_text(totals_),
+        totals_.incomplete, latencies_.quantile_us(0.5) * 1e-3, latencies_.quantile_us(0.99) * 1e-3,
         latencies_.longest_us() * 1e-3);
     if (preview_) text.append(1, '\n').append(preview_->text());
     return text;

@@ -53,6 +53,7 @@ class LiveEmulation {
   private:
     [[nodiscard]] bool wants_more(double seconds) const;
     void take(const CapturedFrame& frame);
+    [[nodiscard]] std::uint64_t lost_to_hold(std::uint64_t lost);
     void hold_missing(const FrameRecord& record);
     void expose(std::int64_t arrival_ns);
     void compare_rates();
@@ -75,6 +76,7 @@ class LiveEmulation {
     std::vector<float> light_;
     DurationHistogram latencies_;  ///< of each frame
     std::uint64_t held_slots_ = 0;
+    std::uint64_t unheld_slots_ = 0;  ///< left out: too many beside the frames
     std::uint64_t late_slots_ = 0;
     std::vector<LateSlot> late_;  ///< the first of them
     FrameRate rate_;

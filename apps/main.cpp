@@ -19,6 +19,7 @@
 #include "apps/subcommands.h"
 #include "core/disk_sync.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "core/pending_output.h"
 
@@ -74,6 +75,8 @@ void run(const Action& action) {
     const ThreadLimit limit(action.options.threads);
     std::optional<NoSync> no_sync;
     if (action.options.no_sync) no_sync.emplace();
+    std::optional<MemoryLimit> memory;
+    if (action.options.max_memory > 0) memory.emplace(action.options.max_memory);
     action.run(action.options);
 }
 

@@ -133,6 +133,16 @@ std::string options_of(const toml::table& provenance) {
     return text;
 }
 
+/// What a header tells; empty if it is no TOML, or has keys that are too long to be parsed safely.
+toml::table table_of(const std::string& provenance) {
+    try {
+        if (line_of_long_key(provenance) == 0) return toml::parse(provenance);
+    } catch (const toml::parse_error&) {
+        // A text for people.
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage) {
@@ -156,40 +166,30 @@ std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage
 }
 
 std::string command_of(const std::string& provenance) {
-    if (line_of_long_key(provenance) != 0) return {};
-    try {
-        const toml::table table = toml::parse(provenance);
-        const auto footage = table["footage"];
-        std::string name = text_of(footage["name"]);
-        // Light of a camera, and what was taken off it, is in no file that `emulate` reads.
-        if (name.empty() || !footage["sha256"] || footage["black_level_dn"] || !table["options"])
-            return {};
-        if (name.starts_with('-')) name.insert(0, "./");
-        std::string command = fmt::format("stipple emulate {} -o again.stipple{}",
-                                          shell_quoted(name), options_of(table));
-        if (!is_plain_text(command, false)) command.clear();
-        return command;
-    } catch (const toml::parse_error&) {
+    const toml::table table = table_of(provenance);
+    const auto footage = table["footage"];
+    std::string name = text_of(footage["name"]);
+    // Light of a camera, and what was taken off it, is in no file that `emulate` reads.
+    if (name.empty() || !footage["sha256"] || footage["black_level_dn"] || !table["options"])
         return {};
-    }
+    if (name.starts_with('-')) name.insert(0, "./");
+    std::string command =
+        fmt::format("stipple emulate {} -o again.stipple{}", shell_quoted(name), options_of(table));
+    if (!is_plain_text(command, false)) command.clear();
+    return command;
 }
 
 std::vector<std::string> timing_settings(const std::string& provenance) {
     std::vector<std::string> settings;
-    if (line_of_long_key(provenance) != 0) return settings;
-    try {
-        const toml::table table = toml::parse(provenance);
-        if (const auto* timing = table["sensor"]["timing"].as_table())
-            for (const auto& [key, node] : *timing) {
-                std::ostringstream setting;
-                setting.exceptions(std::ios::badbit);
-                setting << "timing." << key.str() << '=';
-                node.visit([&](const auto& value) { setting << value; });
-                settings.push_back(setting.str());
-            }
-    } catch (const toml::parse_error&) {
-        settings.clear();
-    }
+    const toml::table table = table_of(provenance);
+    if (const auto* timing = table["sensor"]["timing"].as_table())
+        for (const auto& [key, node] : *timing) {
+            std::ostringstream setting;
+            setting.exceptions(std::ios::badbit);
+            setting << "timing." << key.str() << '=';
+            node.visit([&](const auto& value) { setting << value; });
+            settings.push_back(setting.str());
+        }
     return settings;
 }
 

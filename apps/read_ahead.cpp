@@ -1,9 +1,12 @@
 #include "apps/read_ahead.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "apps/footage_arguments.h"
 #include "apps/session_report.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -21,7 +24,12 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
 }  // namespace
 
 ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options)
-    : reader_(open_footage(source, options)), current_(shape().sites()), coming_(shape().sites()) {
+    : reader_(open_footage(source, options)) {
+    constexpr std::uint64_t kSiteBytes = 18;  // two frames here, and what works on them
+    check_memory(kSiteBytes * shape().sites(), source.string(),
+                 fmt::format("frames of {} x {}", shape().cols, shape().rows), input_bytes(source));
+    current_.resize(shape().sites());
+    coming_.resize(shape().sites());
     say_warnings();
     start_reading();
 }

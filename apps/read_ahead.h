@@ -16,7 +16,7 @@ namespace stipple {
 class ReadAhead {
   public:
     /// \throws InputError as FootageReader and RecordingFootage; if a recording shall have another
-    /// transfer than linear or be reduced to luminance.
+    /// transfer than linear or be reduced to luminance; as check_memory if frames are too large.
     ReadAhead(const std::filesystem::path& source, const FootageOptions& options);
     ~ReadAhead() = default;
     ReadAhead(const ReadAhead&) = delete;

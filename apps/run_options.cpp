@@ -7,6 +7,7 @@
 #include "apps/command_line.h"
 #include "apps/number_check.h"
 #include "apps/standard_error.h"
+#include "core/memory_limit.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -24,6 +25,18 @@ void add_run_options(Command& command, RunOptions& run) {
     command.add_flag("--force", run.force, "replace existing outputs");
     command.add_flag("--no-sync", run.no_sync,
                      "do not wait until outputs are on the disk; a power cut may lose them");
+    command
+        .add_parsed(
+            "--max-memory",
+            [&run](const std::string& size) {
+                const auto bytes = parse_memory(size);
+                if (!bytes)
+                    throw UsageError("--max-memory",
+                                     "\"" + size + "\" is not a size like 512M or 2G, from 1M on");
+                run.max_memory = *bytes;
+            },
+            "refuse inputs that need more memory (half of the machine's)")
+        .type_name("SIZE");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
 }
 

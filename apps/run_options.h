@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -12,16 +13,17 @@ class CommandOption;
 struct RunOptions {
     bool quiet = false;
     bool force = false;
-    bool no_sync = false;  ///< see NoSync
-    int threads = 0;       ///< 0: all cores; of those that have `--threads`
-    std::string json;      ///< file for the figures; empty: none, "-": standard output
+    bool no_sync = false;          ///< see NoSync
+    std::uint64_t max_memory = 0;  ///< bytes; 0: see most_memory
+    int threads = 0;               ///< 0: all cores; of those that have `--threads`
+    std::string json;              ///< file for the figures; empty: none, "-": standard output
 
     /// Prints `text` for people on standard output, unless it shall be quiet or has JSON on it.
     /// \throws std::system_error if it cannot be written.
     void say(std::string_view text) const;
 };
 
-/// What every subcommand has: `--json`, `--force`, `--no-sync` and `--quiet`.
+/// What every subcommand has: `--json`, `--force`, `--no-sync`, `--max-memory` and `--quiet`.
 void add_run_options(Command& command, RunOptions& run);
 
 /// `--threads`, of subcommands that spread their work (core/parallel.h).

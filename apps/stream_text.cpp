@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "apps/number_text.h"
 
@@ -14,6 +15,16 @@ namespace stipple {
 namespace {
 
 using nlohmann::ordered_json;
+
+bool is_random(const StreamHeader& header) {
+    return header.schedule_source.kind == ScheduleSource::Kind::kRandom;
+}
+
+/// Rows and columns; of a random schedule the reader has kept one pixel only.
+std::pair<int, int> tile_of(const StreamHeader& header) {
+    if (is_random(header)) return {header.shape.rows, header.shape.cols};
+    return {header.schedule.tile_rows(), header.schedule.tile_cols()};
+}
 
 ordered_json calibration_json(const Calibration& calibration) {
     ordered_json responsivity = ordered_json::array(), conversion_gain = ordered_json::array();
@@ -37,15 +48,16 @@ ordered_json calibration_json(const Calibration& calibration) {
 
 ordered_json schedule_json(const StreamHeader& header) {
     const ExposureSchedule& schedule = header.schedule;
+    const auto [tile_rows, tile_cols] = tile_of(header);
     ordered_json json{{"name", header.schedule_name},
-                      {"tile_rows", schedule.tile_rows()},
-                      {"tile_cols", schedule.tile_cols()},
+                      {"tile_rows", tile_rows},
+                      {"tile_cols", tile_cols},
                       {"period_slots", schedule.period_slots()},
                       {"samples_per_pixel_slot", schedule.samples_per_pixel_slot()},
                       {"light_throughput", schedule.light_throughput()},
                       {"gapless", schedule.gapless()},
                       {"interleaved", schedule.interleaved()}};
-    if (header.schedule_source.kind == ScheduleSource::Kind::kRandom) {
+    if (is_random(header)) {
         json["exposure_slots"] = header.schedule_source.exposure_slots;
         json["seed"] = header.schedule_source.seed;
     }
@@ -96,6 +108,7 @@ ordered_json stream_json(const StreamHeader& header, const StreamReport& report)
 std::string stream_text(const StreamHeader& header, const StreamReport& report) {
     const Calibration& calibration = header.calibration;
     const ExposureSchedule& schedule = header.schedule;
+    const auto [tile_rows, tile_cols] = tile_of(header);
     return fmt::format(
         "frames       {} x {} x {} (width x height x planes), a slot is {} us\n"
         "samples      {} bits, {:.5g} e/DN, black level {} DN, read noise {} e, full well {} e\n"
@@ -107,10 +120,9 @@ std::string stream_text(const StreamHeader& header, const StreamReport& report) 
         header.shape.cols, header.shape.rows, header.shape.planes, header.slot_us,
         calibration.bit_depth, calibration.gain_e_per_dn, calibration.black_level_dn,
         calibration.read_noise_e, calibration.full_well_e, calibration.electrons_per_unit,
-        special_text(header), header.schedule_name, schedule.tile_rows(), schedule.tile_cols(),
-        schedule.period_slots(), schedule.samples_per_pixel_slot(),
-        100 * schedule.light_throughput(), report.slots, report.packets, report.samples,
-        report.payload_bits);
+        special_text(header), header.schedule_name, tile_rows, tile_cols, schedule.period_slots(),
+        schedule.samples_per_pixel_slot(), 100 * schedule.light_throughput(), report.slots,
+        report.packets, report.samples, report.payload_bits);
 }
 
 bool undamaged(const StreamReport& report) {

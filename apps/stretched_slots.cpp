@@ -6,20 +6,39 @@
 #include "readout/readout_account.h"
 
 namespace stipple {
+namespace {
+
+ExposureSchedule whole_schedule(const StreamHeader& header) {
+    const auto& [kind, exposure_slots, seed] = header.schedule_source;
+    return kind == ScheduleSource::Kind::kRandom
+               ? random_schedule(header.shape.rows, header.shape.cols, exposure_slots, seed)
+               : header.schedule;
+}
+
+}  // namespace
 
 struct StretchedSlots::Readout {
     Readout(const ReadoutTiming& timing, const StreamHeader& header)
-        : account(timing, header.schedule, header.shape,
+        : schedule(whole_schedule(header)),
+          account(timing, schedule, header.shape,
                   {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch}) {}
 
+    ExposureSchedule schedule;
     ReadoutAccount account;
 };
 
-StretchedSlots::StretchedSlots(const StreamHeader& header) {
+StretchedSlots::StretchedSlots(const StreamHeader& header, std::uint64_t most_bytes)
+    : header_(header), most_bytes_(most_bytes) {}
+
+void StretchedSlots::set_up() {
+    const auto& [kind, exposure_slots, seed] = header_.schedule_source;
+    if (kind == ScheduleSource::Kind::kRandom &&
+        random_schedule_bytes(header_.shape.rows, header_.shape.cols, exposure_slots) > most_bytes_)
+        return;
     try {
-        Config config(timing_settings(header.provenance));
-        if (const auto timing = read_timing(config, header.calibration.bit_depth))
-            readout_ = std::make_unique<Readout>(*timing, header);
+        Config config(timing_settings(header_.provenance));
+        if (const auto timing = read_timing(config, header_.calibration.bit_depth))
+            readout_ = std::make_unique<Readout>(*timing, header_);
     } catch (const InputError&) {
         // A text for people: it need not tell a timing, nor one of this schedule.
     }
@@ -29,7 +48,7 @@ StretchedSlots::~StretchedSlots() = default;
 
 void StretchedSlots::add(const SamplePacket& packet) {
     if ((packet.flags & SamplePacket::kOverrun) == 0 || packet.first_row != 0) return;
-    ++slots_;
+    if (slots_++ == 0) set_up();
     if (!readout_) return;
     ReadoutAccount& account = readout_->account;
     total_us_ += static_cast<double>(account.of(packet.slot).clocks) /

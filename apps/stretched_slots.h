@@ -13,7 +13,9 @@ namespace stipple {
 /// say, and how long they were, by the readout timing that its provenance tells.
 class StretchedSlots {
   public:
-    explicit StretchedSlots(const StreamHeader& header);
+    /// `header` is that of a reader with ReadPolicy::kCounts, and outlives this. To know how long
+    /// slots are, a random schedule is made, if it takes no more than `most_bytes` of memory.
+    StretchedSlots(const StreamHeader& header, std::uint64_t most_bytes);
     ~StretchedSlots();
     StretchedSlots(const StretchedSlots&) = delete;
     StretchedSlots& operator=(const StretchedSlots&) = delete;
@@ -21,12 +23,16 @@ class StretchedSlots {
     void add(const SamplePacket& packet);
 
     [[nodiscard]] std::int64_t slots() const { return slots_; }
-    /// Their mean; nothing without such slots, or if the provenance does not tell.
+    /// Their mean; nothing without such slots, or if they cannot be known.
     [[nodiscard]] std::optional<double> mean_us() const;
 
   private:
     struct Readout;
-    std::unique_ptr<Readout> readout_;  ///< null if the timing is not known
+    void set_up();
+
+    const StreamHeader& header_;
+    std::uint64_t most_bytes_;
+    std::unique_ptr<Readout> readout_;  ///< null if the timing is not known, or not yet
     std::int64_t slots_ = 0;
     double total_us_ = 0;
 };

@@ -177,40 +177,66 @@ std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int f
     return count;
 }
 
-ExposureSchedule random_schedule(int rows, int cols, std::span<const int> exposure_slots,
-                                 std::uint64_t seed) {
+RandomExposures::RandomExposures(std::span<const int> exposure_slots, std::uint64_t seed)
+    : exposure_slots_(exposure_slots.begin(), exposure_slots.end()),
+      seed_(seed),
+      order_(exposure_slots.size()),
+      exposures_(exposure_slots.size()) {
     if (exposure_slots.empty()) throw InputError(kPlace, "there is no exposure length");
-    int period_slots = 0;
     for (const int length : exposure_slots) {
         if (length < 1 || length > 64)
             throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
-        period_slots += length;
+        period_slots_ += length;
     }
+}
+
+std::span<const Exposure> RandomExposures::of(std::uint32_t pixel) {
+    // Fisher-Yates; draw i uses word 0 of its own block, scaled to its range by a high product.
+    const auto draw = [&](std::size_t i, std::size_t range) {
+        const auto word = philox4x32(
+            random_address(pixel, static_cast<std::uint32_t>(i), RandomPurpose::kSchedule),
+            seed_)[0];
+        return static_cast<std::uint32_t>((std::uint64_t{word} * range) >> 32U);
+    };
+    std::ranges::copy(exposure_slots_, order_.begin());
+    for (std::size_t i = order_.size() - 1; i > 0; --i)
+        std::swap(order_[i], order_[draw(i, i + 1)]);
+    const auto period = static_cast<std::uint32_t>(period_slots_);
+    std::uint32_t slot = draw(0, period);
+    auto first = exposures_.begin();  // of the period
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        if (slot >= period) {
+            slot -= period;
+            first = exposures_.begin() + static_cast<std::ptrdiff_t>(i);
+        }
+        exposures_[i] = {slot, open_without_gap(order_[i])};
+        slot += static_cast<std::uint32_t>(order_[i]);
+    }
+    std::rotate(exposures_.begin(), first, exposures_.end());
+    return exposures_;
+}
+
+ExposureSchedule random_schedule(int rows, int cols, std::span<const int> exposure_slots,
+                                 std::uint64_t seed) {
+    RandomExposures random(exposure_slots, seed);
     const auto pixels = static_cast<std::uint32_t>(rows) * static_cast<std::uint32_t>(cols);
-    const auto count = exposure_slots.size();
     std::vector<std::uint32_t> first(pixels + 1);
     std::vector<Exposure> exposures;
-    exposures.reserve(pixels * count);
-    std::vector<int> order(count);
+    exposures.reserve(pixels * exposure_slots.size());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
-        // Fisher-Yates; draw i uses word 0 of its own block, scaled to its range by a high product.
-        const auto draw = [&](std::uint32_t i, std::size_t range) {
-            const auto word =
-                philox4x32(random_address(pixel, i, RandomPurpose::kSchedule), seed)[0];
-            return static_cast<std::uint32_t>((std::uint64_t{word} * range) >> 32U);
-        };
-        std::copy(exposure_slots.begin(), exposure_slots.end(), order.begin());
-        for (std::size_t i = count - 1; i > 0; --i)
-            std::swap(order[i], order[draw(static_cast<std::uint32_t>(i), i + 1)]);
-        auto slot = draw(0, index(period_slots));
-        for (const int length : order) {
-            exposures.push_back(
-                {slot % static_cast<std::uint32_t>(period_slots), open_without_gap(length)});
-            slot += static_cast<std::uint32_t>(length);
-        }
+        const auto of_pixel = random.of(pixel);
+        exposures.insert(exposures.end(), of_pixel.begin(), of_pixel.end());
         first[pixel + 1] = static_cast<std::uint32_t>(exposures.size());
     }
-    return {rows, cols, period_slots, std::move(first), std::move(exposures)};
+    return {rows, cols, random.period_slots(), std::move(first), std::move(exposures)};
+}
+
+std::uint64_t random_schedule_bytes(int rows, int cols, std::span<const int> exposure_slots) {
+    const std::uint64_t pixels = index(rows) * index(cols);
+    const std::uint64_t exposure_bytes = sizeof(Exposure) + sizeof(DuePixel);
+    const int period_slots = std::accumulate(exposure_slots.begin(), exposure_slots.end(), 0);
+    return pixels * (exposure_slots.size() * exposure_bytes + sizeof(std::uint32_t)) +
+           2 * sizeof(std::uint32_t) * index(rows) * index(period_slots);
 }
 
 }  // namespace stipple

@@ -137,6 +137,24 @@ void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int
 /// Exposure lengths of the paper, in slots.
 inline constexpr int kPaperExposureSlots[] = {1, 2, 4, 8};
 
+/// Makes the exposures of the pixels of `random_schedule`, one pixel at a time.
+class RandomExposures {
+  public:
+    /// \throws InputError as random_schedule.
+    RandomExposures(std::span<const int> exposure_slots, std::uint64_t seed);
+
+    [[nodiscard]] int period_slots() const { return period_slots_; }
+    /// Those of pixel row * cols + col, by first slot; valid until the next call.
+    [[nodiscard]] std::span<const Exposure> of(std::uint32_t pixel);
+
+  private:
+    std::vector<int> exposure_slots_;
+    std::uint64_t seed_;
+    int period_slots_ = 0;
+    std::vector<int> order_;
+    std::vector<Exposure> exposures_;
+};
+
 /// The paper's schedule: every pixel of a rows x cols array repeats its own random permutation
 /// of `exposure_slots` without gaps, from a random offset. The stream format defines its bits
 /// (docs/stream_format.md), so a header needs only the lengths and the seed.
@@ -145,5 +163,9 @@ inline constexpr int kPaperExposureSlots[] = {1, 2, 4, 8};
 [[nodiscard]] ExposureSchedule random_schedule(int rows, int cols,
                                                std::span<const int> exposure_slots,
                                                std::uint64_t seed);
+
+/// Bytes of memory that `random_schedule` takes while it works, most of which it keeps.
+[[nodiscard]] std::uint64_t random_schedule_bytes(int rows, int cols,
+                                                  std::span<const int> exposure_slots);
 
 }  // namespace stipple

@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/joined.h"
 #include "core/light.h"
+#include "core/memory_limit.h"
 #include "core/output_file.h"
 
 namespace stipple {
@@ -86,6 +87,8 @@ void check_size(const Imf::Header& header, const std::vector<std::string>& names
     const bool blocks = packing == Imf::DWAA_COMPRESSION || packing == Imf::DWAB_COMPRESSION;
     check_packed(pixel_bytes * shape.pixels(), std::filesystem::file_size(place), place,
                  blocks ? 64 * kDeflateRatio : kDeflateRatio);
+    check_memory(sizeof(float) * shape.pixels() * names.size(), place, "the picture",
+                 input_bytes(place));
 }
 
 void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {

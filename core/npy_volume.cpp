@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
+#include "core/memory_limit.h"
 #include "core/npy_fields.h"
 #include "core/npy_header.h"
 
@@ -80,6 +81,9 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view pl
     const NpyFields fields = read_npy_fields(dictionary.text, place);
     const ValueType& type = type_of(fields.descr, place);
     check_shape(fields.shape, place);
+    check_memory(
+        bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], place,
+        "the volume");
     if (fields.fortran_order)
         throw InputError(place, "is in Fortran order; save numpy.ascontiguousarray(volume)");
     NpyVolume volume{.layers = static_cast<int>(fields.shape[0]),

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -53,6 +54,8 @@ void check_size(std::span<const std::uint8_t> header, std::uint64_t file_bytes,
         checked_shape(big_endian(header.subspan(4)), big_endian(header), grey ? 1 : 3, place);
     const std::uint64_t samples = colour_type == 3 ? shape.pixels() : shape.sites();
     check_packed(samples * header[8] / 8, file_bytes, place);
+    const std::uint64_t unpacked = header[8] == 16 ? 2 : 1;
+    check_memory((unpacked + sizeof(float)) * shape.sites(), place, "the picture", file_bytes);
 }
 
 /// The chunk that begins at `offset`, CRC included.

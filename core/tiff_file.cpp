@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/light.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -297,6 +298,8 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, place(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
     check_packed(bytes, impl_->file_bytes, place(page), about.most_packed());
+    check_memory(bytes + sizeof(float) * pixels.shape.sites(), place(page), "the picture",
+                 impl_->file_bytes);
     pixels.bytes.resize(bytes);
     if (!PageReader(tiff, about, pixels).read()) impl_->fail(place(page));
     if (about.photometric == PHOTOMETRIC_MINISWHITE)

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "core/config.h"
+#include "core/memory_limit.h"
 #include "decoder/collaborative.h"
 #include "decoder/decode_method.h"
 #include "decoder/motion_tv.h"
@@ -20,6 +22,7 @@ struct DecodeOptions {
     StageSink stages = {};
     bool fill_gaps = false;               ///< decode slots that are missing, however many they are
     std::string place = "sample stream";  ///< its name, for messages
+    std::uint64_t input_bytes = kEndlessInput;  ///< of its file
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

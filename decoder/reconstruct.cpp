@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/gap_limit.h"
+#include "core/memory_limit.h"
 #include "decoder/block_partition.h"
 #include "decoder/collaborative.h"
 #include "decoder/decode_options.h"
@@ -193,21 +194,61 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     return video;
 }
 
-/// Slots without samples take few bytes, but are frames. \throws InputError if `slots` slots are
-/// many values of light (2^26, or 256 MB), and more than 128 for a sample.
+/// Slots with few samples take few bytes, but are frames. \throws InputError if the first `slots`
+/// slots are more than 2^25 values of light (128 MB), and more than 128 for a sample or, of a file
+/// of less than 1 MB, more than 2^26 (256 MB).
 void check_proportion(const StreamHeader& header, const DecodeOptions& options, std::int64_t slots,
                       std::uint64_t samples) {
     const auto values = [&](FrameShape shape) {
         return static_cast<double>(slots) * static_cast<double>(shape.sites());
     };
     const double light = values(decoded_shape(header));
-    if (options.fill_gaps || light <= 0x1p26 ||
-        values(header.shape) <= 128 * static_cast<double>(samples))
-        return;
+    const bool sampled = values(header.shape) <= 128 * static_cast<double>(samples) &&
+                         (light <= 0x1p26 || options.input_bytes >= kSmallInput);
+    if (options.fill_gaps || light <= 0x1p25 || sampled) return;
     throw InputError(options.place,
                      fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
                                  "to decode them nevertheless, give --fill-gaps",
                                  slots - 1, samples, light * sizeof(float) * 1e-6));
+}
+
+/// Memory of the estimate and all that belongs to it, in bytes a voxel.
+std::uint64_t voxel_bytes(DecodeMethod method) {
+    switch (method) {
+        case DecodeMethod::kNaive:
+            return 13;
+        case DecodeMethod::kPortz2013:
+            return 400;
+        case DecodeMethod::kFast:
+        case DecodeMethod::kBest:
+            break;
+    }
+    return 48;
+}
+
+std::string_view name_of(DecodeMethod method) {
+    return std::ranges::find(decode_methods(), method, &NamedDecodeMethod::method)->name;
+}
+
+/// \throws InputError as check_memory for a block of slots. A small file is one for it that has
+/// less than a byte for 32 voxels, as no common schedule and bit depth make it.
+void check_block(const StreamHeader& header, const DecodeOptions& options, const Stretch& slots) {
+    constexpr std::uint64_t kVoxelsAByte = 32;
+    const FrameShape shape = decoded_shape(header);
+    std::uint64_t tile_pixels = 0;
+    for (const auto& [rows, cols] : frame_tiles(shape, max_core_sites(options.method)))
+        tile_pixels = std::max(tile_pixels, static_cast<std::uint64_t>((rows.end - rows.begin) *
+                                                                       (cols.end - cols.begin)));
+    const auto block_slots = static_cast<std::uint64_t>(slots.end - slots.begin);
+    const auto core_slots = static_cast<std::uint64_t>(slots.core_end - slots.core_begin);
+    const std::uint64_t voxels =
+        block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
+    const bool small = voxels / kVoxelsAByte > options.input_bytes;
+    check_memory(core_slots * shape.sites() * sizeof(float) + voxels * voxel_bytes(options.method),
+                 options.place,
+                 fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
+                             shape.rows, name_of(options.method)),
+                 small ? options.input_bytes : kEndlessInput);
 }
 
 /// By the methods that have a prior on the video, `fast` and `best`.
@@ -267,6 +308,7 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
         const Stretch slots = slot_stretch(report.slots, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
         check_proportion(header, options, slots.core_end, buffer.counts().samples());
+        check_block(header, options, slots);
         buffer.drop_below(slots.begin);
         const auto checkpoint = [&](double fraction) {
             return monitor(static_cast<double>(slots.core_begin) +

@@ -38,8 +38,9 @@ struct DecodeReport {
 /// A mosaic of colours is decoded to three planes as one problem, in which the colours that a
 /// pixel does not see are unobserved: frames have the `decoded_shape` of the header.
 /// \throws InputError as StreamReader::next, if the method cannot decode the schedule, or if slots
-/// without samples are out of proportion to the others (most_missing_slots; more than 256 MB of
-/// frames and 128 values for a sample), unless the options have `fill_gaps`.
+/// without samples are out of proportion to the others (most_missing_slots; more than 128 MB of
+/// frames and 128 values for a sample, or of a file of less than 1 MB more than 256 MB), unless the
+/// options have `fill_gaps`; as check_memory if a block takes too much.
 DecodeReport decode(
     StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
     const DecodeMonitor& monitor = [](double) { return true; });

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "readout/column_addressing.h"
 #include "readout/full_schedule.h"
 #include "readout/hardware_tiled.h"
@@ -47,6 +48,9 @@ NamedSchedule read_random(Config& config, FrameShape shape, std::uint64_t seed) 
                          fmt::format("random exposures of {} x {} pixels are too many for a "
                                      "stream; use the schedule \"tiled\"",
                                      shape.rows, shape.cols));
+    // It is kept twice: by the sensor, and in the header of the stream.
+    check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.place("kind"),
+                 fmt::format("random exposures of {} x {} pixels", shape.rows, shape.cols));
     ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, seed);
     return {.name = "random",
             .source = {ScheduleSource::Kind::kRandom, std::move(lengths), seed},

@@ -6,11 +6,12 @@
 namespace stipple {
 namespace {
 
+constexpr std::int64_t kLongestSpanSlots = 64;
+
 using DuePixels = std::span<const DuePixel>;
 
 /// Those whose exposure began in slot 0 or later.
 std::size_t count_begun(DuePixels due, std::int64_t slot) {
-    constexpr std::int64_t kLongestSpanSlots = 64;
     if (slot >= kLongestSpanSlots) return due.size();
     return static_cast<std::size_t>(std::ranges::count_if(
         due, [slot](const DuePixel& pixel) { return pixel.span_slots <= slot + 1; }));
@@ -23,7 +24,41 @@ DuePixels left_part(DuePixels due, int cols) {
     return due.first(static_cast<std::size_t>(end - due.begin()));
 }
 
+std::size_t index(std::int64_t value) {
+    return static_cast<std::size_t>(value);
+}
+
 }  // namespace
+
+DueCounts::DueCounts(int rows, int period_slots)
+    : rows_(rows),
+      period_slots_(period_slots),
+      steady_(index(rows) * index(period_slots)),
+      absent_(index(rows) * index(std::min<std::int64_t>(period_slots, kLongestSpanSlots))) {}
+
+void DueCounts::add(int row, std::span<const Exposure> of_pixel) {
+    for (const Exposure& exposure : of_pixel) {
+        const int span = exposure.span_slots();
+        const auto phase = (static_cast<int>(exposure.first_slot) + span - 1) % period_slots_;
+        const std::size_t at = index(phase) * index(rows_) + index(row);
+        ++steady_[at];
+        if (span > phase + 1) ++absent_[at];  // no exposure is longer than the period
+    }
+}
+
+std::size_t DueCounts::due(std::int64_t slot, int row) const {
+    const std::size_t due = steady_[index(slot % period_slots_) * index(rows_) + index(row)];
+    const std::size_t at = index(slot) * index(rows_) + index(row);
+    return slot < period_slots_ && at < absent_.size() ? due - absent_[at] : due;
+}
+
+bool matches_counts(const DueCounts& counts, std::int64_t slot, RowBand band, std::size_t planes,
+                    std::size_t samples) {
+    std::size_t due_samples = 0;
+    for (int i = 0; i < band.rows && due_samples <= samples; ++i)
+        due_samples += planes * counts.due(slot, band.first_row + i);
+    return due_samples == samples;
+}
 
 bool matches_schedule(const StreamHeader& stream, std::int64_t slot, RowBand band,
                       std::size_t samples) {

@@ -186,22 +186,6 @@ Parts split(Bytes header, std::string_view place) {
     return {name, provenance, schedule, calibration};
 }
 
-/// The generator of a random schedule makes some 20 bytes of each exposure, of no bytes of the
-/// file.
-void check_proportion(Bytes generator, FrameShape shape, std::uint64_t file_bytes,
-                      std::string_view place) {
-    constexpr std::size_t kLengthsAt = 8;  ///< after the seed
-    constexpr std::size_t kFewExposures = std::size_t{1} << 23U;
-    constexpr std::size_t kExposuresAByte = 64;  ///< the paper's have 60, after one slot of 8 bits
-    const std::size_t lengths = generator.size() > kLengthsAt ? generator[kLengthsAt] : 0;
-    const std::size_t exposures = shape.pixels() * lengths;
-    if (exposures > kFewExposures && exposures / kExposuresAByte > file_bytes)
-        fail_at(place, kScheduleBytes.offset,
-                fmt::format("the schedule of {} exposures is out of proportion to the {} bytes of "
-                            "the file; it was cut off in its first slot, or is damaged",
-                            exposures, file_bytes));
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view place) {
@@ -268,7 +252,7 @@ Framing framing_of(Bytes header) {
     return {version, version == 1 ? 0 : crc};
 }
 
-StreamHeader decode_header(Bytes header, std::string_view place, std::uint64_t file_bytes) {
+StreamHeader decode_header(Bytes header, std::string_view place, const ScheduleUse& use) {
     const std::size_t crc_offset = header.size() - kCrcBytes;
     if (crc32c(header.first(crc_offset)) != load<std::uint32_t>(&header[crc_offset]))
         fail_at(place, crc_offset, "the header is damaged (CRC mismatch); get another copy");
@@ -280,12 +264,10 @@ StreamHeader decode_header(Bytes header, std::string_view place, std::uint64_t f
     check(kScheduleKind, kind, place);
     const Parts parts = split(header, place);
     check_texts(parts.name, parts.provenance, place);
-    if (kind == static_cast<int>(ScheduleSource::Kind::kRandom))
-        check_proportion(parts.schedule, numbers.shape, file_bytes, place);
-    auto stored =
-        decode_schedule(ScheduleSource::Kind{kind}, parts.schedule, numbers.shape,
-                        crc_offset - parts.calibration.size() - parts.schedule.size(), place);
-    if (schedule_crc(stored.schedule) != load<std::uint32_t>(&header[kScheduleCrc]))
+    const std::size_t schedule_at = crc_offset - parts.calibration.size() - parts.schedule.size();
+    auto stored = decode_schedule({ScheduleSource::Kind{kind}, parts.schedule, schedule_at},
+                                  numbers.shape, place, use);
+    if (stored.crc != load<std::uint32_t>(&header[kScheduleCrc]))
         fail_at(place, kScheduleCrc, "the schedule is not the one that was recorded");
     if (!parts.calibration.empty())
         decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), place,

@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "stream/framing.h"
+#include "stream/schedule_codec.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -27,10 +27,8 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 [[nodiscard]] Framing framing_of(std::span<const std::uint8_t> header);
 
 /// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
-/// \throws InputError naming file and offset, also if the header asks for hundreds of MB out of
-/// proportion to the `file_bytes` of the whole file.
-[[nodiscard]] StreamHeader decode_header(
-    std::span<const std::uint8_t> header, std::string_view place,
-    std::uint64_t file_bytes = std::numeric_limits<std::uint64_t>::max());
+/// \throws InputError naming file and offset, or as check_memory.
+[[nodiscard]] StreamHeader decode_header(std::span<const std::uint8_t> header,
+                                         std::string_view place, const ScheduleUse& use = {});
 
 }  // namespace stipple

@@ -18,23 +18,25 @@ bool unused_bits_are_zero(std::size_t samples, int bit_depth, Bytes payload) {
     return used_bits == 0 || payload.back() >> used_bits == 0;
 }
 
-bool is_due(const StreamHeader& stream, const PacketHeader& packet, bool any_schedule) {
+bool is_due(const StreamHeader& stream, const PacketHeader& packet, const DueRule& rule) {
     const RowBand band{packet.first_row, packet.rows};
-    if (!any_schedule)
-        return matches_schedule(stream, static_cast<std::int64_t>(packet.slot), band,
-                                packet.samples);
+    const auto slot = static_cast<std::int64_t>(packet.slot);
+    const auto planes = static_cast<std::size_t>(stream.shape.planes);
+    if (rule.counts != nullptr)
+        return matches_counts(*rule.counts, slot, band, planes, packet.samples);
+    if (!rule.any) return matches_schedule(stream, slot, band, packet.samples);
     const FrameShape of_band{packet.rows, stream.shape.cols, stream.shape.planes};
     return packet.samples <= of_band.sites();
 }
 
 Fault payload_fault(const StreamHeader& stream, const PacketHeader& packet, Bytes payload,
-                    bool any_schedule) {
+                    const DueRule& rule) {
     const int bit_depth = stream.calibration.bit_depth;
     if (payload.size() != packed_bytes(packet.samples, bit_depth))
         return fmt::format("{} samples of {} bits in {} bytes", packet.samples, bit_depth,
                            payload.size());
     const bool dropped = (packet.flags & SamplePacket::kDropped) != 0;
-    const bool expected = dropped ? packet.samples == 0 : is_due(stream, packet, any_schedule);
+    const bool expected = dropped ? packet.samples == 0 : is_due(stream, packet, rule);
     if (!expected) return fmt::format("{} samples are not what is due", packet.samples);
     if (!unused_bits_are_zero(packet.samples, bit_depth, payload))
         return "unused bits are not zero";
@@ -56,7 +58,7 @@ Fault entry_fault(Bytes payload, std::uint64_t slots, std::uint64_t index_offset
 }  // namespace
 
 Fault sample_fault(const StreamHeader& stream, const PacketHeader& packet, Bytes payload,
-                   StreamPosition expected, bool any_schedule) {
+                   StreamPosition expected, const DueRule& rule) {
     constexpr unsigned kKnownFlags = SamplePacket::kOverrun | SamplePacket::kDropped;
     if (packet.reserved != 0) return "reserved bytes are not zero";
     if ((packet.flags & ~kKnownFlags) != 0) return fmt::format("unknown flags {:#x}", packet.flags);
@@ -66,7 +68,7 @@ Fault sample_fault(const StreamHeader& stream, const PacketHeader& packet, Bytes
                            packet.rows, stream.shape.rows);
     if (StreamPosition{static_cast<std::int64_t>(packet.slot), packet.first_row} < expected)
         return fmt::format("slot {} row {} comes twice or too late", packet.slot, packet.first_row);
-    return payload_fault(stream, packet, payload, any_schedule);
+    return payload_fault(stream, packet, payload, rule);
 }
 
 Fault index_fault(const PacketHeader& packet, Bytes payload, std::uint64_t offset,

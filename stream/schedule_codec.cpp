@@ -46,20 +46,26 @@ std::optional<std::string> generator_fault(std::span<const int> lengths, FrameSh
                       static_cast<std::size_t>(period));
 }
 
-void append_tile_size(std::vector<std::uint8_t>& bytes, const ExposureSchedule& schedule) {
-    for (const int size : {schedule.tile_rows(), schedule.tile_cols(), schedule.period_slots()})
+void append_tile_size(std::vector<std::uint8_t>& bytes, int rows, int cols, int period_slots) {
+    for (const int size : {rows, cols, period_slots})
         append(bytes, static_cast<std::uint16_t>(size));
 }
 
-void append_tile_row(std::vector<std::uint8_t>& bytes, const ExposureSchedule& schedule, int row) {
-    for (int col = 0; col < schedule.tile_cols(); ++col) {
-        const auto exposures = schedule.exposures(row, col);
-        append_varint(bytes, exposures.size());
-        for (const Exposure& exposure : exposures) {
-            append_varint(bytes, exposure.first_slot);
-            append_varint(bytes, exposure.open_slots);
-        }
+void append_tile_size(std::vector<std::uint8_t>& bytes, const ExposureSchedule& schedule) {
+    append_tile_size(bytes, schedule.tile_rows(), schedule.tile_cols(), schedule.period_slots());
+}
+
+void append_exposures(std::vector<std::uint8_t>& bytes, std::span<const Exposure> of_pixel) {
+    append_varint(bytes, of_pixel.size());
+    for (const Exposure& exposure : of_pixel) {
+        append_varint(bytes, exposure.first_slot);
+        append_varint(bytes, exposure.open_slots);
     }
+}
+
+void append_tile_row(std::vector<std::uint8_t>& bytes, const ExposureSchedule& schedule, int row) {
+    for (int col = 0; col < schedule.tile_cols(); ++col)
+        append_exposures(bytes, schedule.exposures(row, col));
 }
 
 std::vector<std::uint8_t> encode_explicit(const ExposureSchedule& schedule) {
@@ -129,6 +135,41 @@ ScheduleSource decode_random(ByteCursor& cursor, FrameShape shape) {
     return source;
 }
 
+/// Goes over a random schedule row by row, in the memory of a row.
+StoredSchedule count_random(const ScheduleSource& source, FrameShape shape,
+                            std::optional<DueCounts>& counts) {
+    RandomExposures random(source.exposure_slots, source.seed);
+    const auto first = random.of(0);
+    const auto count = static_cast<std::uint32_t>(first.size());
+    StoredSchedule stored{{1, 1, random.period_slots(), {0, count}, {first.begin(), first.end()}},
+                          source};
+    counts.emplace(shape.rows, random.period_slots());
+    std::vector<std::uint8_t> bytes;
+    append_tile_size(bytes, shape.rows, shape.cols, random.period_slots());
+    std::uint32_t pixel = 0;
+    for (int row = 0; row < shape.rows; ++row) {
+        for (int col = 0; col < shape.cols; ++col) {
+            const auto of_pixel = random.of(pixel++);
+            append_exposures(bytes, of_pixel);
+            counts->add(row, of_pixel);
+        }
+        stored.crc = crc32c(bytes, stored.crc);
+        bytes.clear();
+    }
+    return stored;
+}
+
+StoredSchedule make_random(const ScheduleSource& source, FrameShape shape, std::string_view place,
+                           const ScheduleUse& use) {
+    if (use.counts != nullptr) return count_random(source, shape, *use.counts);
+    check_memory(random_schedule_bytes(shape.rows, shape.cols, source.exposure_slots), place,
+                 "its schedule", use.input_bytes);
+    StoredSchedule stored{
+        random_schedule(shape.rows, shape.cols, source.exposure_slots, source.seed), source};
+    stored.crc = schedule_crc(stored.schedule);
+    return stored;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::string_view place) {
@@ -141,7 +182,8 @@ std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::strin
         const FrameShape shape = header.shape;
         if (const auto fault = generator_fault(source.exposure_slots, shape)) fail(*fault);
         // Found out now rather than when the recording is read.
-        if (schedule != random_schedule(shape.rows, shape.cols, source.exposure_slots, source.seed))
+        std::optional<DueCounts> counts;
+        if (schedule_crc(schedule) != count_random(source, shape, counts).crc)
             fail("is not what the generator of its source makes");
         return encode_random(source);
     }
@@ -154,20 +196,20 @@ std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::strin
     return encode_explicit(schedule);
 }
 
-StoredSchedule decode_schedule(ScheduleSource::Kind kind, std::span<const std::uint8_t> section,
-                               FrameShape shape, std::size_t offset, std::string_view place) {
-    ByteCursor cursor(section, offset, place);
+StoredSchedule decode_schedule(const ScheduleSection& section, FrameShape shape,
+                               std::string_view place, const ScheduleUse& use) {
+    ByteCursor cursor(section.bytes, section.offset, place);
     const auto reject_rest = [&] {
         if (cursor.left() > 0) cursor.fail("bytes are left over after the schedule");
     };
-    if (kind == ScheduleSource::Kind::kRandom) {
-        ScheduleSource source = decode_random(cursor, shape);
+    if (section.kind == ScheduleSource::Kind::kRandom) {
+        const ScheduleSource source = decode_random(cursor, shape);
         reject_rest();
-        return {random_schedule(shape.rows, shape.cols, source.exposure_slots, source.seed),
-                source};
+        return make_random(source, shape, place, use);
     }
     StoredSchedule stored{decode_explicit(cursor), {}};
     reject_rest();
+    stored.crc = schedule_crc(stored.schedule);
     return stored;
 }
 

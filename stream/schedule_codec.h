@@ -2,12 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/memory_limit.h"
+#include "stream/due_count.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -16,6 +19,22 @@ namespace stipple {
 struct StoredSchedule {
     ExposureSchedule schedule;
     ScheduleSource source;
+    std::uint32_t crc = 0;  ///< CRC-32C of the schedule in explicit form, whatever its source
+};
+
+/// The schedule section of a header, which begins at `offset` of the file.
+struct ScheduleSection {
+    ScheduleSource::Kind kind = ScheduleSource::Kind::kExplicit;
+    std::span<const std::uint8_t> bytes;
+    std::size_t offset = 0;
+};
+
+/// What a reader needs of a schedule.
+struct ScheduleUse {
+    /// If set, a random schedule is not kept: its pixels are counted here, and `schedule` has a
+    /// tile of one pixel, the first, by which its figures are those of all.
+    std::optional<DueCounts>* counts = nullptr;
+    std::uint64_t input_bytes = kEndlessInput;  ///< as of check_memory
 };
 
 /// The schedule section of a header. \throws InputError at `place` if the schedule is beyond the
@@ -23,12 +42,10 @@ struct StoredSchedule {
 [[nodiscard]] std::vector<std::uint8_t> encode_schedule(const StreamHeader& header,
                                                         std::string_view place);
 
-/// The inverse. `section` begins at `offset` of the file that messages call `place`.
-/// \throws InputError naming file and offset.
-[[nodiscard]] StoredSchedule decode_schedule(ScheduleSource::Kind kind,
-                                             std::span<const std::uint8_t> section,
-                                             FrameShape shape, std::size_t offset,
-                                             std::string_view place);
+/// The inverse. Messages call the file `place`. \throws InputError naming file and offset, or as
+/// check_memory.
+[[nodiscard]] StoredSchedule decode_schedule(const ScheduleSection& section, FrameShape shape,
+                                             std::string_view place, const ScheduleUse& use = {});
 
 /// CRC-32C of the schedule in explicit form, whatever its source.
 [[nodiscard]] std::uint32_t schedule_crc(const ExposureSchedule& schedule);

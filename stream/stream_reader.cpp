@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "stream/bit_packing.h"
 #include "stream/crc32c.h"
 #include "stream/file_window.h"
@@ -38,17 +39,21 @@ Bytes peek_or_wait(FileWindow& window, std::size_t bytes, const WaitForMore& wai
 struct Opened {
     StreamHeader header;
     Framing framing;
+    std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
 };
 
-Opened read_header(FileWindow& window, const std::string& place, const WaitForMore& wait) {
+Opened read_header(FileWindow& window, const std::string& place, ReadPolicy policy,
+                   const WaitForMore& wait) {
     const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), place);
     const Bytes header = peek_or_wait(window, bytes, wait);
     if (header.size() < bytes)
         throw InputError(fmt::format("{}: byte {}", place, header.size()),
                          fmt::format("the file ends within its header of {} bytes", bytes));
-    constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();  // there may be more later
-    const std::uint64_t file_bytes = wait ? kAny : window.file_bytes().value_or(kAny);
-    Opened result{decode_header(header, place, file_bytes), framing_of(header)};
+    std::optional<DueCounts> counts;
+    const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
+                          wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput)};
+    StreamHeader decoded = decode_header(header, place, use);
+    Opened result{std::move(decoded), framing_of(header), std::move(counts)};
     window.skip(bytes);
     return result;
 }
@@ -75,7 +80,7 @@ struct StreamReader::Impl {
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
           window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
-          stream(read_header(window, place, wait)),
+          stream(read_header(window, place, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
           order(stream.header.shape.rows),
           checksum(stream.framing.seed) {
@@ -238,7 +243,8 @@ std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& foun
                                                         Bytes payload) const {
     if (index_offset) return "a packet after the index";
     if (found.kind == PacketKind::kSamples)
-        return sample_fault(stream.header, found, payload, order.expected(), any_schedule);
+        return sample_fault(stream.header, found, payload, order.expected(),
+                            {any_schedule, stream.counts ? &*stream.counts : nullptr});
     if (found.kind != PacketKind::kIndex)
         return fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
     // After damage and gaps no offset is right, but the number of slots is.
@@ -321,6 +327,7 @@ void StreamReader::use_schedule(ExposureSchedule schedule) {
     assert(impl_->report.packets == 0);
     impl_->stream.header.schedule = std::move(schedule);
     impl_->stream.header.schedule_source = {};
+    impl_->stream.counts.reset();
 }
 
 std::optional<std::int64_t> StreamReader::slots() const {

@@ -20,6 +20,10 @@ enum class ReadPolicy {
     /// As kTolerant, but packets may hold other samples than the schedule says, up to one a site:
     /// to find out which schedule they follow.
     kAnySchedule,
+    /// As kTolerant, for those who look at no samples: a random schedule, of which 20 bytes of a
+    /// header can make 800 MB, is gone over and counted, but not kept. The schedule of `header` has
+    /// a tile of one pixel then, and the figures of the whole.
+    kCounts,
 };
 
 /// One place where a stream was damaged.
@@ -55,9 +59,10 @@ using WaitForMore = std::function<bool(std::uint64_t bytes)>;
 class StreamReader {
   public:
     /// \throws InputError naming file and offset if the file is missing, foreign, of an unknown
-    /// version, or its header is damaged (without a header no sample has a meaning).
-    /// With `wait` the file is followed while it grows: the constructor waits for the header,
-    /// `next` for whole packets, until the end marker comes or `wait` returns false.
+    /// version, or its header is damaged (without a header no sample has a meaning); as
+    /// check_memory if its schedule is too large. With `wait` the file is followed while it grows:
+    /// the constructor waits for the header, `next` for whole packets, until the end marker comes
+    /// or `wait` returns false.
     explicit StreamReader(const std::filesystem::path& file,
                           ReadPolicy policy = ReadPolicy::kTolerant, WaitForMore wait = {});
     ~StreamReader();

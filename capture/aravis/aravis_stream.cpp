@@ -2,7 +2,6 @@
 
 #include <arv.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,17 +13,12 @@
 #include "capture/frame_holes.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
-
-/// What the buffers of a camera may take together, whatever it says of its frames.
-std::size_t most_buffer_bytes() {
-    const auto size = [](int name) { return static_cast<std::size_t>(sysconf(name)); };
-    return size(_SC_PHYS_PAGES) / 4 * size(_SC_PAGESIZE);
-}
 
 /// Memory of a buffer.
 struct Slot {
@@ -142,8 +136,8 @@ std::size_t AravisStream::Impl::wanted_bytes() const {
 
 /// Whether buffers of so many bytes can be had.
 bool AravisStream::Impl::has_room_for(std::size_t bytes) const {
-    return bytes <= std::min(kMostPayloadBytes,
-                             most_buffer_bytes() / static_cast<std::size_t>(buffers.frames));
+    return bytes <=
+           std::min(kMostPayloadBytes, most_memory() / static_cast<std::size_t>(buffers.frames));
 }
 
 void AravisStream::Impl::check_buffers() const {
@@ -151,10 +145,10 @@ void AravisStream::Impl::check_buffers() const {
     if (has_room_for(bytes)) return;
     throw InputError(
         fmt::format("{}: PayloadSize", device.address()),
-        fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes, a "
-                    "quarter of this machine's memory, and each {}; set fewer --buffers, or a "
-                    "smaller Width and Height",
-                    buffers.frames, bytes, most_buffer_bytes(), kMostPayloadBytes));
+        fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes "
+                    "(--max-memory), and each {}; set fewer --buffers, or a smaller Width and "
+                    "Height",
+                    buffers.frames, bytes, most_memory(), kMostPayloadBytes));
 }
 
 /// A leader may be forged: it is believed as far as bytes came, or the camera itself says so.

@@ -37,20 +37,25 @@ def crc32c(data):
 FULL = struct.pack("<HHH", 1, 1, 1) + b"\1\0\1"  # all pixels in every slot
 
 
-def stream_header(rows, cols, schedule=FULL, provenance=b""):
-    """docs/stream_format.md, version 1, 8 bits."""
+def stream_header(rows, cols, schedule=FULL, provenance=b"", kind=0, bits=8):
+    """docs/stream_format.md, version 1. Of a random schedule (kind 1) the CRC is wrong."""
     size = 92 + len(provenance) + len(schedule) + 4
-    head = b"\x89STPL\r\n\x1a" + struct.pack("<HHIHHBBBB", 1, 0, size, rows, cols, 1, 0, 8, 0)
+    head = b"\x89STPL\r\n\x1a" + struct.pack("<HHIHHBBBB", 1, 0, size, rows, cols, 1, 0, bits, 0)
     head += struct.pack("<6d", 5000, 0, 20, 10, 5000, 1000)
-    head += struct.pack("<IIIBBH", 0, len(provenance), len(schedule), 0, 0, 0) + crc32c(schedule)
+    head += struct.pack("<IIIBBH", 0, len(provenance), len(schedule), kind, 0, 0) + crc32c(schedule)
     head += provenance + schedule
     return head + crc32c(head)
 
 
+def packet(slot, rows, samples=0, payload=b"", flags=0):
+    head = b"\xc5SPK" + struct.pack("<BBHQHHII", 1, flags, 0, slot, 0, rows, samples, len(payload))
+    head += crc32c(payload)
+    return head + crc32c(head) + payload
+
+
 def dropped(slot, rows):
     """A packet of a slot whose samples were given up."""
-    head = b"\xc5SPK" + struct.pack("<BBHQHHIII", 1, 2, 0, slot, 0, rows, 0, 0, 0)
-    return head + crc32c(head)
+    return packet(slot, rows, flags=2)
 
 
 class ProportionTest(ProgramTest):
@@ -105,6 +110,41 @@ class ProportionTest(ProgramTest):
             self.refuses(["large.stipple: slots up to 0 hold 0 samples", "1074 MB", "--fill-gaps"], "decode",
                          "large.stipple", "-o", "x.npy", "--method", method)
 
+    def test_a_schedule_made_from_a_seed_is_counted_without_being_kept(self):
+        for rows, cols, lengths in ((8192, 4096, b"\1"), (16384, 32, b"\1" * 64)):
+            section = struct.pack("<QB", 1, len(lengths)) + lengths
+            self.write("random.stipple", stream_header(rows, cols, section, kind=1))
+            self.refuses(["byte 88: the schedule is not the one"], "info", "random.stipple")
+            self.refuses(["random.stipple: needs", "MiB of memory for its schedule",
+                          "a file of less than 1 MB", "--max-memory"], "decode", "random.stipple",
+                         "-o", "x.npy", "--method", "naive")
+        self.write_stream(rows=24, cols=40)
+        schedule = self.figures("info", "clip.stipple")["schedule"]
+        self.assertEqual([schedule[key] for key in ("tile_rows", "tile_cols", "period_slots")],
+                         [24, 40, 15])
+
+    def test_few_bits_a_sample_are_not_many_frames(self):
+        every_64th = struct.pack("<HHH", 1, 1, 64) + b"\1\0\1"
+        self.write("bits.stipple", stream_header(500, 400, every_64th, bits=1) + b"".join(
+            packet(slot, 500, *((0, b"") if slot % 64 else (200_000, b"\x5a" * 25_000)))
+            for slot in range(8 * 64)))
+        for method in ("naive", "fast"):
+            self.refuses(["bits.stipple: needs", "slots of 400 x 500 by the method " + method,
+                          "--max-memory"], "decode", "bits.stipple", "-o", "x.npy",
+                         *(("--method", method) if method == "fast" else
+                           ("--method", method, "--max-memory", "100M")))
+        self.fails(INPUT, ["samples only, for", "--fill-gaps"], "decode",
+                   "bits.stipple", "-o", "x.npy", "--method", "naive", "--max-memory", "1G")
+
+    def test_the_limit_of_memory_can_be_told(self):
+        self.write_stream(rows=64, cols=64)
+        decode = ("decode", "clip.stipple", "-o", "x.npy")
+        self.refuses(["clip.stipple: needs 6 MiB", "than the 4 MiB that --max-memory says",
+                      "--max-memory 64M allows it"], *decode, "--max-memory", "4M")
+        self.succeed(*decode, "--max-memory", "0.5G")
+        for size in ("", "4", "G", "12Q", "1K", "-1G", "nanG", "1e30G"):
+            self.fails(2, ["--max-memory"], *decode, f"--max-memory={size}")
+
     def test_info_needs_no_more_than_the_schedule_for_a_long_period(self):
         pixel = b"\2" + b"\0\5" + b"\1\5"  # slots 0 and 2, 1 and 3: interleaved
         schedule = struct.pack("<HHH", 1, 20_000, 65535) + pixel * 20_000
@@ -155,6 +195,11 @@ class ProportionTest(ProgramTest):
             self.assertEqual(self.measured(*replay, "--skip-gaps")[0], OK)
             self.assertEqual(len(self.array("x.npy")), 2)
             (self.folder / "x.npy").unlink()
+        self.change_frame(1, {16: ("<Q", 2**20)})
+        live = self.figures("capture", "live", "replay:clip.strec", "-o", "live.stipple")
+        self.assertEqual(live["held_slots"] + live["unheld_slots"], 2**20)
+        self.assertEqual(live["held_slots"], 32 + 2**25 // 512**2)
+        self.assertEqual(live["slots"], live["held_slots"] + 2)
         self.recorded()
         for lost, code in ((1032, OK), (1033, INPUT)):
             self.change_frame(1, {16: ("<Q", lost)})
@@ -190,6 +235,21 @@ class ProportionTest(ProgramTest):
             content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
             self.write("a.tif", content + bytes(200 - len(content) + size))
             self.emulate_refuses("a.tif", "announces a picture of 256000000 bytes")
+
+    def test_well_packed_pictures_are_not_larger_than_small_files_may_be(self):
+        side = 16_000
+        packer = zlib.compressobj(9)
+        strip = b"".join(packer.compress(bytes(side * 100)) for _ in range(side // 100))
+        strip += packer.flush()
+        tags = ((256, side), (257, side), (258, 8), (259, 8), (262, 1), (273, 200), (277, 1),
+                (278, side), (279, len(strip)))
+        content = b"II*\0" + struct.pack("<IH", 8, len(tags))
+        content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
+        self.write("a.tif", content + bytes(200 - len(content)) + strip)
+        self.emulate_refuses("a.tif", "needs 1.2 GiB of memory for the picture", "--max-memory 1280M")
+        side = 4000
+        self.write_png("a.png", np.zeros((side, side)))
+        self.emulate_refuses("a.png", f"for frames of {side} x {side}", "--max-memory")
 
     def test_pictures_are_files(self):
         (self.folder / "frames").mkdir()

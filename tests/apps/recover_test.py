@@ -83,6 +83,11 @@ class RecoverTest(ProgramTest):
         self.assertIn(f"a run that was killed left {left}", done.stderr)
         done = self.run_program("emulate", "light.npy", "-o", "b.stipple", "--truth", "film.npy")
         self.assertIn("a run that was killed left .film.999999999.partial.npy;", done.stderr)
+        (self.folder / "elsewhere").mkdir()
+        (self.folder / "elsewhere" / "link.npy").symlink_to("../film.npy")
+        done = self.run_program("emulate", "light.npy", "-o", "c.stipple", "--force", "--truth",
+                                "elsewhere/link.npy")
+        self.assertIn("a run that was killed left .film.999999999.partial.npy;", done.stderr)
         synth = ("synth", "pan", "--size", "8x8", "--frames", 2, "-q", "-o")
         done = self.run_program(*synth, "frames/")
         self.assertIn("a run that was killed left .frames.999999998.partial;", done.stderr)

@@ -48,13 +48,14 @@ TEST(HeaderCodecTest, DecodesWhatItEncodes) {
 TEST(HeaderCodecTest, AGeneratorOutOfProportionToTheFileIsRefused) {
     const StreamHeader header = random_header({9, 11, 1}, 7);
     Bytes bytes = encode_header(header, "");
-    EXPECT_EQ(decode_header(bytes, "a.stipple", bytes.size()), header);
+    const ScheduleUse small_file{.input_bytes = bytes.size()};
+    EXPECT_EQ(decode_header(bytes, "a.stipple", small_file), header);
     store(&bytes[16], std::uint16_t{2160});
     store(&bytes[18], std::uint16_t{3840});
     seal(bytes);
     expect_parts(
-        message_of<InputError>([&] { return decode_header(bytes, "a.stipple", bytes.size()); }),
-        {"a.stipple: byte 80: the schedule of 33177600 exposures is out of proportion"});
+        message_of<InputError>([&] { return decode_header(bytes, "a.stipple", small_file); }),
+        {"a.stipple", "33177600", "--max-memory"});
 }
 
 TEST(HeaderCodecTest, IntegersOutsideTheirLimitsAreRefused) {

@@ -17,7 +17,7 @@ using Kind = ScheduleSource::Kind;
 constexpr FrameShape kShape{4, 6, 1};
 
 StoredSchedule decode(Kind kind, const Bytes& section) {
-    return decode_schedule(kind, section, kShape, 100, "a");
+    return decode_schedule({kind, section, 100}, kShape, "a");
 }
 
 void expect_refused(Kind kind, const Bytes& section, const std::string& problem) {
@@ -97,7 +97,7 @@ TEST(ScheduleCodecTest, GeneratorsBeyondTheLimitsAreRefused) {
     expect_refused(Kind::kRandom, {1, 2, 3, 4, 5, 6, 7, 8, 1, 65}, "outside 1..64");
     const Bytes section{1, 2, 3, 4, 5, 6, 7, 8, 2, 1, 1};
     expect_parts(message_of<InputError>([&] {
-                     return decode_schedule(Kind::kRandom, section, {65535, 257, 1}, 100, "a");
+                     return decode_schedule({Kind::kRandom, section, 100}, {65535, 257, 1}, "a");
                  }),
                  {"more than 2^25"});
 }
@@ -114,6 +114,28 @@ TEST(ScheduleCodecTest, SamplesAreCountedByTilesAsByPixels) {
                     if (samples == 0) continue;
                     EXPECT_FALSE(matches_schedule(header, slot, {row, rows}, samples - 1));
                 }
+}
+
+TEST(ScheduleCodecTest, ARandomScheduleIsCountedWithoutBeingKept) {
+    constexpr FrameShape kArray{7, 8, 1};
+    for (const std::vector<int>& lengths :
+         std::vector<std::vector<int>>{{1, 2, 4, 8}, {64, 3}, {1}}) {
+        const ScheduleSource source{Kind::kRandom, lengths, 3};
+        const ExposureSchedule schedule = random_schedule(7, 8, lengths, 3);
+        const StreamHeader header{kArray, 5000, {}, schedule, source, "", ""};
+        const Bytes section = encode_schedule(header, "");
+        std::optional<DueCounts> counts;
+        const auto stored = decode_schedule({Kind::kRandom, section, 100}, kArray, "a", {&counts});
+        EXPECT_EQ(stored.crc, schedule_crc(schedule));
+        EXPECT_EQ(stored.source, source);
+        EXPECT_EQ(stored.schedule.period_slots(), schedule.period_slots());
+        EXPECT_EQ(stored.schedule.samples_per_pixel_slot(), schedule.samples_per_pixel_slot());
+        EXPECT_EQ(stored.schedule.light_throughput(), schedule.light_throughput());
+        for (std::int64_t slot = 0; slot < 200; ++slot)
+            for (int row = 0; row < 7; ++row)
+                EXPECT_EQ(counts->due(slot, row), count_due(schedule, slot, row, 1, 8));
+        EXPECT_TRUE(matches_counts(*counts, 9, {1, 5}, 3, 3 * count_due(schedule, 9, 1, 5, 8)));
+    }
 }
 
 }  // namespace

@@ -1,0 +1,119 @@
+#include "core/memory_limit.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
+constexpr std::uint64_t kMostOfSmallInputs = 256 * kMiB;
+
+std::uint64_t told_bytes = 0;  ///< by the living MemoryLimit; 0: none lives
+
+std::string text_of(std::uint64_t bytes) {
+    const auto size = static_cast<double>(bytes);
+    return bytes < kGiB ? fmt::format("{:.0f} MiB", size / kMiB)
+                        : fmt::format("{:.1f} GiB", size / kGiB);
+}
+
+/// A little more than `bytes`, as `parse_memory` reads it.
+std::string option_of(std::uint64_t bytes) {
+    constexpr std::uint64_t kStep = 64 * kMiB;
+    return bytes < 4 * kGiB ? fmt::format("{}M", (bytes / kStep + 1) * (kStep / kMiB))
+                            : fmt::format("{}G", bytes / kGiB + 1);
+}
+
+/// What a file says before anything else, if that is a number.
+std::uint64_t limit_in(const fs::path& file) {
+    std::uint64_t limit = 0;
+    return std::ifstream(file) >> limit ? limit : kEndlessInput;
+}
+
+}  // namespace
+
+MemoryLimit::MemoryLimit(std::uint64_t bytes) : before_(told_bytes) {
+    told_bytes = bytes;
+}
+
+MemoryLimit::~MemoryLimit() {
+    told_bytes = before_;
+}
+
+std::uint64_t input_bytes(const fs::path& file) {
+    std::error_code error;
+    if (fs::is_regular_file(file, error)) return fs::file_size(file, error);
+    if (!fs::is_directory(file, error)) return kEndlessInput;
+    std::uint64_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(file, error))
+        if (entry.is_regular_file(error)) bytes += entry.file_size(error);
+    return error ? kEndlessInput : bytes;
+}
+
+std::uint64_t most_memory(std::uint64_t input_bytes) {
+    if (told_bytes > 0) return told_bytes;
+    const std::uint64_t half = machine_memory() / 2;
+    return input_bytes < kSmallInput ? std::min(half, kMostOfSmallInputs) : half;
+}
+
+void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
+                  std::uint64_t input_bytes) {
+    const std::uint64_t most = most_memory(input_bytes);
+    if (bytes <= most) return;
+    const char* const whose = told_bytes > 0 ? "--max-memory says"
+                              : most == most_memory()
+                                  ? "a run may take, half of this machine's memory"
+                                  : "a file of less than 1 MB may take";
+    throw InputError(place,
+                     fmt::format("needs {} of memory for {}, more than the {} that {}; "
+                                 "--max-memory {} allows it",
+                                 text_of(bytes), what, text_of(most), whose, option_of(bytes)));
+}
+
+std::uint64_t machine_memory(const fs::path& proc, const fs::path& groups) {
+    const auto size = [](int name) { return static_cast<std::uint64_t>(sysconf(name)); };
+    std::uint64_t least = size(_SC_PHYS_PAGES) * size(_SC_PAGESIZE);
+    std::ifstream lists(proc / "cgroup");  // "0::/path", of version 1 "4:memory:/path"
+    for (std::string line; std::getline(lists, line);) {
+        const auto controllers = line.find(':');
+        const auto path = line.find(":/");
+        if (controllers == std::string::npos || path == std::string::npos) continue;
+        const bool second = line.starts_with("0::");
+        if (!second &&
+            line.substr(controllers, path - controllers).find("memory") == std::string::npos)
+            continue;
+        const fs::path root = second ? groups : groups / "memory";
+        const char* const name = second ? "memory.max" : "memory.limit_in_bytes";
+        // A container may see its own group as the root.
+        for (fs::path group = line.substr(path + 2);; group = group.parent_path()) {
+            least = std::min(least, limit_in(root / group / name));
+            if (group.empty()) break;
+        }
+    }
+    return least;
+}
+
+std::optional<std::uint64_t> parse_memory(std::string_view text) {
+    constexpr std::string_view kUnits = "KMGT";
+    const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+    if (unit == std::string_view::npos) return std::nullopt;
+    text.remove_suffix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    const double bytes = number * static_cast<double>(std::uint64_t{1024} << (10 * unit));
+    if (!(bytes >= static_cast<double>(kMiB) && bytes < 0x1p60)) return std::nullopt;
+    return static_cast<std::uint64_t>(bytes);
+}
+
+}  // namespace stipple
