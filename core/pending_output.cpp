@@ -131,10 +131,12 @@ PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind 
         throw InputError(final_.string(), fmt::format("there is no folder \"{}\"; create it first",
                                                       parent.string()));
     if (fs::exists(fs::symlink_status(final_, error))) check_replaceable();
-    partial_ =
-        std::make_unique<const fs::path>(partial_path(final_, getpid(), std::random_device()()));
+    partial_ = partial_path(final_, getpid(), std::random_device()());
+    const std::string& name = partial_.native();
+    listed_ = std::make_unique<char[]>(name.size() + 1);
+    std::copy_n(name.c_str(), name.size() + 1, listed_.get());
     if (kind == OutputKind::kFolder) create_partial();
-    place_in_list_ = list_partial(partial_->c_str());
+    place_in_list_ = list_partial(listed_.get());
 }
 
 void PendingOutput::check_replaceable() const {
@@ -167,8 +169,8 @@ void PendingOutput::check_replaceable() const {
 void PendingOutput::create_partial() const {
     // What lies there under that name is somebody else's: a link into another folder, say.
     constexpr int kNew = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    const int made = kind_ == OutputKind::kFolder ? mkdir(partial_->c_str(), 0777)
-                                                  : open(partial_->c_str(), kNew, 0666);
+    const int made = kind_ == OutputKind::kFolder ? mkdir(partial_.c_str(), 0777)
+                                                  : open(partial_.c_str(), kNew, 0666);
     if (made < 0)
         throw DeviceError(final_.string(),
                           "cannot be created: " + std::generic_category().message(errno));
@@ -178,17 +180,17 @@ void PendingOutput::create_partial() const {
 
 const fs::path& PendingOutput::partial() const {
     if (!created_) create_partial();
-    return *partial_;
+    return partial_;
 }
 
 PendingOutput::~PendingOutput() {
     if (!created_ || (!kept_ && remove_partial())) unlist();
-    if (place_in_list_ < kListedOutputs) static_cast<void>(partial_.release());  // the list has it
+    if (place_in_list_ < kListedOutputs) static_cast<void>(listed_.release());  // the list has it
 }
 
 bool PendingOutput::remove_partial() const noexcept try {
     std::error_code error;
-    kind_ == OutputKind::kFile ? fs::remove(*partial_, error) : fs::remove_all(*partial_, error);
+    kind_ == OutputKind::kFile ? fs::remove(partial_, error) : fs::remove_all(partial_, error);
     return !error;
 } catch (const std::bad_alloc&) {
     return false;
@@ -202,16 +204,16 @@ void PendingOutput::commit() {
     kept_ = true;
     fs::path name = final_;
     try {
-        sync_all_to_disk(*partial_);
+        sync_all_to_disk(partial_);
         if (!put_in_place()) name = put_beside();
     } catch (const fs::filesystem_error& e) {
         std::error_code error;
         const DeviceError failure(
             final_.string(),
             fmt::format("cannot be put in place: {}{}", e.code().message(),
-                        fs::exists(*partial_, error)
+                        fs::exists(partial_, error)
                             ? fmt::format("; what was written is in {}, rename it to keep it",
-                                          partial_->string())
+                                          partial_.string())
                             : ""));
         unlist();
         throw failure;
@@ -232,13 +234,13 @@ void PendingOutput::settle(const fs::path& name) {
     try {
         sync_to_disk(folder_of(name));
         problem = "what it replaces cannot be removed";
-        if (replaced_) remove_own_files(*partial_, is_own_);
+        if (replaced_) remove_own_files(partial_, is_own_);
     } catch (const fs::filesystem_error& e) {
         const DeviceError failure(
             name.string(),
             fmt::format(
                 "is complete, but {}: {}{}", problem, e.code().message(),
-                replaced_ ? fmt::format("; the output before is in {}", partial_->string()) : ""));
+                replaced_ ? fmt::format("; the output before is in {}", partial_.string()) : ""));
         unlist();
         throw failure;
     }
@@ -246,16 +248,16 @@ void PendingOutput::settle(const fs::path& name) {
 
 bool PendingOutput::put_in_place() {
     if (kind_ == OutputKind::kFolder && !force_) rmdir(final_.c_str());  // only if it is empty
-    if (!force_) return rename_to_free_name(*partial_, final_);
+    if (!force_) return rename_to_free_name(partial_, final_);
     if (kind_ == OutputKind::kFolder && fs::is_directory(fs::symlink_status(final_))) {
         if (!foreign_entry(final_, is_own_).empty())
             throw fs::filesystem_error("rename",
                                        std::make_error_code(std::errc::directory_not_empty));
-        replaced_ = exchange_names(*partial_, final_);
+        replaced_ = exchange_names(partial_, final_);
         if (replaced_) return true;
         remove_own_files(final_, is_own_);
     }
-    fs::rename(*partial_, final_);
+    fs::rename(partial_, final_);
     return true;
 }
 
@@ -263,7 +265,7 @@ fs::path PendingOutput::put_beside() const {
     for (int number = 2;; ++number) {
         fs::path name = final_.parent_path() / fmt::format("{}_{}{}", final_.stem().string(),
                                                            number, final_.extension().string());
-        if (rename_to_free_name(*partial_, name)) return name;
+        if (rename_to_free_name(partial_, name)) return name;
     }
 }
 

@@ -38,8 +38,8 @@ class PendingOutput {
     [[nodiscard]] const std::filesystem::path& partial() const;
     /// Waits until the partial output is on the disk (but see NoSync), and moves it to its final
     /// name. \throws DeviceError if that fails; the partial output is then kept, and an output that
-    /// was to be replaced too. So it is for lack of memory. If another program has made a file of
-    /// that name since, and not `force`, what was written is kept as "name_2.ext" or so on. The
+    /// was to be replaced too. \throws std::bad_alloc likewise. If another program has made a file
+    /// of that name since, and not `force`, what was written is kept as "name_2.ext" or so on. The
     /// message says where.
     void commit();
     [[nodiscard]] bool committed() const { return committed_; }
@@ -56,7 +56,7 @@ class PendingOutput {
     void settle(const std::filesystem::path& name);
 
     std::filesystem::path final_;
-    std::unique_ptr<const std::filesystem::path> partial_;
+    std::filesystem::path partial_;
     bool force_;
     OutputKind kind_;
     IsOwnName is_own_;
@@ -64,7 +64,8 @@ class PendingOutput {
     bool kept_ = false;      ///< whatever becomes of this object
     bool replaced_ = false;  ///< partial_ is now the folder that was final_
     bool committed_ = false;
-    std::size_t place_in_list_;  ///< of partial outputs that no message names
+    std::unique_ptr<char[]> listed_;  ///< partial_, for the list, which may outlive this object
+    std::size_t place_in_list_;       ///< of partial outputs that no message names
 };
 
 /// Calls `visit` with the partial path of each output that is neither committed nor removed, nor

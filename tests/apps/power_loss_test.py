@@ -30,25 +30,36 @@ class Item:
     def __init__(self, durable):
         self.durable, self.since = durable, []
 
+    def now(self):
+        return self.after(len(self.since))
+
     def after(self, changes):
+        """The names of a folder after so many of the changes."""
         value = self.durable
-        for change in changes:
+        for change in self.since[:changes]:
             value = change(value)
         return value
 
-    def now(self):
-        return self.after(self.since)
+    def torn(self, part):
+        """The bytes of a file after the part `part()` of each change."""
+        value = self.durable
+        for change in self.since:
+            value = change(value, part())
+        return value
 
     def sync(self):
         self.durable, self.since = self.now(), []
 
 
 def written(offset, data):
-    return lambda old: old[:offset].ljust(offset, b"\0") + data + old[offset + len(data):]
+    def change(old, part=1.0):
+        there = data[:round(part * len(data))]
+        return old[:offset].ljust(offset, b"\0") + there + old[offset + len(there):] if there else old
+    return change
 
 
 def cut(size):
-    return lambda old: old[:size].ljust(size, b"\0")
+    return lambda old, part=1.0: old[:size].ljust(size, b"\0") if part > 0.5 else old
 
 
 def linked(name, inode):
@@ -107,22 +118,23 @@ class Disk:
             folder.since.append({"rename": renamed, "exchange": exchanged}[call](old, new))
 
     def after_crash(self, inode, names, writes):
-        """`names` says how many of the changes of a folder are there, `writes` which of a file."""
+        """`names` says how many of the changes of a folder are there, `writes` which part of one of a file."""
         item = self.items[inode]
         if isinstance(item.durable, bytes):
-            return item.after(change for change in item.since if writes())
-        there = item.after(item.since[:names(len(item.since))])
+            return item.torn(writes)
+        there = item.after(names(len(item.since)))
         return {name: self.after_crash(one, names, writes) for name, one in there.items()}
 
     def now(self):
-        return self.after_crash(self.root, lambda last: last, lambda: True)
+        return self.after_crash(self.root, lambda last: last, lambda: 1)
 
     def crashes(self, rng):
         for names in (lambda last: last, lambda last: 0):
-            for writes in (lambda: True, lambda: False):
+            for writes in (lambda: 1, lambda: 0):
                 yield self.after_crash(self.root, names, writes)
         for _ in range(RANDOM_STATES):
-            yield self.after_crash(self.root, lambda last: rng.randint(0, last), lambda: rng.random() < 0.7)
+            yield self.after_crash(self.root, lambda last: rng.randint(0, last),
+                                   lambda: rng.choice((0, rng.random(), 1)))
 
 
 class PowerLossTest(ProgramTest):

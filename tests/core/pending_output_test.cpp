@@ -138,12 +138,32 @@ TEST(PendingOutputTest, DoesNotWriteThroughALinkThatSomebodyHasPutThere) {
     const TemporaryFolder folder;
     write_text(folder / "precious", "theirs");
     const PendingOutput output(folder / "clip.npy", false);
-    visit_partial_outputs([](const char* path) { fs::create_symlink("precious", path); });
+    visit_partial_outputs([](const char* path) {
+        std::error_code gone;  // what another test has left
+        fs::create_symlink("precious", path, gone);
+    });
     expect_parts(message_of<DeviceError>([&] { return output.partial(); }),
                  {"clip.npy: cannot be created: File exists"});
     const fs::path link = folder / folder.names().front();
     EXPECT_THROW(OutputFile(link, "clip.npy"), DeviceError);
     EXPECT_EQ(read_text(folder / "precious"), "theirs");
+}
+
+TEST(PendingOutputTest, ListsWhatCouldNotBeRemovedOrPutInPlace) {
+    const TemporaryFolder folder;
+    static std::vector<std::string> listed;
+    listed.clear();
+    {
+        const PendingOutput removed(folder / "a.npy", false);
+        write_text(removed.partial(), "ours");
+        const PendingOutput stays(folder / "b.npy", false);
+        fs::remove(stays.partial());
+        fs::create_directories(stays.partial() / "somebody's");
+    }
+    visit_partial_outputs([](const char* path) { listed.emplace_back(path); });
+    ASSERT_EQ(listed.size(), 1U);
+    EXPECT_EQ(fs::path(listed[0]).filename(), folder.names().front());
+    EXPECT_EQ(folder.names().size(), 1U);
 }
 
 TEST(PendingOutputTest, NeverReplacesADevice) {
