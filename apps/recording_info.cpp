@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -71,13 +72,15 @@ std::string_view cause_of(const Gap& gap) {
 ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames) {
     const CameraDescription& camera = reader.session().camera;
     const RecordingReport& report = reader.report();
+    std::map<std::string, std::string> settings;  // the last one of a name holds
+    for (const auto& [name, value] : reader.session().settings) settings[name] = value;
     ordered_json json{{"kind", "recording"},
                       {"camera",
                        {{"transport", camera.transport},
                         {"vendor", camera.vendor},
                         {"model", camera.model},
                         {"serial", camera.serial}}},
-                      {"settings", ordered_json::object()},
+                      {"settings", settings},
                       {"frames", report.frames},
                       {"incomplete", frames.incomplete},
                       {"missing_frames", frames.missing},
@@ -90,7 +93,6 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
                       {"complete", reader.end().has_value()},
                       {"tail_bytes", report.tail_bytes},
                       {"damaged_places", report.damage.size() + report.unlisted_damage}};
-    for (const auto& [name, value] : reader.session().settings) json["settings"][name] = value;
     for (const Gap& gap : frames.listed)
         json["gaps"].push_back(
             {{"before_frame", gap.before_frame}, {"frames", gap.frames}, {"cause", cause_of(gap)}});

@@ -7,6 +7,7 @@ namespace stipple {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using ReadJson = nlohmann::json;  // which finds a key among very many
 using Texts = std::map<std::string, std::string>;
 
 std::string dumped(const Json& json) {
@@ -26,7 +27,7 @@ Json json_of(const CameraDescription& camera) {
             {"warnings", camera.warnings}};
 }
 
-CameraDescription camera_of(const Json& json) {
+CameraDescription camera_of(const ReadJson& json) {
     return {.transport = json.at("transport"),
             .address = json.at("address"),
             .vendor = json.at("vendor"),
@@ -45,7 +46,7 @@ Json json_of(const ClockFit& fit) {
             {"drift_ppm", fit.drift_ppm}, {"spread_ns", fit.spread_ns}};
 }
 
-ClockFit fit_of(const Json& json) {
+ClockFit fit_of(const ReadJson& json) {
     return {.epoch = json.at("epoch"),
             .frames = json.at("frames"),
             .origin_ns = json.at("origin_ns"),
@@ -58,8 +59,8 @@ ClockFit fit_of(const Json& json) {
 template <typename Read>
 auto parsed(std::string_view text, std::string_view place, Read read) {
     try {
-        return read(Json::parse(text));
-    } catch (const Json::exception& e) {
+        return read(ReadJson::parse(text));
+    } catch (const ReadJson::exception& e) {
         throw InputError(place, std::string("is not the JSON of a recording: ").append(e.what()));
     }
 }
@@ -81,7 +82,7 @@ std::string encode_session(const SessionRecord& session) {
 }
 
 SessionRecord decode_session(std::string_view text, std::string_view place) {
-    return parsed(text, place, [](const Json& json) {
+    return parsed(text, place, [](const ReadJson& json) {
         return SessionRecord{.camera = camera_of(json.at("camera")),
                              .settings = json.at("settings").get<CameraSettings>(),
                              .host = json.at("host").get<Texts>(),
@@ -111,21 +112,21 @@ std::string encode_end(const RecordingEnd& end) {
 }
 
 RecordingEnd decode_end(std::string_view text, std::string_view place) {
-    return parsed(text, place, [](const Json& json) {
+    return parsed(text, place, [](const ReadJson& json) {
         RecordingEnd end{.reason = json.at("reason"),
                          .frames = json.at("frames"),
                          .incomplete = json.at("incomplete"),
                          .payload_bytes = json.at("payload_bytes")};
         for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
             end.lost[i] = json.at("lost").at(std::string(kGapCauseNames[i]));
-        const Json& transport = json.at("transport");
+        const ReadJson& transport = json.at("transport");
         end.transport = {.underruns = transport.at("underruns"),
                          .packets_resent = transport.at("packets_resent"),
                          .packets_missing = transport.at("packets_missing"),
                          .socket_drops = transport.at("socket_drops"),
                          .link_faults = transport.at("link_faults"),
                          .size_mismatches = transport.at("size_mismatches")};
-        for (const Json& fit : json.at("clocks")) end.clocks.push_back(fit_of(fit));
+        for (const ReadJson& fit : json.at("clocks")) end.clocks.push_back(fit_of(fit));
         return end;
     });
 }
