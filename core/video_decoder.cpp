@@ -9,11 +9,13 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/display.h>
+#include <libavutil/mem.h>
 }
 
 namespace stipple {
@@ -21,6 +23,7 @@ namespace {
 
 /// Containers announce a number of frames or a duration, which may be off by some frames.
 constexpr double kLeastFractionOfAnnounced = 0.9;
+constexpr std::uint64_t kBytesAPixel = 6;  ///< at most: three numbers of 16 bits
 
 /// Errors that a decoder logs. Some decoders tell of damage nowhere else.
 struct LoggedErrors {
@@ -50,6 +53,13 @@ std::string reason(int error) {
     char text[AV_ERROR_MAX_STRING_SIZE] = {};
     av_strerror(error, text, sizeof(text));
     return text;
+}
+
+/// Some hundred bytes may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of
+/// them: none of its blocks may be larger than its share of what the input may take.
+void limit_blocks(std::uint64_t bytes) {
+    constexpr std::uint64_t kBlocks = 8;  // a frame is several, and references are kept
+    av_max_alloc(most_memory(bytes) / kBlocks);
 }
 
 Owned<AVFormatContext> open_file(const std::string& name) {
@@ -110,6 +120,8 @@ struct VideoDecoder::Impl {
 void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     av_log_set_callback(log_to_decoder);
     name = path.string();
+    const std::uint64_t bytes = input_bytes(path);
+    limit_blocks(bytes);
     file = open_file(name);
     const AVCodec* decoder = nullptr;
     const int index = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
@@ -118,6 +130,11 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
                                    ? "is coded in a way that FFmpeg here cannot decode"
                                    : "holds no video");
     stream = file->streams[index];
+    const AVCodecParameters& announced = *stream->codecpar;
+    if (announced.width > 0 && announced.height > 0)
+        check_memory(kBytesAPixel * static_cast<std::uint64_t>(announced.width) *
+                         static_cast<std::uint64_t>(announced.height),
+                     name, "a frame", bytes);
     codec.reset(avcodec_alloc_context3(decoder));
     avcodec_parameters_to_context(codec.get(), stream->codecpar);
     codec->opaque = &errors;

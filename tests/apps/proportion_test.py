@@ -251,6 +251,11 @@ class ProportionTest(ProgramTest):
         self.write_png("a.png", np.zeros((side, side)))
         self.emulate_refuses("a.png", f"for frames of {side} x {side}", "--max-memory")
 
+    def test_frames_of_videos_are_not_larger_than_small_files_may_be(self):
+        subprocess.run(["ffmpeg", "-v", "error", "-f", "lavfi", "-i", "color=black:s=12000x12000",
+                        "-frames:v", "1", "-c:v", "ffv1", self.folder / "a.mkv"], check=True)
+        self.emulate_refuses("a.mkv", "needs 824 MiB of memory for a frame", "--max-memory")
+
     def test_pictures_are_files(self):
         (self.folder / "frames").mkdir()
         (self.folder / "frames" / "a.png").symlink_to("/dev/zero")

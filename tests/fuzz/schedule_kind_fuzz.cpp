@@ -21,8 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const StreamHeader header{shape, 5000, Calibration{},      named.schedule, named.source,
                                   "",    "",   ColourFilter::kNone};
         const auto section = encode_schedule(header, "fuzz");
-        if (decode_schedule(named.source.kind, section, shape, 0, "fuzz").schedule !=
-            named.schedule)
+        if (decode_schedule({named.source.kind, section}, shape, "fuzz").schedule != named.schedule)
             std::abort();
     } catch (const InputError&) {
         return 0;
