@@ -1,6 +1,7 @@
 #include <arv.h>
 
 #include <string>
+#include <string_view>
 
 #include "capture/aravis/aravis_device.h"
 #include "core/error.h"
@@ -8,17 +9,9 @@
 
 namespace {
 
-/// Of what is not, Aravis (0.8.26) frees memory that it has not taken.
-bool is_well_formed(const std::uint8_t* data, std::size_t size) {
-    constexpr GMarkupParser kNothing{};
-    GMarkupParseContext* context = g_markup_parse_context_new(&kNothing, {}, nullptr, nullptr);
-    const auto* text = reinterpret_cast<const char*>(data);
-    const bool good =
-        g_markup_parse_context_parse(context, text, static_cast<gssize>(size), nullptr) != FALSE &&
-        g_markup_parse_context_end_parse(context, nullptr) != FALSE;
-    g_markup_parse_context_free(context);
-    return good && g_str_has_prefix(std::string(text, size).c_str(), "<?xml version=") != FALSE;
-}
+/// Of XML that begins otherwise, Aravis (0.8.26) may free memory that it has not taken: case 5 of
+/// docs/aravis_xml.md.
+constexpr std::string_view kDeclaration = R"(<?xml version="1.0"?>)";
 
 }  // namespace
 
@@ -26,8 +19,9 @@ bool is_well_formed(const std::uint8_t* data, std::size_t size) {
 /// `capture doctor` and `capture record` do.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace stipple;
+    if (!std::string_view(reinterpret_cast<const char*>(data), size).starts_with(kDeclaration))
+        return 0;
     g_log_set_default_handler([](auto...) {}, nullptr);  // what libxml2 says of each input
-    if (!is_well_formed(data, size)) return 0;
     const MemoryFile xml({data, size});
     arv_set_fake_camera_genicam_filename(xml.path().c_str());
     ArvDevice* native = arv_fake_device_new("fuzz", nullptr);
