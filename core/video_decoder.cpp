@@ -23,7 +23,7 @@ namespace {
 
 /// Containers announce a number of frames or a duration, which may be off by some frames.
 constexpr double kLeastFractionOfAnnounced = 0.9;
-constexpr std::uint64_t kBytesAPixel = 6;  ///< at most: three numbers of 16 bits
+constexpr std::uint64_t kBytesAPixel = 12;  ///< at most: three of 16 bits, and converted
 
 /// Errors that a decoder logs. Some decoders tell of damage nowhere else.
 struct LoggedErrors {
@@ -58,7 +58,7 @@ std::string reason(int error) {
 /// Some hundred bytes may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of
 /// them: none of its blocks may be larger than its share of what the input may take.
 void limit_blocks(std::uint64_t bytes) {
-    constexpr std::uint64_t kBlocks = 8;  // a frame is several, and references are kept
+    constexpr std::uint64_t kBlocks = 2;  // the frame, and what it is converted to
     av_max_alloc(most_memory(bytes) / kBlocks);
 }
 

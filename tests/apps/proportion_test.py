@@ -254,7 +254,7 @@ class ProportionTest(ProgramTest):
     def test_frames_of_videos_are_not_larger_than_small_files_may_be(self):
         subprocess.run(["ffmpeg", "-v", "error", "-f", "lavfi", "-i", "color=black:s=12000x12000",
                         "-frames:v", "1", "-c:v", "ffv1", self.folder / "a.mkv"], check=True)
-        self.emulate_refuses("a.mkv", "needs 824 MiB of memory for a frame", "--max-memory")
+        self.emulate_refuses("a.mkv", "needs 1.6 GiB of memory for a frame", "--max-memory")
 
     def test_pictures_are_files(self):
         (self.folder / "frames").mkdir()
