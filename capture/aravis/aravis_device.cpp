@@ -146,7 +146,8 @@ struct AravisDevice::Impl {
     void set_other(const std::string& place, const char* feature, const std::string& value) const;
 };
 
-AravisDevice::AravisDevice(std::string address) : AravisDevice(address, open_device(address)) {}
+AravisDevice::AravisDevice(const std::string& address)
+    : AravisDevice(address, open_device(address)) {}
 
 AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {

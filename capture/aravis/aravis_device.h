@@ -14,7 +14,7 @@ namespace stipple {
 class AravisDevice {
   public:
     /// `address` as for open_aravis_camera. \throws InputError, DeviceError.
-    explicit AravisDevice(std::string address);
+    explicit AravisDevice(const std::string& address);
     /// Takes `device`, an open ArvDevice. \throws DeviceError.
     AravisDevice(std::string address, void* device);
     ~AravisDevice();
