@@ -88,7 +88,7 @@ class SlotRecorder {
     /// The same where writing has failed: a stream as far as it goes.
     void keep() {
         output_.commit();
-        say_kept(output_.final_path().c_str(), [] { return "what was written before is"; });
+        say_kept(output_.final_path().c_str());
     }
 
     [[nodiscard]] std::int64_t slots() const { return order_.expected().slot; }

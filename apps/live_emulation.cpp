@@ -24,7 +24,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPatience{50};
-constexpr auto kBefore = [] { return "what was written before is"; };
 constexpr double kRateAfterS = 1;
 constexpr std::size_t kMostLateListed = 1000;
 
@@ -159,7 +158,7 @@ void LiveEmulation::put_in_place() {
         failure_ = std::current_exception();
     }
     if (!recording_.keep()) return;  // the message of the failure says where it is
-    say_kept(arguments_.output.c_str(), kBefore);
+    say_kept(arguments_.output.c_str());
 }
 
 void LiveEmulation::finish() {
@@ -175,7 +174,7 @@ void LiveEmulation::finish() {
     if (preview_) preview_->finish();
     if (failure_) std::rethrow_exception(failure_);
     if (end_ && end_->bad_file) {
-        say_kept(arguments_.output.c_str(), kBefore);
+        say_kept(arguments_.output.c_str());
         throw InputError(*end_->bad_file);
     }
     if (end_ && !end_->at_end) throw DeviceError(arguments_.camera.address, end_->reason);

@@ -37,10 +37,12 @@ requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments..
     say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
+constexpr auto kAllBefore = [] { return "what was written before is"; };
+
 /// Says so much of what a run that failed has written to `output` is kept. Where there is no memory
 /// for that, without the name.
-template <typename Text>
-void say_kept(const char* output, Text what) noexcept {
+template <typename Text = decltype(kAllBefore)>
+void say_kept(const char* output, Text what = kAllBefore) noexcept {
     try {
         const std::string line =
             fmt::format("stipple: {}: {} kept\n", terminal_text(output), what());

@@ -85,10 +85,10 @@ void check_size(const Imf::Header& header, const std::vector<std::string>& names
     // DWA packs what Deflate takes by blocks of 8 x 8 pixels.
     const auto packing = header.compression();
     const bool blocks = packing == Imf::DWAA_COMPRESSION || packing == Imf::DWAB_COMPRESSION;
-    check_packed(pixel_bytes * shape.pixels(), std::filesystem::file_size(place), place,
+    const std::uint64_t bytes = std::filesystem::file_size(place);
+    check_packed(pixel_bytes * shape.pixels(), bytes, place,
                  blocks ? 64 * kDeflateRatio : kDeflateRatio);
-    check_memory(sizeof(float) * shape.pixels() * names.size(), place, "the picture",
-                 input_bytes(place));
+    check_memory(sizeof(float) * shape.pixels() * names.size(), place, "the picture", bytes);
 }
 
 void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {

@@ -62,7 +62,7 @@ std::uint64_t input_bytes(const fs::path& file) {
 
 std::uint64_t most_memory(std::uint64_t input_bytes) {
     if (told_bytes > 0) return told_bytes;
-    const std::uint64_t half = machine_memory() / 2;
+    static const std::uint64_t half = machine_memory() / 2;  // asked for at each picture
     return input_bytes < kSmallInput ? std::min(half, kMostOfSmallInputs) : half;
 }
 

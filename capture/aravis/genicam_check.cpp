@@ -60,7 +60,7 @@ class ValueCosts {
     }
 
     /// The first feature whose value takes more than `most`; empty if there is none.
-    [[nodiscard]] std::string dear_feature(double most) {
+    [[nodiscard]] std::string costly_feature(double most) {
         for (const auto& [name, feature] : features_)
             if (cost(name, 0) > most) return name;
         return {};
@@ -93,12 +93,12 @@ void check_genicam(void* device, const std::string& address) {
     constexpr double kMostValues = 1000;
     ArvGc* const description = arv_device_get_genicam(static_cast<ArvDevice*>(device));
     if (description == nullptr) return;
-    const std::string dear = ValueCosts(ARV_DOM_NODE(description)).dear_feature(kMostValues);
-    if (!dear.empty())
+    const std::string costly = ValueCosts(ARV_DOM_NODE(description)).costly_feature(kMostValues);
+    if (!costly.empty())
         throw DeviceError(address, fmt::format("describes itself in a circle: the value of its "
                                                "feature {} depends on itself, or on others in "
                                                "more than {} ways",
-                                               dear, kMostValues));
+                                               costly, kMostValues));
 }
 
 }  // namespace stipple
