@@ -39,7 +39,7 @@ constexpr Row kRows[] = {
 constexpr double kCutOff = 0.00135;
 
 nlohmann::ordered_json figures_json(const CameraFigures& figures) {
-    nlohmann::ordered_json json;
+    auto json = nlohmann::ordered_json::object();  // [] of null aborts where memory runs out
     for (const Row& row : kRows) json[row.key] = figures.*row.figure;
     return json;
 }

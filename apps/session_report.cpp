@@ -11,7 +11,7 @@
 namespace stipple {
 
 nlohmann::ordered_json lost_json(const SessionTotals& totals) {
-    nlohmann::ordered_json json;
+    auto json = nlohmann::ordered_json::object();  // [] of null aborts where memory runs out
     for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
         json[std::string(kGapCauseNames[i])] = totals.lost[i];
     return json;

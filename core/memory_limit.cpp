@@ -35,7 +35,7 @@ std::string option_of(std::uint64_t bytes) {
 }
 
 /// What a file says before anything else, if that is a number.
-std::uint64_t limit_in(const fs::path& file) {
+std::uint64_t limit_in(const std::string& file) {
     std::uint64_t limit = 0;
     return std::ifstream(file) >> limit ? limit : kEndlessInput;
 }
@@ -92,11 +92,12 @@ std::uint64_t machine_memory(const fs::path& proc, const fs::path& groups) {
         if (!second &&
             line.substr(controllers, path - controllers).find("memory") == std::string::npos)
             continue;
-        const fs::path root = second ? groups : groups / "memory";
-        const char* const name = second ? "memory.max" : "memory.limit_in_bytes";
-        // A container may see its own group as the root.
-        for (fs::path group = line.substr(path + 2);; group = group.parent_path()) {
-            least = std::min(least, limit_in(root / group / name));
+        const std::string root = (second ? groups : groups / "memory").string();
+        const char* const name = second ? "/memory.max" : "/memory.limit_in_bytes";
+        // A container may see its own group as the root. Not by fs::path, which libstdc++ 12 frees
+        // twice where memory runs out while it takes a path apart.
+        for (std::string group = line.substr(path + 1);; group.erase(group.rfind('/'))) {
+            least = std::min(least, limit_in(root + group + name));
             if (group.empty()) break;
         }
     }

@@ -3,7 +3,6 @@
 // pattern FAILING_SYNC fails with the number FAILING_ERRNO. With OLD_FILE_SYSTEM renames with flags
 // are not known.
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <fnmatch.h>
 #include <unistd.h>
@@ -12,6 +11,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+
+#include "tests/apps/preloaded.h"
 
 namespace {
 
@@ -29,11 +30,6 @@ std::string path_of(int descriptor) {
     const auto length = readlink(link.c_str(), path.data(), path.size());
     path.resize(length < 0 ? 0 : static_cast<std::size_t>(length));
     return path;
-}
-
-template <typename Function>
-Function* next(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // that a tab ends. Files are named by their inode, for they change their names; bytes are
 // hexadecimal.
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,12 +14,9 @@
 #include <initializer_list>
 #include <string>
 
-namespace {
+#include "tests/apps/preloaded.h"
 
-template <typename Function>
-Function* next(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
+namespace {
 
 void note(std::initializer_list<std::string> words) {
     const char* const journal = std::getenv("DISK_JOURNAL");
@@ -76,19 +72,6 @@ int noted_open(const char* call, const char* path, int flags, mode_t mode) {
 int noted(int result, std::initializer_list<std::string> words) {
     if (result == 0) note(words);
     return result;
-}
-
-ssize_t write_cookie(void* cookie, const char* bytes, std::size_t size) {
-    return write(static_cast<int>(reinterpret_cast<std::intptr_t>(cookie)), bytes, size);
-}
-
-int seek_cookie(void* cookie, off64_t* offset, int whence) {
-    *offset = lseek64(static_cast<int>(reinterpret_cast<std::intptr_t>(cookie)), *offset, whence);
-    return *offset < 0 ? -1 : 0;
-}
-
-int close_cookie(void* cookie) {
-    return close(static_cast<int>(reinterpret_cast<std::intptr_t>(cookie)));
 }
 
 }  // namespace
@@ -163,11 +146,9 @@ int rmdir(const char* path) noexcept {
     return noted(next<int(const char*)>("rmdir")(path), {"remove", path});
 }
 
-/// A stream that calls the write() above, which one of the C library does not.
 FILE* fdopen(int file, const char* mode) noexcept {
     if (mode[0] != 'w') return next<FILE*(int, const char*)>("fdopen")(file, mode);
-    return fopencookie(reinterpret_cast<void*>(static_cast<std::intptr_t>(file)), mode,
-                       {nullptr, write_cookie, seek_cookie, close_cookie});
+    return stream_of(file, mode);
 }
 
 }  // extern "C"

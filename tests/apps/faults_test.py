@@ -2,7 +2,8 @@
 
 After a fault the exit code is 0 and the output is what it would have been, or it is 1 to 3 and one
 message says why; the output before is whole, or the new one; what has a hidden name is told. With
-STIPPLE_LONG each call fails in turn, else some of each kind."""
+STIPPLE_LONG each call fails in turn, of the requests for memory a thousand; with STIPPLE_LONG=every
+all of them, once alone and once with all that follow. Without it some of each kind fail."""
 
 import errno
 import os
@@ -17,6 +18,7 @@ from faults import KILL, SHORT, Fault, FaultyProgram
 from program import DEVICE, INPUT, OK, ProgramTest
 
 LONG = "STIPPLE_LONG" in os.environ
+EVERY = os.environ.get("STIPPLE_LONG") == "every"
 SEED = 1
 OLD = b"the output before" * 100
 FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
@@ -142,6 +144,9 @@ class FaultsTest(FaultyRuns):
             for index, number in enumerate(some(self.calls[kind], 1000 if LONG else 4)):
                 for error in errors if LONG else [errors[index % len(errors)]]:
                     yield Fault(kind, number, error, lasting=error != SHORT and index % 2 == 1)
+        for number in range(1, self.calls["memory"] + 1) if EVERY else ():
+            yield Fault("memory", number, errno.ENOMEM)
+            yield Fault("memory", number, errno.ENOMEM, lasting=True)
         for number in some(self.calls["memory"], 600 if LONG else 8):
             yield Fault("memory", number, errno.ENOMEM, lasting=number % 2 == 0)
         for number in some(self.calls["memory"] // 3, 300 if LONG else 6):  # after the command line
