@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "readout/readout_account.h"
-#include "readout/readout_rate.h"
+#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_rate.h"
 
 namespace stipple {
 

@@ -22,7 +22,7 @@
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
 #include "core/error.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emva1288/camera_figures.h"
+#include "metrics/emva1288/camera_figures.h"
 
 namespace stipple {
 

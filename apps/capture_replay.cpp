@@ -14,7 +14,7 @@
 #include "apps/standard_error.h"
 #include "capture/recording/recording_footage.h"
 #include "core/error.h"
-#include "core/frame_writer.h"
+#include "io/frame_writer.h"
 
 namespace stipple {
 namespace {

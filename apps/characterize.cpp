@@ -20,7 +20,7 @@
 #include "apps/subcommands.h"
 #include "apps/text_file.h"
 #include "core/error.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/slot_emulator.h"
 #include "capture/serve/coded_payload.h"
 #include "capture/serve/frame_source.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

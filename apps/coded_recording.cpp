@@ -19,7 +19,7 @@
 #include "capture/serve/coded_payload.h"
 #include "capture/setting_value.h"
 #include "core/error.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 #include "stream/packet_order.h"
 #include "stream/stream_writer.h"
 

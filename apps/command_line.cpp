@@ -12,8 +12,8 @@
 
 #include "apps/standard_error.h"
 #include "apps/usage_problem.h"
-#include "core/footage_files.h"
 #include "core/suggestion.h"
+#include "io/footage_files.h"
 
 namespace stipple {
 namespace {

@@ -22,12 +22,12 @@
 #include "apps/stream_text.h"
 #include "core/config.h"
 #include "core/error.h"
-#include "core/frame_writer.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "io/frame_writer.h"
 
 namespace stipple {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "apps/decode_file.h"
-#include "decoder/schedule_check.h"
+#include "decoder/schedule_check/schedule_check.h"
 
 namespace stipple {
 

@@ -10,8 +10,8 @@
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
 #include "apps/trial.h"
-#include "core/disk_sync.h"
 #include "core/error.h"
+#include "io/disk_sync.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

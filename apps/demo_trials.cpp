@@ -7,7 +7,7 @@
 
 #include "apps/side_by_side.h"
 #include "apps/trial.h"
-#include "core/frame_writer.h"
+#include "io/frame_writer.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

@@ -21,7 +21,7 @@
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
 #include "apps/waveform_file.h"
-#include "core/frame_writer.h"
+#include "io/frame_writer.h"
 
 namespace stipple {
 namespace {

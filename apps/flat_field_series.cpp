@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/text_file.h"
-#include "core/dn_image.h"
 #include "core/error.h"
+#include "io/dn_image.h"
 #include "readout/coded_sensor.h"
 
 namespace stipple {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "emva1288/camera_figures.h"
-#include "emva1288/series.h"
+#include "metrics/emva1288/camera_figures.h"
+#include "metrics/emva1288/series.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

@@ -15,7 +15,7 @@
 
 #include "apps/interrupt.h"
 #include "core/error.h"
-#include "core/footage_files.h"
+#include "io/footage_files.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

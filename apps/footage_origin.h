@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

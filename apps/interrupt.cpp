@@ -11,7 +11,7 @@
 #include <ctime>
 
 #include "apps/standard_error.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "apps/run_options.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 

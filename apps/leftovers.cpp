@@ -7,8 +7,8 @@
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
 #include "capture/recording/recording_reader.h"
-#include "core/disk_sync.h"
 #include "core/error.h"
+#include "io/disk_sync.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {

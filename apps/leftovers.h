@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/partial_output.h"
+#include "io/partial_output.h"
 
 namespace stipple {
 

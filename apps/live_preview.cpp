@@ -16,8 +16,8 @@
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
-#include "core/disk_sync.h"
 #include "core/parallel.h"
+#include "io/disk_sync.h"
 
 namespace stipple {
 namespace {

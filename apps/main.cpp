@@ -17,11 +17,11 @@
 #include "apps/run_options.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
-#include "core/disk_sync.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
-#include "core/pending_output.h"
+#include "io/disk_sync.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "apps/output_names.h"
 #include "apps/size_argument.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 

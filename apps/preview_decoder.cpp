@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "apps/side_by_side.h"
-#include "core/frame_writer.h"
-#include "core/tone_map.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "io/frame_writer.h"
+#include "io/tone_map.h"
 
 namespace stipple {
 namespace {

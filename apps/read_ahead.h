@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "capture/recording/recording_footage.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/slot_emulator.h"
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {

@@ -9,7 +9,7 @@
 #include "apps/chart.h"
 #include "apps/text_file.h"
 #include "core/error.h"
-#include "core/footage_files.h"
+#include "io/footage_files.h"
 
 namespace stipple {
 namespace {

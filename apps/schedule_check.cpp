@@ -7,7 +7,7 @@
 #include "apps/schedule_commands.h"
 #include "apps/sensor_setup.h"
 #include "core/error.h"
-#include "readout/schedule_check.h"
+#include "readout/schedules/schedule_check.h"
 
 namespace stipple {
 namespace {

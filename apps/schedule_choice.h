@@ -6,7 +6,7 @@
 
 #include "apps/command_line.h"
 #include "core/geometry.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
 
 namespace stipple {
 

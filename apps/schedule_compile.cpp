@@ -8,7 +8,7 @@
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
 #include "apps/text_file.h"
-#include "readout/program_text.h"
+#include "readout/program/program_text.h"
 
 namespace stipple {
 namespace {

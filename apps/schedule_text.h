@@ -6,7 +6,7 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/schedule_figures.h"
+#include "readout/schedules/schedule_figures.h"
 
 namespace stipple {
 

@@ -8,10 +8,10 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/footage_files.h"
 #include "core/input_file.h"
 #include "core/joined.h"
-#include "readout/program_text.h"
+#include "io/footage_files.h"
+#include "readout/program/program_text.h"
 #include "sensor_model/sensor_config.h"
 
 namespace stipple {

@@ -7,9 +7,9 @@
 
 #include "core/colour_filter.h"
 #include "core/geometry.h"
-#include "readout/readout_account.h"
-#include "readout/readout_timing.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
+#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_timing.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "apps/flat_field_series.h"
-#include "core/dn_image.h"
 #include "core/error.h"
 #include "core/input_file.h"
+#include "io/dn_image.h"
 
 namespace stipple {
 namespace {

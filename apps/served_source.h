@@ -6,7 +6,7 @@
 
 #include "apps/sensor_setup.h"
 #include "capture/serve/frame_source.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "core/image_file.h"
-#include "core/pending_output.h"
 #include "core/plane.h"
-#include "core/tone_map.h"
+#include "io/image_file.h"
+#include "io/pending_output.h"
+#include "io/tone_map.h"
 
 namespace stipple {
 namespace {

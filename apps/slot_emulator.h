@@ -9,7 +9,7 @@
 #include "apps/footage_origin.h"
 #include "apps/sensor_setup.h"
 #include "readout/coded_sensor.h"
-#include "readout/readout_account.h"
+#include "readout/timing/readout_account.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 

@@ -10,8 +10,8 @@
 #include "apps/chart.h"
 #include "apps/standard_error.h"
 #include "apps/text_file.h"
-#include "core/disk_sync.h"
 #include "core/error.h"
+#include "io/disk_sync.h"
 
 namespace stipple {
 

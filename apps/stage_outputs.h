@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/frame_writer.h"
 #include "core/geometry.h"
-#include "core/pending_output.h"
 #include "decoder/stage_observer.h"
+#include "io/frame_writer.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 

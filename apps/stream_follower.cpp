@@ -7,7 +7,7 @@
 
 #include "apps/interrupt.h"
 #include "core/error.h"
-#include "core/partial_output.h"
+#include "io/partial_output.h"
 
 namespace stipple {
 namespace {

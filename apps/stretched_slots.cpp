@@ -3,7 +3,7 @@
 #include "apps/provenance.h"
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/readout_account.h"
+#include "readout/timing/readout_account.h"
 
 namespace stipple {
 namespace {

@@ -13,8 +13,8 @@
 #include "apps/progress.h"
 #include "apps/scene_arguments.h"
 #include "apps/subcommands.h"
-#include "core/frame_writer.h"
-#include "core/video_reader.h"
+#include "io/frame_writer.h"
+#include "io/video_reader.h"
 #include "scenes/scene.h"
 
 namespace stipple {

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "io/output_file.h"
 
 namespace stipple {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/pending_output.h"
+#include "io/pending_output.h"
 
 namespace stipple {
 

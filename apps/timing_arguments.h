@@ -5,7 +5,7 @@
 
 #include "apps/command_line.h"
 #include "apps/waveform_file.h"
-#include "readout/readout_account.h"
+#include "readout/timing/readout_account.h"
 
 namespace stipple {
 

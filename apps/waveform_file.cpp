@@ -4,8 +4,8 @@
 #include <span>
 
 #include "apps/interrupt.h"
-#include "core/output_file.h"
-#include "readout/waveform.h"
+#include "io/output_file.h"
+#include "readout/timing/waveform.h"
 
 namespace stipple {
 

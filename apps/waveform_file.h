@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/pending_output.h"
-#include "readout/readout_account.h"
+#include "io/pending_output.h"
+#include "readout/timing/readout_account.h"
 
 namespace stipple {
 

@@ -4,10 +4,16 @@
 #include <span>
 #include <string_view>
 
-#include "core/footage_reader.h"
 #include "core/geometry.h"
 
 namespace stipple {
+
+/// How the numbers of a footage file map to light.
+enum class Transfer {
+    kLinear,   ///< proportional to light
+    kGamma22,  ///< light = value^2.2
+    kSrgb,     ///< IEC 61966-2-1
+};
 
 /// Largest frame that the sample stream can carry (docs/stream_format.md).
 inline constexpr std::uint64_t kMaxFrameSide = 65535;

@@ -5,10 +5,10 @@
 
 #include "core/config.h"
 #include "core/memory_limit.h"
-#include "decoder/collaborative.h"
+#include "decoder/best/collaborative.h"
 #include "decoder/decode_method.h"
-#include "decoder/motion_tv.h"
-#include "decoder/portz2013.h"
+#include "decoder/fast/motion_tv.h"
+#include "decoder/portz2013/portz2013.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {

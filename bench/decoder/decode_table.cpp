@@ -15,11 +15,11 @@
 #include "apps/command_line.h"
 #include "apps/names_of.h"
 #include "apps/number_check.h"
-#include "core/npy_writer.h"
 #include "decoder/decode_options.h"
+#include "io/npy_writer.h"
 #include "scenes/scene.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

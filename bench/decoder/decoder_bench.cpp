@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "decoder/fast/motion_tv.h"
 #include "decoder/measurements.h"
-#include "decoder/motion_tv.h"
-#include "decoder/nearest_samples.h"
+#include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
 #include "scenes/scene.h"

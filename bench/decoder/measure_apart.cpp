@@ -10,12 +10,12 @@
 
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
-#include "core/footage_reader.h"
-#include "core/npy_writer.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "io/footage_reader.h"
+#include "io/npy_writer.h"
 #include "metrics/video_quality.h"
 
 namespace stipple {

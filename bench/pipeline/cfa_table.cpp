@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/footage_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

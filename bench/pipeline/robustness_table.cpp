@@ -11,13 +11,13 @@
 
 #include "core/error.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_shift.h"
+#include "decoder/schedule_check/schedule_shift.h"
 #include "metrics/video_quality.h"
 #include "readout/coded_sensor.h"
-#include "readout/tiled_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "apps/chart.h"
 #include "core/config.h"
-#include "readout/hardware_tiled.h"
-#include "readout/readout_rate.h"
-#include "readout/tiled_schedule.h"
+#include "readout/schedules/hardware_tiled.h"
+#include "readout/schedules/tiled_schedule.h"
+#include "readout/timing/readout_rate.h"
 #include "tests/pipeline/clip.h"
-#include "tests/readout/sensor_timing.h"
+#include "tests/readout/timing/sensor_timing.h"
 
 namespace stipple {
 namespace {

@@ -2,7 +2,7 @@
 // columns, and a scattered tile of 64 x 64 pixels.
 #include <benchmark/benchmark.h>
 
-#include "readout/hardware_tiled.h"
+#include "readout/schedules/hardware_tiled.h"
 
 namespace stipple {
 namespace {

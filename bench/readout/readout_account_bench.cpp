@@ -2,7 +2,7 @@
 // `random`: a slot counted and timed row by row, and the account of a steady slot that is known.
 #include <benchmark/benchmark.h>
 
-#include "readout/readout_account.h"
+#include "readout/timing/readout_account.h"
 
 namespace stipple {
 namespace {

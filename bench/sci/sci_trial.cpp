@@ -8,16 +8,16 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/footage_reader.h"
 #include "core/philox.h"
 #include "decoder/reconstruct.h"
+#include "io/footage_reader.h"
 #include "metrics/video_quality.h"
 #include "readout/coded_sensor.h"
 #include "readout/schedules/volume_schedule.h"
 #include "scenes/scene.h"
 #include "sensor_model/sensor_config.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

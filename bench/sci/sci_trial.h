@@ -6,8 +6,8 @@
 
 #include "core/exposure_schedule.h"
 #include "core/flux_video.h"
-#include "core/npy_volume.h"
 #include "decoder/decode_options.h"
+#include "io/npy_volume.h"
 
 namespace stipple {
 

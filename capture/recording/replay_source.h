@@ -8,7 +8,7 @@
 
 #include "capture/camera.h"
 #include "capture/recording/recording_reader.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "capture/serve/frame_source.h"
-#include "core/footage_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 

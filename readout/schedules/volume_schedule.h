@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/exposure_schedule.h"
-#include "core/npy_volume.h"
+#include "io/npy_volume.h"
 
 namespace stipple {
 

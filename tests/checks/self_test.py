@@ -19,7 +19,7 @@ from tree import Tree
 TABLE = """| module | may include |
 |---|---|
 | core | nothing |
-| stream, sensor_model, metrics, emva1288, scenes | core |
+| io, stream, sensor_model, metrics, scenes | core |
 | decoder | stream, core |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |

@@ -5,8 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-LIBRARIES = ("core", "stream", "sensor_model", "readout", "decoder", "capture", "metrics",
-             "emva1288", "scenes")
+LIBRARIES = ("core", "io", "stream", "sensor_model", "readout", "decoder", "capture", "metrics",
+             "scenes")
 MODULES = (*LIBRARIES, "apps")
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
 

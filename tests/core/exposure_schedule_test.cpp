@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/fnv1a.h"
 #include "tests/support/paper_schedule.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -8,12 +8,12 @@
 #include "core/error.h"
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_shift.h"
-#include "readout/full_schedule.h"
-#include "readout/tiled_schedule.h"
+#include "decoder/schedule_check/schedule_shift.h"
+#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/decoder/recordings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

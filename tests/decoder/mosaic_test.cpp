@@ -11,11 +11,11 @@
 
 #include "core/parallel.h"
 #include "decoder/measurements.h"
-#include "decoder/nearest_samples.h"
+#include "decoder/naive/nearest_samples.h"
 #include "decoder/reconstruct.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/decoder/recordings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

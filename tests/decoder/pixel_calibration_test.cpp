@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decoder/fast/motion_tv.h"
 #include "decoder/measurements.h"
-#include "decoder/motion_tv.h"
-#include "decoder/nearest_samples.h"
+#include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 #include "tests/decoder/recordings.h"

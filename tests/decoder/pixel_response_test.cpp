@@ -6,7 +6,7 @@
 
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

@@ -9,11 +9,11 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
-#include "decoder/nearest_samples.h"
+#include "decoder/naive/nearest_samples.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/decoder/recordings.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

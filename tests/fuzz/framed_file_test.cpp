@@ -4,7 +4,7 @@
 
 #include "capture/recording/recording_reader.h"
 #include "core/input_file.h"
-#include "core/png_chunks.h"
+#include "io/png_chunks.h"
 #include "stream/stream_reader.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/png_pieces.h"

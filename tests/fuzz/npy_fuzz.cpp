@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/error.h"
-#include "core/npy_header.h"
+#include "io/npy_header.h"
 
 namespace stipple {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cstdlib>
 
-#include "core/dn_image.h"
 #include "core/error.h"
-#include "core/footage_reader.h"
-#include "core/image_file.h"
+#include "io/dn_image.h"
+#include "io/footage_reader.h"
+#include "io/image_file.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace stipple {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "readout/program_text.h"
+#include "readout/program/program_text.h"
 
 /// A memory image that is accepted comes back from its own text, and so does the schedule in it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,8 +5,8 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
 #include "readout/schedules/code_schedule.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace stipple {

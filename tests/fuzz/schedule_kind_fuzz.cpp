@@ -4,7 +4,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "stream/schedule_codec.h"
 #include "tests/fuzz/memory_file.h"
 

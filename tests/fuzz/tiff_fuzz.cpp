@@ -1,4 +1,4 @@
-#include "core/tiff_file.h"
+#include "io/tiff_file.h"
 #include "tests/fuzz/picture_fuzz.h"
 
 namespace stipple {

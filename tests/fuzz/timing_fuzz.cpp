@@ -6,10 +6,10 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/full_readout.h"
-#include "readout/full_schedule.h"
-#include "readout/readout_timing.h"
-#include "readout/slot_readout.h"
+#include "readout/schedules/full_schedule.h"
+#include "readout/timing/full_readout.h"
+#include "readout/timing/readout_timing.h"
+#include "readout/timing/slot_readout.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace stipple {

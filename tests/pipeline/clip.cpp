@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "core/config.h"
-#include "core/footage_reader.h"
 #include "decoder/measurements.h"
+#include "io/footage_reader.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "sensor_model/colour_mosaic.h"
 #include "sensor_model/sensor_config.h"
 #include "stream/stream_writer.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/support/footage_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
-#include "readout/schedule_catalogue.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/fnv1a.h"
 #include "tests/support/source_tree.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

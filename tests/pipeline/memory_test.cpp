@@ -7,8 +7,8 @@
 
 #include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

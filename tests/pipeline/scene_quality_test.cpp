@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scenes/scene.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -1,10 +1,10 @@
 // A wrong schedule is found out on real footage.
 #include <gtest/gtest.h>
 
-#include "decoder/schedule_check.h"
-#include "readout/tiled_schedule.h"
-#include "tests/core/temporary_folder.h"
+#include "decoder/schedule_check/schedule_check.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "core/parallel.h"
 #include "scenes/scene.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/source_tree.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

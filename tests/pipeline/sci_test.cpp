@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "core/npy_writer.h"
-#include "tests/core/temporary_folder.h"
+#include "io/npy_writer.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -14,13 +14,13 @@
 #include "core/flux_video.h"
 #include "core/parallel.h"
 #include "readout/column_adc.h"
-#include "readout/full_schedule.h"
-#include "readout/tiled_schedule.h"
+#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "sensor_model/pixel_array.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/fnv1a.h"
 #include "tests/support/source_tree.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -4,9 +4,9 @@
 #include <csignal>
 
 #include "core/error.h"
-#include "core/pending_output.h"
-#include "tests/core/temporary_folder.h"
+#include "io/pending_output.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "tests/core/temporary_folder.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

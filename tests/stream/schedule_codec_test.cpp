@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "stream/crc32c.h"
 #include "stream/due_count.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -10,9 +10,9 @@
 #include "stream/header_codec.h"
 #include "stream/little_endian.h"
 #include "stream/packet_codec.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/stream/memory_file.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 

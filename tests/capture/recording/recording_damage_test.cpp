@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "capture/host_clock.h"
 #include "core/error.h"
-#include "core/npy_writer.h"
+#include "io/npy_writer.h"
 #include "tests/capture/recording/recordings.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

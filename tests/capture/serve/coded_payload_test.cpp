@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "core/error.h"
-#include "tests/core/temporary_folder.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -7,7 +7,7 @@
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/full_schedule.h"
-#include "readout/schedule_catalogue.h"
-#include "tests/core/temporary_folder.h"
+#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/schedule_catalogue.h"
 #include "tests/readout/gapped_schedule.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {

@@ -1,0 +1,163 @@
+#include "decoder/best/block_matching.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "core/parallel.h"
+#include "decoder/best/block_kernels.h"
+
+namespace stipple {
+namespace {
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+struct BlockPlace {
+    int slot = 0;
+    int row = 0;
+    int col = 0;
+};
+
+struct ImageSize {
+    int slots = 0;
+    FrameShape shape;
+};
+
+/// Order (slot, row, col), and two values more, which a block in the last corner reads beyond it.
+std::vector<float> first_planes(const FluxVideo& video) {
+    const std::size_t pixels = video.shape().pixels();
+    std::vector<float> image;
+    image.reserve(index(video.slots()) * pixels + 2);
+    for (int slot = 0; slot < video.slots(); ++slot) {
+        const auto plane = video.frame(slot).first(pixels);
+        image.insert(image.end(), plane.begin(), plane.end());
+    }
+    image.resize(image.size() + 2);
+    return image;
+}
+
+/// Finds groups, one after the other.
+class Matcher {
+  public:
+    Matcher(std::span<const float> image, const ImageSize& size,
+            std::span<const MotionField> motion, const MatchingOptions& options)
+        : image_(image),
+          shape_(size.shape),
+          slots_(size.slots),
+          motion_(motion),
+          options_(options) {}
+
+    [[nodiscard]] BlockGroup group(const BlockPlace& reference) {
+        reference_ = reference;
+        offsets_.assign(1, {});  // first among equals, so that every group has its reference
+        voxels_.assign(1, static_cast<std::uint32_t>(voxel(reference)));
+        add_around(reference, options_.own_radius);
+        for (const int step : {1, -1}) follow(step);
+        differences_.resize(voxels_.size());
+        squared_differences(image_.data(), &image_[voxel(reference)], voxels_, shape_.cols,
+                            differences_.data());
+        return most_similar();
+    }
+
+  private:
+    [[nodiscard]] std::size_t voxel(const BlockPlace& at) const {
+        return (index(at.slot) * index(shape_.rows) + index(at.row)) * index(shape_.cols) +
+               index(at.col);
+    }
+
+    void add_around(const BlockPlace& centre, int radius) {
+        const auto last = [&](int at, int side) {
+            return std::min(at + radius, side - kBlockSide);
+        };
+        const int first_row = std::max({centre.row - radius, reference_.row - kMaxBlockRows, 0});
+        const int last_row =
+            std::min(last(centre.row, shape_.rows), reference_.row + kMaxBlockRows);
+        for (int row = first_row; row <= last_row; ++row)
+            for (int col = std::max(centre.col - radius, 0); col <= last(centre.col, shape_.cols);
+                 ++col) {
+                if (centre.slot == reference_.slot && row == reference_.row &&
+                    col == reference_.col)
+                    continue;
+                voxels_.push_back(static_cast<std::uint32_t>(voxel({centre.slot, row, col})));
+                offsets_.push_back(
+                    {.slots = static_cast<std::int16_t>(centre.slot - reference_.slot),
+                     .rows = static_cast<std::int16_t>(row - reference_.row),
+                     .cols = static_cast<std::int16_t>(col - reference_.col)});
+            }
+    }
+
+    /// Adds the blocks around the path that motion takes the middle of the reference along.
+    void follow(int step) {
+        constexpr int kUnit = MotionField::kShiftsPerPixel;
+        const auto pixel = [](int position, int side) {
+            return std::clamp((position + kUnit / 2) / kUnit, 0, side - 1);
+        };
+        int row = (reference_.row + kBlockSide / 2) * kUnit;
+        int col = (reference_.col + kBlockSide / 2) * kUnit;
+        BlockPlace middle = reference_;
+        for (int i = 0; i < options_.slots; ++i) {
+            middle.row = pixel(row, shape_.rows);
+            middle.col = pixel(col, shape_.cols);
+            for (const MotionField& field : motion_)
+                if (field.step == step) {
+                    row += field.row_shift[voxel(middle)];
+                    col += field.col_shift[voxel(middle)];
+                }
+            middle.slot += step;
+            if (middle.slot < 0 || middle.slot >= slots_) return;
+            add_around({middle.slot, pixel(row, shape_.rows) - kBlockSide / 2,
+                        pixel(col, shape_.cols) - kBlockSide / 2},
+                       options_.path_radius);
+        }
+    }
+
+    [[nodiscard]] BlockGroup most_similar() {
+        order_.clear();
+        order_.reserve(differences_.size());
+        for (std::size_t i = 0; i < differences_.size(); ++i)
+            order_.emplace_back(differences_[i], static_cast<std::uint32_t>(i));
+        const auto count = std::min<std::size_t>(order_.size(), kGroupBlocks);
+        std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
+                          order_.end());
+        BlockGroup group;
+        for (std::size_t i = 0; i < group.size(); ++i)
+            group[i] = offsets_[order_[i % count].second];
+        return group;
+    }
+
+    std::span<const float> image_;
+    FrameShape shape_;
+    int slots_;
+    std::span<const MotionField> motion_;
+    MatchingOptions options_;
+    BlockPlace reference_;
+    std::vector<BlockOffset> offsets_;
+    std::vector<std::uint32_t> voxels_;
+    std::vector<float> differences_;
+    std::vector<std::pair<float, std::uint32_t>> order_;
+};
+
+}  // namespace
+
+BlockGroups match_blocks(const FluxVideo& video, const BlockGrid& grid,
+                         std::span<const MotionField> motion, const MatchingOptions& options) {
+    const FrameShape shape = grid.shape;
+    assert(shape.rows >= kBlockSide && shape.cols >= kBlockSide);
+    const std::vector<float> image = first_planes(video);
+    assert(image.size() <= UINT32_MAX);
+    BlockGroups result{.grid = grid,
+                       .groups = std::vector<BlockGroup>(index(video.slots()) * index(grid.rows()) *
+                                                         index(grid.cols()))};
+    parallel_for(0, video.slots() * grid.rows(), [&](int i) {
+        Matcher matcher(image, {video.slots(), shape}, motion, options);
+        const BlockPlace row{.slot = i / grid.rows(), .row = grid.row(i % grid.rows()), .col = 0};
+        for (int col = 0; col < grid.cols(); ++col)
+            result.groups[index(i) * index(grid.cols()) + index(col)] =
+                matcher.group({row.slot, row.row, grid.col(col)});
+    });
+    return result;
+}
+
+}  // namespace stipple

@@ -1,0 +1,200 @@
+#include "decoder/best/collaborative.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "decoder/best/collaborative_filter.h"
+#include "decoder/best/stabilised_light.h"
+#include "decoder/data_prox.h"
+#include "decoder/fast/censored_samples.h"
+#include "decoder/measurements.h"
+#include "decoder/pixel_response.h"
+#include "decoder/sampling_operator.h"
+
+namespace stipple {
+namespace {
+
+constexpr double kStartShare = 0.15;  // of all work; for the checkpoint
+constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
+constexpr float kMaxSigma = 10;
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+class CollaborativeSolver {
+  public:
+    CollaborativeSolver(Measurements& measurements, const SampleNoise& noise,
+                        const CollaborativeOptions& options, FluxVideo& x)
+        : measurements_(measurements),
+          noise_(noise),
+          options_(options),
+          scale_(scale_for(noise, options)),
+          last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
+                                 options.least_sigma, kMaxSigma)),
+          first_sigma_(std::max(options.first_sigma, last_sigma_)),
+          x_(x),
+          censored_(measurements, noise),
+          sampled_(measurements.sum),
+          noisy_(x.slots(), x.shape()),
+          filtered_(x.slots(), x.shape()),
+          pilot_(x.slots(), x.shape()),
+          runs_(site_runs(x.shape())),
+          step_(index(x.slots()) * x.shape().pixels()) {}
+
+    /// The estimate becomes the filtered one; then, but in the last iteration, it is drawn to the
+    /// samples.
+    void iterate(int iteration) {
+        const float sigma = sigma_of(iteration);
+        find_groups(iteration);
+        filter_groups(noisy_, pilot_, groups_, sigma, filtered_);
+        std::swap(filtered_, pilot_);
+        const bool last = iteration + 1 == options_.iterations;
+        if (!last) extrapolate();
+        for_each_slot([&](int slot) {
+            restore_light(std::as_const(last ? pilot_ : filtered_).frame(slot), shape().planes,
+                          scale_, x_.frame(slot));
+        });
+        refresh_variances(measurements_, noise_, x_.data());
+        if (last) return;
+        censored_.expect(x_.data(), sampled_);
+        feed_back();
+        draw_to_samples(sigma);
+    }
+    void restore_samples() { measurements_.sum = sampled_; }
+
+  private:
+    [[nodiscard]] FrameShape shape() const { return x_.shape(); }
+
+    static RootScale scale_for(const SampleNoise& noise, const CollaborativeOptions& options) {
+        const float offset =
+            std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
+                       options.light_offset, kMaxOffset);
+        return {.offset = offset, .least = std::max(options.least_light, -offset)};
+    }
+
+    template <typename Body>
+    void for_each_slot(const Body& body) {
+        parallel_for(0, x_.slots(), body);
+    }
+
+    /// In steps of 2^-20, so that its bits do not hang on a library's power.
+    [[nodiscard]] float sigma_of(int iteration) const {
+        const double done = static_cast<double>(iteration) / std::max(1, options_.iterations - 1);
+        const double first = static_cast<double>(first_sigma_);
+        const double sigma = first * std::pow(static_cast<double>(last_sigma_) / first, done);
+        return static_cast<float>(std::round(sigma * 0x1p20) * 0x1p-20);
+    }
+
+    void find_groups(int iteration) {
+        if (iteration % options_.motion_every == 0 &&
+            std::min(shape().rows, shape().cols) >= kMinMotionSide)
+            motion_ = estimate_motion(x_, {});
+        for_each_slot([&](int slot) {
+            stabilise(std::as_const(x_).frame(slot), shape().planes, scale_, noisy_.frame(slot));
+        });
+        if (iteration == 0) pilot_ = noisy_;
+        if (iteration % options_.match_every != 0) return;
+        // The grid moves, so that the seams between blocks do not stay in one place.
+        const int step = options_.block_step;
+        const int offset = iteration / options_.match_every * (step / 2 + 1) % step;
+        const bool near = measurements_.mosaic && iteration < options_.mosaic.near_iterations;
+        groups_ = match_blocks(pilot_, {shape(), step, offset}, motion_,
+                               near ? options_.mosaic.near : options_.matching);
+    }
+
+    /// Replaces the filtered estimate before the last one: the last is led on by a share of what
+    /// separates the two (heavy ball; Polyak, USSR Comput. Math. Math. Phys. 4(5), 1964), as
+    /// voxels without samples follow slowly.
+    void extrapolate() {
+        for_each_slot([&](int slot) {
+            const auto now = std::as_const(pilot_).frame(slot);
+            const auto before = filtered_.frame(slot);
+            for (std::size_t i = 0; i < now.size(); ++i)
+                before[i] = now[i] + options_.momentum * (now[i] - before[i]);
+        });
+    }
+
+    /// What the filter has taken from the samples is added to them, as in generalised alternating
+    /// projection (Liao et al., SIAM J. Imaging Sci. 7(2), 2014), but fades, so that noise does
+    /// not come back with it.
+    void feed_back() {
+        FluxVideo& explained = noisy_;  // which is not needed until the next iteration
+        sample(measurements_, x_.data(), explained.data());
+        for_each_slot([&](int slot) {
+            const std::size_t begin = index(slot) * shape().sites();
+            for (std::size_t i = begin; i < begin + shape().sites(); ++i) {
+                const bool saturated = (measurements_.state[i] & Measurements::kSaturated) != 0;
+                float residual = sampled_[i] - explained.data()[i];
+                if (saturated) residual = std::max(residual, 0.0F);
+                float& sum = measurements_.sum[i];
+                sum = sampled_[i] + options_.feedback_kept * (sum - sampled_[i]) +
+                      options_.feedback * residual;
+            }
+        });
+    }
+
+    void draw_to_samples(float sigma) {
+        for_each_slot([&](int slot) {
+            const std::size_t pixels = shape().pixels();
+            const float share = sigma * sigma / static_cast<float>(shape().planes);
+            const auto light = std::as_const(x_).frame(slot);
+            for (std::size_t i = 0; i < pixels; ++i) {
+                float sum = 0;
+                for (std::size_t site = i; site < light.size(); site += pixels) sum += light[site];
+                step_[index(slot) * pixels + i] = share * sum + sigma * sigma * scale_.offset;
+            }
+        });
+        parallel_for(0, static_cast<int>(runs_.size()),
+                     [&](int i) { data_prox(measurements_, runs_[index(i)], step_, x_.data()); });
+    }
+
+    Measurements& measurements_;
+    const SampleNoise& noise_;
+    const CollaborativeOptions& options_;
+    RootScale scale_;
+    float last_sigma_;
+    float first_sigma_;
+    FluxVideo& x_;
+    CensoredSamples censored_;
+    std::vector<float> sampled_;  ///< sums of the samples, without feedback
+    FluxVideo noisy_;
+    FluxVideo filtered_;
+    FluxVideo pilot_;  ///< the last filtered estimate
+    std::vector<SiteRun> runs_;
+    std::vector<float> step_;
+    std::vector<MotionField> motion_;
+    BlockGroups groups_;
+};
+
+CollaborativeOptions options_for(const Measurements& measurements, CollaborativeOptions options) {
+    if (!measurements.mosaic) return options;
+    options.iterations = options.mosaic.iterations;
+    options.first_sigma = options.mosaic.first_sigma;
+    return options;
+}
+
+}  // namespace
+
+std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
+                                              const CollaborativeOptions& all_options,
+                                              const Checkpoint& checkpoint) {
+    const CollaborativeOptions options = options_for(measurements, all_options);
+    auto x = decode_motion_tv(measurements, noise, options.start,
+                              [&](double fraction) { return checkpoint(kStartShare * fraction); });
+    if (!x || std::min(x->shape().rows, x->shape().cols) < kBlockSide) return x;
+    CollaborativeSolver solver(measurements, noise, options, *x);
+    bool stopped = false;
+    for (int i = 0; i < options.iterations && !stopped; ++i) {
+        solver.iterate(i);
+        stopped = !checkpoint(kStartShare + (1 - kStartShare) * (i + 1) / options.iterations);
+    }
+    solver.restore_samples();
+    if (stopped) return {};
+    return x;
+}
+
+}  // namespace stipple

@@ -1,0 +1,132 @@
+#include "decoder/best/collaborative_filter.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "decoder/best/block_kernels.h"
+
+namespace stipple {
+namespace {
+
+std::size_t index(int value) {
+    return static_cast<std::size_t>(value);
+}
+
+/// Cuts [0, count) into equal bands, as many as can be at least `least` long, and at least one.
+class Bands {
+  public:
+    Bands(int count, int least) : count_(count), bands_(std::max(1, count / least)) {}
+    [[nodiscard]] int size() const { return bands_; }
+    [[nodiscard]] int begin(int band) const { return count_ * band / bands_; }
+
+  private:
+    int count_;
+    int bands_;
+};
+
+int farthest_slots(const BlockGroups& groups) {
+    int farthest = 0;
+    for (const BlockGroup& group : groups.groups)
+        for (const BlockOffset& block : group)
+            farthest = std::max(farthest, std::abs(static_cast<int>(block.slots)));
+    return farthest;
+}
+
+/// Adds up what the groups say. Groups reach into the bands beside their own but no further, so of
+/// the bands of rows and of slots every other one can be worked on at the same time, in any order.
+class Aggregation {
+  public:
+    Aggregation(const FluxVideo& noisy, const FluxVideo& pilot, const BlockGroups& groups,
+                float sigma, FluxVideo& sum)
+        : noisy_(noisy),
+          pilot_(pilot),
+          groups_(groups),
+          sigma_(sigma),
+          sum_(sum),
+          weight_(noisy.slots(), noisy.shape()) {}
+
+    void run() {
+        const BlockGrid& grid = groups_.grid;
+        const Bands rows(grid.rows(), (2 * kMaxBlockRows + kBlockSide) / grid.step + 2);
+        const Bands slots(noisy_.slots(), std::max(1, 2 * farthest_slots(groups_)));
+        for (const int first_slots : {0, 1})
+            for (const int first_rows : {0, 1}) {
+                const int of_rows = (rows.size() - first_rows + 1) / 2;
+                const int of_slots = (slots.size() - first_slots + 1) / 2;
+                parallel_for(0, of_rows * of_slots, [&](int i) {
+                    const int row_band = first_rows + 2 * (i % of_rows);
+                    const int slot_band = first_slots + 2 * (i / of_rows);
+                    for (int slot = slots.begin(slot_band); slot < slots.begin(slot_band + 1);
+                         ++slot)
+                        for (int row = rows.begin(row_band); row < rows.begin(row_band + 1); ++row)
+                            filter_row(slot, row);
+                });
+            }
+    }
+
+    /// Sums become means.
+    void divide() {
+        parallel_for(0, sum_.slots(), [&](int slot) {
+            const auto weight = std::as_const(weight_).frame(slot);
+            const auto value = sum_.frame(slot);
+            for (std::size_t i = 0; i < value.size(); ++i) value[i] /= weight[i];
+        });
+    }
+
+  private:
+    void filter_row(int slot, int row) {
+        const BlockGrid& grid = groups_.grid;
+        const FrameShape shape = noisy_.shape();
+        for (int col = 0; col < grid.cols(); ++col) {
+            std::size_t voxel = index(slot) * shape.sites() +
+                                index(grid.row(row)) * index(shape.cols) + index(grid.col(col));
+            const BlockGroup& group = groups_.group(slot, row, col);
+            if (shape.planes == 3) {
+                filter_group({frames_at(voxel, group), frames_at(voxel + shape.pixels(), group),
+                              frames_at(voxel + 2 * shape.pixels(), group)},
+                             sigma_);
+                continue;
+            }
+            for (int plane = 0; plane < shape.planes; ++plane, voxel += shape.pixels())
+                filter_group(frames_at(voxel, group), sigma_);
+        }
+    }
+
+    /// `voxel` is the first of the reference block in a plane.
+    GroupFrames frames_at(std::size_t voxel, const BlockGroup& group) {
+        const FrameShape shape = noisy_.shape();
+        GroupFrames frames{.noisy = &noisy_.data()[voxel],
+                           .pilot = &pilot_.data()[voxel],
+                           .sum = &sum_.data()[voxel],
+                           .weight = &weight_.data()[voxel],
+                           .cols = shape.cols};
+        for (std::size_t k = 0; k < group.size(); ++k)
+            frames.block[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
+                              frames.cols * group[k].rows + group[k].cols;
+        return frames;
+    }
+
+    const FluxVideo& noisy_;
+    const FluxVideo& pilot_;
+    const BlockGroups& groups_;
+    float sigma_;
+    FluxVideo& sum_;
+    FluxVideo weight_;
+};
+
+}  // namespace
+
+void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const BlockGroups& groups,
+                   float sigma, FluxVideo& filtered) {
+    assert(pilot.voxels() == noisy.voxels() && filtered.voxels() == noisy.voxels());
+    std::ranges::fill(filtered.data(), 0.0F);
+    Aggregation aggregation(noisy, pilot, groups, sigma, filtered);
+    aggregation.run();
+    aggregation.divide();
+}
+
+}  // namespace stipple

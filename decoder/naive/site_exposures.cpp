@@ -1,0 +1,27 @@
+#include "decoder/naive/site_exposures.h"
+
+#include "decoder/measurements.h"
+
+namespace stipple {
+
+void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
+    list.clear();
+    SiteExposure chains[2];  // where exposures interleave, two are under way at once
+    for (int slot = 0; slot < m.slots; ++slot) {
+        const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
+        const std::uint8_t state = m.state[i];
+        const auto chain = static_cast<std::uint8_t>(state & Measurements::kSecond);
+        SiteExposure& e = chains[chain != 0 ? 1 : 0];
+        if ((state & Measurements::kFirst) != 0) e = {.first_slot = slot, .chain = chain};
+        if ((state & Measurements::kOpen) != 0) ++e.open_slots;
+        if ((state & Measurements::kLast) == 0) continue;
+        const auto n = static_cast<float>(e.open_slots);
+        e.last_slot = slot;
+        e.saturated = (state & Measurements::kSaturated) != 0;
+        e.light_per_slot = m.sum[i] / n;
+        e.variance_per_slot = m.variance[i] / (n * n);
+        list.push_back(e);
+    }
+}
+
+}  // namespace stipple

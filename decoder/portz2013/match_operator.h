@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "decoder/portz2013/exposure_table.h"
+#include "decoder/portz2013/patch_matches.h"
+
+namespace stipple {
+
+/// K = [A; gamma F] of Eq. 4 of Portz et al. 2013, never stored: its rows are found anew from the
+/// match lists whenever it is applied. For each match j of a reference patch i,
+///   A: for each sample of patch j, w_ij tau_max / tau times the sum of x over the sample's open
+///      slots, at the place and time of patch i; with b = w_ij tau_max / tau times the sample.
+///      Rows that reach beyond the block are left out;
+///   gamma F: gamma w_ij (x_i - x_j) for each voxel of the patches.
+/// x has the order (plane, row, col, slot): what a row needs lies side by side. All results are the
+/// same bits for any number of threads: the groups are dealt to a fixed number of parts, whose sums
+/// are added in a fixed order.
+class MatchOperator {
+  public:
+    /// `table` and `lists` must outlive it.
+    MatchOperator(const ExposureTable& table, std::span<const MatchList> lists, float gamma);
+
+    [[nodiscard]] std::size_t rows() const { return rows_; }
+    [[nodiscard]] std::size_t voxels() const { return voxels_; }
+
+    /// values = K x - [b; 0]
+    void residuals(std::span<const float> x, std::span<float> values);
+    /// x = K^T values
+    void adjoint(std::span<const float> values, std::span<float> x);
+    /// out = K^T K x
+    void normal(std::span<const float> x, std::span<float> out);
+
+    // What Algorithm 1 does with z and u. Both are kept as v = r + u, of which z is the soft
+    // threshold and u = v - z the rest; the one-sided one where a sample is saturated.
+
+    /// v of z = u = 0, but where a sample is saturated and x explains it: there z is its residual.
+    void start_duals(std::span<const float> x, std::span<float> v);
+    /// v = K x - [b; 0] + u. Returns the objective (Eq. 4) of x.
+    double update_duals(std::span<const float> x, float threshold, std::span<float> v);
+    /// d = K^T([b; 0] + z - u)
+    void right_side(std::span<const float> v, float threshold, std::span<float> d);
+
+  private:
+    struct Sampled;
+    struct Pairs;
+    struct Match;
+    /// Groups [begin, end) of all lists in a row, their rows of K from `first_row` on, and the
+    /// rows of the frame that they touch.
+    struct Part {
+        std::size_t begin = 0;
+        std::size_t end = 0;
+        std::size_t first_row = 0;
+        int top = 0;
+        int bottom = 0;
+        std::vector<float> sums = {};
+    };
+
+    [[nodiscard]] std::size_t voxel(std::size_t site, int slot) const {
+        return site * static_cast<std::size_t>(table_.slots()) + static_cast<std::size_t>(slot);
+    }
+    /// Calls sampled(Sampled) and pairs(Pairs) for all rows of groups, in the order of the rows.
+    template <typename OnSampled, typename OnPairs>
+    std::size_t visit(const Part& part, const OnSampled& sampled, const OnPairs& pairs) const;
+    /// The rows of one match, the first of them number `row`; returns the number after them.
+    template <typename OnSampled, typename OnPairs>
+    std::size_t visit_match(const Match& match, std::size_t row, const OnSampled& sampled,
+                            const OnPairs& pairs) const;
+    /// out = the sum of what scatter(part, sums) adds to zeros, for all parts.
+    template <typename Scatter>
+    void accumulate(const Scatter& scatter, std::span<float> out);
+    template <typename OnPart>
+    void for_each_part(const OnPart& on_part);
+    void deal_groups();
+
+    const ExposureTable& table_;
+    std::span<const MatchList> lists_;
+    float gamma_;
+    std::array<float, 65> urgency_{};  ///< tau_max / tau of samples of so many open slots
+    std::size_t voxels_ = 0;
+    std::size_t rows_ = 0;
+    std::vector<Part> parts_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,157 @@
+#include "decoder/portz2013/portz2013.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "core/parallel.h"
+#include "decoder/measurements.h"
+#include "decoder/naive/nearest_samples.h"
+#include "decoder/portz2013/exposure_table.h"
+
+namespace stipple {
+namespace {
+
+std::size_t count(int n) {
+    return static_cast<std::size_t>(n);
+}
+
+/// Order (slot, site) to (site, slot).
+std::vector<float> by_site(const FluxVideo& video) {
+    std::vector<float> x(video.voxels());
+    const std::size_t sites = video.shape().sites();
+    const std::size_t slots = count(video.slots());
+    parallel_for(0, video.shape().planes * video.shape().rows, [&](int line) {
+        const std::size_t begin = count(line) * count(video.shape().cols);
+        for (std::size_t site = begin; site < begin + count(video.shape().cols); ++site)
+            for (std::size_t slot = 0; slot < slots; ++slot)
+                x[site * slots + slot] = video.data()[slot * sites + site];
+    });
+    return x;
+}
+
+void to_video(std::span<const float> x, FluxVideo& video) {
+    const std::size_t sites = video.shape().sites();
+    const std::size_t slots = count(video.slots());
+    parallel_for(0, video.slots(), [&](int slot) {
+        for (std::size_t site = 0; site < sites; ++site)
+            video.frame(slot)[site] = x[site * slots + count(slot)];
+    });
+}
+
+/// The two stages on one block.
+class Decoder {
+  public:
+    Decoder(const Measurements& measurements, const Portz2013Options& options,
+            const StageObserver& observer, const Checkpoint& checkpoint)
+        : options_(options),
+          observer_(observer),
+          checkpoint_(checkpoint),
+          table_(measurements),
+          x_(nearest_samples(measurements)) {}
+
+    std::optional<FluxVideo> decode() {
+        tell("start");
+        stage1();
+        if (!stopped_) stage2();
+        if (stopped_) return {};
+        return std::move(x_);
+    }
+
+  private:
+    /// What part of the whole a step is, by time.
+    struct Share {
+        double begin;
+        double end;
+    };
+    static constexpr Share kSearch1{0, 0.2}, kSolve1{0.2, 0.3}, kFlow{0.3, 0.5},
+        kSearch2{0.5, 0.55}, kSolve2{0.55, 1};
+
+    bool reach(const Share& share, double fraction) {
+        stopped_ = stopped_ || !checkpoint_(share.begin + fraction * (share.end - share.begin));
+        return !stopped_;
+    }
+    void tell(std::string_view stage) const {
+        if (observer_.finished) observer_.finished(stage, x_);
+    }
+
+    void stage1() {
+        const auto& stage = options_.stage1;
+        const std::array lists{find_matches(
+            {table_.slots(), table_.shape()}, stage.search,
+            [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b,
+                float bound) { return patch_distance(table_, size, a, b, bound); },
+            [&](const PatchSize&, const PatchPosition&) { return stage.most_matches; },
+            [&](double fraction) { return reach(kSearch1, fraction); })};
+        solve("stage1", lists, stage.gamma, stage.admm, kSolve1);
+    }
+
+    void stage2() {
+        const auto& stage = options_.stage2;
+        MatchList flow = find_flow_matches(x_, stage.flow,
+                                           [&](double fraction) { return reach(kFlow, fraction); });
+        if (stopped_) return;
+        const auto room = [&](const PatchSize& size, const PatchPosition& at) {
+            return stage.most_matches - flow_matches_at(flow, size, at);
+        };
+        MatchList search = find_matches(
+            {table_.slots(), table_.shape()}, stage.search,
+            [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b,
+                float bound) { return patch_difference(x_, size, a, b, bound); },
+            room, [&](double fraction) { return reach(kSearch2, fraction); });
+        const std::array lists{std::move(flow), std::move(search)};
+        solve("stage2", lists, stage.gamma, stage.admm, kSolve2);
+    }
+
+    /// Matches, without itself, of the block of `flow` that the middle of a patch lies in.
+    [[nodiscard]] int flow_matches_at(const MatchList& flow, const PatchSize& size,
+                                      const PatchPosition& at) const {
+        const FrameShape shape = table_.shape();
+        const int across = (shape.cols + flow.size.cols - 1) / flow.size.cols;
+        const int down = (shape.rows + flow.size.rows - 1) / flow.size.rows;
+        const int slot = at.slot + size.slots / 2;
+        const int row = (at.row + size.rows / 2) / flow.size.rows;
+        const int col = (at.col + size.cols / 2) / flow.size.cols;
+        const std::size_t group = count((slot * down + row) * across + col);
+        return static_cast<int>(flow.groups[group].end - flow.begin_of(group)) - 1;
+    }
+
+    void solve(std::string_view name, std::span<const MatchList> lists, float gamma,
+               MatchAdmmOptions admm, const Share& share) {
+        if (stopped_) return;
+        MatchOperator problem(table_, lists, gamma);
+        // rho is in the paper's unit of light, x in ours.
+        admm.rho *= options_.values_per_flux;
+        std::vector<float> x = by_site(x_);
+        int done = 0;
+        minimise_by_admm(
+            problem, admm,
+            [&](int iteration, double objective) {
+                done = iteration + 1;
+                if (observer_.iterated) observer_.iterated(name, iteration, objective);
+                return true;
+            },
+            [&] { return reach(share, static_cast<double>(done) / admm.iterations); }, x);
+        to_video(x, x_);
+        tell(name);
+    }
+
+    const Portz2013Options& options_;
+    const StageObserver& observer_;
+    const Checkpoint& checkpoint_;
+    ExposureTable table_;
+    FluxVideo x_;
+    bool stopped_ = false;
+};
+
+}  // namespace
+
+std::optional<FluxVideo> decode_portz2013(const Measurements& measurements,
+                                          const Portz2013Options& options,
+                                          const StageObserver& observer,
+                                          const Checkpoint& checkpoint) {
+    return Decoder(measurements, options, observer, checkpoint).decode();
+}
+
+}  // namespace stipple

@@ -1,0 +1,69 @@
+#include "io/dn_image.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+#include "core/input_file.h"
+#include "io/footage_files.h"
+#include "io/png_file.h"
+#include "io/tiff_file.h"
+
+namespace stipple {
+namespace {
+
+[[noreturn]] void fail_kind(const std::string& place) {
+    throw InputError(place, "is not grey with 8 or 16 bits");
+}
+
+/// Row after row, each number as it is.
+template <typename Sample>
+DnImage dn_image(FrameShape shape, const void* samples) {
+    const auto* const first = static_cast<const Sample*>(samples);
+    return {shape, {first, first + shape.pixels()}};
+}
+
+DnImage read_dn_png(const std::string& place) {
+    const PngPixels image =
+        decode_png(critical_png_chunks(read_file(place), place), PngLayout::kAsStored, place);
+    if (image.channels != 1) fail_kind(place);
+    const FrameShape shape{.rows = image.rows, .cols = image.cols, .planes = 1};
+    if (image.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, image.bytes.data());
+    return dn_image<std::uint8_t>(shape, image.bytes.data());
+}
+
+DnImage read_dn_tiff(const std::filesystem::path& file) {
+    const TiffPixels pixels = read_single_tiff(file);
+    if (pixels.channels != 1 || pixels.sample == TiffPixels::Sample::kF32) fail_kind(file.string());
+    if (pixels.sample == TiffPixels::Sample::kU16)
+        return dn_image<std::uint16_t>(pixels.shape, pixels.bytes.data());
+    return dn_image<std::uint8_t>(pixels.shape, pixels.bytes.data());
+}
+
+}  // namespace
+
+DnImage read_dn_image(const std::filesystem::path& file) {
+    switch (image_format(file)) {
+        case ImageFormat::kPng:
+            return read_dn_png(file.string());
+        case ImageFormat::kTiff:
+            return read_dn_tiff(file);
+        default:
+            throw InputError(file.string(), "is no image of digital numbers; give PNG or TIFF");
+    }
+}
+
+void write_dn_png(const std::filesystem::path& file, FrameShape shape,
+                  std::span<const std::uint16_t> dn) {
+    assert(dn.size() == shape.pixels());
+    PngPixels image{.rows = shape.rows,
+                    .cols = shape.cols,
+                    .bytes_a_sample = 2,
+                    .bytes = std::vector<std::uint8_t>(dn.size_bytes())};
+    std::memcpy(image.bytes.data(), dn.data(), dn.size_bytes());
+    write_png_file(file, image);
+}
+
+}  // namespace stipple

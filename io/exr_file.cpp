@@ -1,0 +1,169 @@
+#include "io/exr_file.h"
+
+#include <IlmThreadPool.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstddef>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include "core/error.h"
+#include "core/joined.h"
+#include "core/light.h"
+#include "core/memory_limit.h"
+#include "io/output_file.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kThreads = 0;
+
+/// Names of the channels that make up the picture, one a plane.
+std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
+                                          const std::string& place) {
+    const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+    std::vector<std::string> names;
+    if (has("R") && has("G") && has("B")) {
+        names = {"R", "G", "B"};
+    } else if (has("X") && has("Y") && has("Z")) {
+        throw InputError(place, "holds CIE XYZ colour; convert it to RGB or to luminance Y alone");
+    } else if (has("Y") && !has("RY") && !has("BY")) {
+        names = {"Y"};
+    } else {
+        for (auto c = channels.begin(); c != channels.end(); ++c)
+            if (std::string_view(c.name()) != "A") names.emplace_back(c.name());
+        if (names.size() != 1)
+            throw InputError(place, fmt::format("holds the channels {}; give R, G, B or Y alone",
+                                                joined(names)));
+        if (names.front() == "Z" || names.front() == "depth")
+            throw InputError(place,
+                             fmt::format("holds distances (channel {}), no light; give R, G, "
+                                         "B or Y",
+                                         names.front()));
+    }
+    for (const auto& name : names) {
+        const Imf::Channel& channel = channels[name.c_str()];
+        if (channel.xSampling != 1 || channel.ySampling != 1)
+            throw InputError(place, fmt::format("channel {} is subsampled", name));
+    }
+    return names;
+}
+
+/// A plane as OpenEXR wants it: the address that pixel (0, 0) would have.
+Imf::Slice plane_slice(float* plane, const Imath::Box2i& window, FrameShape shape) {
+    return Imf::Slice::Make(Imf::FLOAT, plane, window, sizeof(float),
+                            sizeof(float) * static_cast<std::size_t>(shape.cols));
+}
+
+const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& place) {
+    const Imath::Box2i& window = header.dataWindow();
+    if (window != header.displayWindow())
+        throw InputError(place,
+                         "its data window differs from its display window; "
+                         "crop or pad the picture to its display window");
+    return window;
+}
+
+std::uint64_t side(int low, int high) {
+    return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
+}
+
+/// \throws InputError if the file is too short for its pixels.
+void check_size(const Imf::Header& header, const std::vector<std::string>& names, FrameShape shape,
+                const std::string& place) {
+    std::uint64_t pixel_bytes = 0;
+    for (const auto& name : names)
+        pixel_bytes += header.channels()[name.c_str()].type == Imf::HALF ? 2U : 4U;
+    // DWA packs what Deflate takes by blocks of 8 x 8 pixels.
+    const auto packing = header.compression();
+    const bool blocks = packing == Imf::DWAA_COMPRESSION || packing == Imf::DWAB_COMPRESSION;
+    const std::uint64_t bytes = std::filesystem::file_size(place);
+    check_packed(pixel_bytes * shape.pixels(), bytes, place,
+                 blocks ? 64 * kDeflateRatio : kDeflateRatio);
+    check_memory(sizeof(float) * shape.pixels() * names.size(), place, "the picture", bytes);
+}
+
+void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {
+    const Imath::Box2i window = checked_window(input.header(), place);
+    const auto names = picture_channels(input.header().channels(), place);
+    picture.traits = {.floating = true,
+                      .has_alpha = input.header().channels().findChannel("A") != nullptr};
+    const FrameShape shape = checked_shape(side(window.min.y, window.max.y),
+                                           side(window.min.x, window.max.x), names.size(), place);
+    check_size(input.header(), names, shape, place);
+    picture.resize(shape);
+    Imf::FrameBuffer planes;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        planes.insert(names[i], plane_slice(picture.values.data() + i * picture.shape.pixels(),
+                                            window, picture.shape));
+    input.setFrameBuffer(planes);
+    input.readPixels(window.min.y, window.max.y);
+}
+
+/// The file of a picture, in memory: OpenEXR swallows errors that occur when a file is closed.
+std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
+                    std::string_view place) {
+    // Here, as a pool that cannot be made while tasks wait for it is waited for without end.
+    static_cast<void>(IlmThread::ThreadPool::globalThreadPool());
+    try {
+        Imf::StdOSStream stream;
+        {
+            Imf::OutputFile output(stream, header, kThreads);
+            output.setFrameBuffer(planes);
+            output.writePixels(header.dataWindow().size().y + 1);
+        }
+        // Rows that zlib has no memory for are left out without a word.
+        Imf::StdISStream written;
+        written.str(stream.str());
+        if (!Imf::InputFile(written, kThreads).isComplete()) throw std::bad_alloc();
+        return stream.str();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw DeviceError(place, fmt::format("cannot be written as OpenEXR: {}", e.what()));
+    }
+}
+
+}  // namespace
+
+void read_exr(const std::filesystem::path& file, Picture& picture) {
+    try {
+        Imf::InputFile input(file.c_str(), kThreads);
+        read_planes(input, file.string(), picture);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw InputError(file.string(), fmt::format("cannot be read as OpenEXR: {}", e.what()));
+    }
+}
+
+void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+               std::span<const float> frame) {
+    assert(frame.size() == shape.sites());
+    Imf::Header header(shape.cols, shape.rows);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer planes;
+    std::vector<float> values(frame.begin(), frame.end());  // OpenEXR wants a mutable pointer
+    for (int p = 0; p < shape.planes; ++p) {
+        const char* name = shape.planes == 1 ? "Y" : &"R\0G\0B\0"[2 * p];
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        float* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
+        planes.insert(name, plane_slice(plane, header.dataWindow(), shape));
+    }
+    const std::string bytes = encoded(header, planes, place);
+    OutputFile output(file, std::string(place));
+    output.write(std::as_bytes(std::span(bytes)));
+    output.close();
+}
+
+}  // namespace stipple

@@ -1,0 +1,197 @@
+#include "io/footage_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "core/light.h"
+#include "io/footage_files.h"
+#include "io/footage_warnings.h"
+#include "io/image_file.h"
+#include "io/npy_reader.h"
+#include "io/tiff_file.h"
+#include "io/video_reader.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// Reads pictures one after the other.
+class ImageSequence {
+  public:
+    /// Of pictures, at least one, or of the pages of a file.
+    explicit ImageSequence(ImageFiles images, std::optional<TiffFile> tiff = {})
+        : images_(std::move(images)), tiff_(std::move(tiff)) {
+        load(0);
+        traits_ = picture_.traits;
+        shape_ = picture_.shape;
+    }
+
+    [[nodiscard]] FrameShape shape() const { return shape_; }
+    [[nodiscard]] const SourceTraits& traits() const { return traits_; }
+    [[nodiscard]] const std::string& warning() const { return images_.warning; }
+    [[nodiscard]] int slots() const {
+        return tiff_ ? tiff_->pages() : static_cast<int>(images_.files.size());
+    }
+    [[nodiscard]] std::string place() const {
+        return tiff_ ? tiff_->place(next_ - 1)
+                     : images_.files[static_cast<std::size_t>(next_ - 1)].string();
+    }
+
+    bool read(std::span<float> frame) {
+        if (next_ == slots()) return false;
+        ++next_;
+        if (next_ > 1) load(next_ - 1);
+        if (picture_.shape != shape_)
+            throw InputError(place(), fmt::format("is {} x {} x {} (rows x columns x planes), but "
+                                                  "the first frame is {} x {} x {}",
+                                                  picture_.shape.rows, picture_.shape.cols,
+                                                  picture_.shape.planes, shape_.rows, shape_.cols,
+                                                  shape_.planes));
+        std::copy(picture_.values.begin(), picture_.values.end(), frame.begin());
+        return true;
+    }
+
+  private:
+    void load(int slot) {
+        if (!tiff_) return read_image(images_.files[static_cast<std::size_t>(slot)], picture_);
+        tiff_->read(slot, page_);
+        to_picture(page_, picture_);
+    }
+
+    ImageFiles images_;
+    std::optional<TiffFile> tiff_;
+    TiffPixels page_;
+    int next_ = 0;
+    Picture picture_;
+    SourceTraits traits_;
+    FrameShape shape_;
+};
+
+using Source = std::variant<ImageSequence, NpyReader, VideoReader>;
+
+/// Why a file of this extension is no footage.
+const char* not_footage(const std::string& extension) {
+    if (extension == ".stipple")
+        return "is a sample stream, not footage; \"stipple decode\" makes video of it";
+    if (extension == ".strec")
+        return "is no recording of a camera: it is empty, or does not begin as one";
+    return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
+           "pictures, a video file, or .npy";
+}
+
+Source open_source(const fs::path& source) {
+    const std::string name = source.string();
+    std::error_code error;
+    const auto status = fs::status(source, error);
+    if (fs::is_directory(status)) return ImageSequence(images_in_folder(source));
+    if (!fs::exists(status)) {
+        if (source.filename().string().find('%') != std::string::npos)
+            return ImageSequence(images_of_pattern(source));
+        throw InputError(name, error && status.type() == fs::file_type::none
+                                   ? "cannot be read: " + error.message()
+                                   : "there is no such file or folder");
+    }
+    if (lower_extension(source) == ".npy") return NpyReader(source);
+    if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
+    if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
+    if (is_video_name(source)) return VideoReader(source);
+    throw InputError(name, not_footage(lower_extension(source)));
+}
+
+}  // namespace
+
+struct FootageReader::Impl {
+    Source source;
+    FootageOptions options;
+    FrameShape source_shape;
+    SourceTraits traits;
+    std::vector<std::string> warnings;  ///< not yet taken
+    bool looked_at_brightness = false;
+    bool at_end = false;
+    std::vector<float> colour;  ///< the frame before its reduction to luminance
+
+    Impl(const fs::path& path, const FootageOptions& wanted);
+    [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
+    void warn(std::string text) {
+        if (!text.empty()) warnings.push_back(std::move(text));
+    }
+};
+
+FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
+    : source(open_source(path)), options(wanted) {
+    source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
+    if (reduces()) colour.resize(source_shape.sites());
+    if (const auto* images = std::get_if<ImageSequence>(&source)) {
+        traits = images->traits();
+        warn(images->warning());
+    }
+    if (const auto* video = std::get_if<VideoReader>(&source)) traits = video->traits();
+    for (std::string& text : reading_warnings(traits, options, path.string()))
+        warn(std::move(text));
+}
+
+FootageReader::FootageReader(const fs::path& source, FootageOptions options)
+    : impl_(std::make_unique<Impl>(source, options)) {}
+
+FootageReader::~FootageReader() = default;
+FootageReader::FootageReader(FootageReader&&) noexcept = default;
+FootageReader& FootageReader::operator=(FootageReader&&) noexcept = default;
+
+FrameShape FootageReader::shape() const {
+    FrameShape shape = impl_->source_shape;
+    if (impl_->reduces()) shape.planes = 1;
+    return shape;
+}
+
+std::optional<int> FootageReader::slots() const {
+    if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->slots();
+    if (const auto* npy = std::get_if<NpyReader>(&impl_->source)) return npy->slots();
+    return std::nullopt;
+}
+
+std::optional<double> FootageReader::film_hz() const {
+    const auto* video = std::get_if<VideoReader>(&impl_->source);
+    return video == nullptr ? std::nullopt : video->film_hz();
+}
+
+bool FootageReader::gamma_coded() const {
+    return impl_->traits.gamma_coded;
+}
+
+std::vector<std::string> FootageReader::take_warnings() {
+    return std::exchange(impl_->warnings, {});
+}
+
+bool FootageReader::read(std::span<float> frame) {
+    assert(frame.size() == shape().sites());
+    const auto light = impl_->reduces() ? std::span<float>(impl_->colour) : frame;
+    const auto read = [&](auto& source) {
+        if (!source.read(light)) return false;
+        linearise(light, impl_->options.transfer.value_or(Transfer::kLinear));
+        check_light(light, impl_->source_shape, source.place());
+        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value)
+            impl_->warn(brightness_warning(light, source.place()));
+        return true;
+    };
+    if (!std::visit(read, impl_->source)) {
+        if (const auto* video = std::get_if<VideoReader>(&impl_->source);
+            video != nullptr && !std::exchange(impl_->at_end, true))
+            for (std::string& text : video->warnings()) impl_->warn(std::move(text));
+        return false;
+    }
+    if (impl_->reduces()) reduce_to_luminance(light, frame);
+    if (impl_->options.max_value) {
+        const auto most = static_cast<float>(*impl_->options.max_value);
+        for (float& value : frame) value = std::min(value, most);
+    }
+    return true;
+}
+
+}  // namespace stipple

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/light.h"
+
+namespace stipple {
+
+struct FootageOptions {
+    std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
+    bool luminance = false;           ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
+    std::optional<double> max_value;  ///< clip light to this value
+};
+
+/// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
+/// divided by 255 / 65535, floating-point files are taken as they are.
+/// Sources: a folder or a printf pattern of PNG, TIFF or EXR files (in numeric order of names), a
+/// TIFF file of one or more pages, a video file, or a .npy of shape (T,H,W) or (T,H,W,3) with dtype
+/// u1, u2, f2, f4 or f8.
+class FootageReader {
+  public:
+    /// Opens the source and reads its first frame's shape.
+    /// \throws InputError if it is missing, unreadable, empty or of a wrong shape.
+    explicit FootageReader(const std::filesystem::path& source, FootageOptions options = {});
+    ~FootageReader();
+    FootageReader(FootageReader&&) noexcept;
+    FootageReader& operator=(FootageReader&&) noexcept;
+
+    [[nodiscard]] FrameShape shape() const;
+    /// Number of frames where the source tells; a video file may not.
+    [[nodiscard]] std::optional<int> slots() const;
+
+    /// Frames a second at which a video file plays, if it tells.
+    [[nodiscard]] std::optional<double> film_hz() const;
+    /// Whether the numbers are no linear light by what the source declares or by its kind.
+    [[nodiscard]] bool gamma_coded() const;
+    /// What the user should know of the source and of its reading that is new since the last call.
+    [[nodiscard]] std::vector<std::string> take_warnings();
+
+    /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
+    /// Returns false at the end. \throws InputError naming the file (and for a value the row,
+    /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
+    /// infinite or negative light.
+    bool read(std::span<float> frame);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

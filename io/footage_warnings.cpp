@@ -1,0 +1,43 @@
+#include "io/footage_warnings.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+namespace stipple {
+
+std::vector<std::string> reading_warnings(const SourceTraits& traits, const FootageOptions& options,
+                                          const std::string& name) {
+    std::vector<std::string> warnings;
+    const Transfer transfer = options.transfer.value_or(Transfer::kLinear);
+    if (!traits.hdr_curve.empty())
+        warnings.push_back(
+            fmt::format("{}: is HDR video in the curve {}, which --transfer does not "
+                        "know; convert it to linear light first",
+                        name, traits.hdr_curve));
+    else if (traits.gamma_coded && !options.transfer)
+        warnings.push_back(
+            fmt::format("{}: looks gamma-coded: add --transfer srgb, or --transfer "
+                        "linear if its numbers are linear light",
+                        name));
+    if (traits.floating && transfer != Transfer::kLinear)
+        warnings.push_back(
+            fmt::format("{}: holds floating-point numbers, which are linear light as "
+                        "a rule; --transfer {} bends them",
+                        name, transfer == Transfer::kSrgb ? "srgb" : "gamma22"));
+    if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");
+    return warnings;
+}
+
+std::string brightness_warning(std::span<const float> light, const std::string& place) {
+    constexpr double kFarAboveOne = 10;
+    const double mean =
+        std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
+    if (!(mean > kFarAboveOne)) return {};
+    return fmt::format(
+        "{}: the mean light is {:.3g}, where the brightest of integers is 1.0; divide "
+        "digital numbers by their full scale first",
+        place, mean);
+}
+
+}  // namespace stipple

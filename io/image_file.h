@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "core/geometry.h"
+#include "io/picture.h"
+#include "io/tiff_file.h"
+
+namespace stipple {
+
+/// Reads a .png, .tif, .tiff or .exr file (by extension) into `picture`, a TIFF file of one page.
+/// \throws InputError naming the file, and the offset where known, if it is missing, unreadable,
+/// truncated, or neither mono nor RGB.
+void read_image(const std::filesystem::path& file, Picture& picture);
+
+/// A page of a TIFF file.
+void to_picture(const TiffPixels& pixels, Picture& picture);
+
+/// Writes linear light as an 8-bit PNG picture through the curve of io/tone_map.h. `frame` holds
+/// shape.sites() floats, order (plane, row, col). Replaces `file`. \throws DeviceError.
+void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame);
+
+}  // namespace stipple

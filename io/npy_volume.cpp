@@ -1,0 +1,113 @@
+#include "io/npy_volume.h"
+
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+#include "core/input_file.h"
+#include "core/memory_limit.h"
+#include "io/npy_fields.h"
+#include "io/npy_header.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::uint64_t kMostValues = std::uint64_t{1} << 26U;
+constexpr std::uint64_t kLongestSide = 65535;
+
+/// How the values of a type become numbers.
+struct ValueType {
+    std::string_view name;
+    std::size_t bytes;
+    void (*convert)(std::span<const std::byte>, std::vector<double>&);
+};
+
+template <typename Value>
+void convert(std::span<const std::byte> bytes, std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        Value value;
+        std::memcpy(&value, &bytes[i * sizeof(Value)], sizeof(Value));
+        if constexpr (std::is_same_v<Value, half>)
+            values[i] = static_cast<double>(static_cast<float>(value));
+        else
+            values[i] = static_cast<double>(value);
+    }
+}
+
+constexpr ValueType kTypes[] = {
+    {"|b1", 1, convert<std::uint8_t>}, {"|u1", 1, convert<std::uint8_t>},
+    {"|i1", 1, convert<std::int8_t>},  {"<u2", 2, convert<std::uint16_t>},
+    {"<i2", 2, convert<std::int16_t>}, {"<u4", 4, convert<std::uint32_t>},
+    {"<i4", 4, convert<std::int32_t>}, {"<u8", 8, convert<std::uint64_t>},
+    {"<i8", 8, convert<std::int64_t>}, {"<f2", 2, convert<half>},
+    {"<f4", 4, convert<float>},        {"<f8", 8, convert<double>}};
+
+const ValueType& type_of(std::string_view name, std::string_view place) {
+    const auto found = std::ranges::find(kTypes, name, &ValueType::name);
+    if (found == std::end(kTypes))
+        throw InputError(place, fmt::format("values of type \"{}\" cannot be read; save as bool, "
+                                            "integers or little-endian floats",
+                                            name));
+    return *found;
+}
+
+void check_shape(const std::vector<std::uint64_t>& shape, std::string_view place) {
+    if (shape.size() != 3)
+        throw InputError(
+            place,
+            fmt::format("has {} dimensions; needs three: (slots, rows, columns)", shape.size()));
+    std::uint64_t values = 1;
+    for (const std::uint64_t side : shape) {
+        if (side < 1 || side > kLongestSide)
+            throw InputError(place, fmt::format("shape ({}, {}, {}): sides are 1 to {}", shape[0],
+                                                shape[1], shape[2], kLongestSide));
+        values *= side;
+    }
+    if (values > kMostValues)
+        throw InputError(place, fmt::format("shape ({}, {}, {}) has more than 2^26 values",
+                                            shape[0], shape[1], shape[2]));
+}
+
+}  // namespace
+
+NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view place) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const NpyDictionary dictionary = find_npy_dictionary(text.substr(0, kMaxNpyHeaderBytes), place);
+    const NpyFields fields = read_npy_fields(dictionary.text, place);
+    const ValueType& type = type_of(fields.descr, place);
+    check_shape(fields.shape, place);
+    check_memory(
+        bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], place,
+        "the volume");
+    if (fields.fortran_order)
+        throw InputError(place, "is in Fortran order; save numpy.ascontiguousarray(volume)");
+    NpyVolume volume{.layers = static_cast<int>(fields.shape[0]),
+                     .rows = static_cast<int>(fields.shape[1]),
+                     .cols = static_cast<int>(fields.shape[2]),
+                     .values = {}};
+    const std::size_t count = fields.shape[0] * fields.shape[1] * fields.shape[2];
+    const auto data = bytes.subspan(dictionary.data_offset);
+    if (data.size() != count * type.bytes)
+        throw InputError(place, fmt::format("{} values need {} bytes, but the file holds {}; it is "
+                                            "truncated or damaged",
+                                            count, count * type.bytes, data.size()));
+    volume.values.resize(count);
+    type.convert(data, volume.values);
+    return volume;
+}
+
+NpyVolume read_npy_volume(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error && size > kMostValues * 8 + kMaxNpyHeaderBytes)
+        throw InputError(file.string(), "is too long for a volume of at most 2^26 values");
+    const std::vector<std::uint8_t> bytes = read_file(file);
+    return parse_npy_volume(std::as_bytes(std::span(bytes)), file.string());
+}
+
+}  // namespace stipple

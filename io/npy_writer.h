@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+#include "io/output_file.h"
+
+namespace stipple {
+
+/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame. The header of one that was
+/// not finished lacks the frames of its last second at most.
+class NpyWriter {
+  public:
+    /// Creates `file`; messages say `place`. \throws DeviceError.
+    NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape);
+
+    /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
+    void write(std::span<const float> frame);
+    /// Fills in the number of frames and closes the file. \throws DeviceError.
+    void finish();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    void write_header();
+
+    OutputFile file_;
+    FrameShape shape_;
+    int slots_ = 0;
+    int told_slots_ = 0;  ///< by the header
+    Clock::time_point told_at_;
+    std::vector<float> pixels_;  ///< by row, column and plane; empty before the first frame
+};
+
+}  // namespace stipple

@@ -1,0 +1,38 @@
+#include "io/output_file.h"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+
+namespace stipple {
+
+OutputFile::OutputFile(const std::filesystem::path& path, std::string place)
+    : place_(std::move(place)) {
+    // Not through a link that somebody has put there.
+    constexpr int kMode = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
+    const int descriptor = ::open(path.c_str(), kMode, 0666);
+    if (descriptor >= 0) file_.reset(::fdopen(descriptor, "wb"));
+    if (!file_) fail();
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+}
+
+void OutputFile::seek(long offset) {
+    if (std::fseek(file_.get(), offset, SEEK_SET) != 0) fail();
+}
+
+void OutputFile::close() {
+    if (std::fclose(file_.release()) != 0) fail();
+}
+
+void OutputFile::fail() const {
+    throw DeviceError(place_, "cannot be written: " + std::generic_category().message(errno));
+}
+
+}  // namespace stipple

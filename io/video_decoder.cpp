@@ -1,0 +1,281 @@
+#include "io/video_decoder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/error.h"
+#include "core/memory_limit.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/display.h>
+#include <libavutil/mem.h>
+}
+
+namespace stipple {
+namespace {
+
+/// Containers announce a number of frames or a duration, which may be off by some frames.
+constexpr double kLeastFractionOfAnnounced = 0.9;
+constexpr std::uint64_t kBytesAPixel = 12;  ///< at most: three of 16 bits, and converted
+
+/// Errors that a decoder logs. Some decoders tell of damage nowhere else.
+struct LoggedErrors {
+    std::atomic<int> count = 0;
+    std::atomic<int> first_frame = 0;  ///< the frame that came next when the first was logged
+    int next_frame = 0;
+};
+
+/// In place of FFmpeg's own log on standard error.
+void log_to_decoder(void* context, int level, const char* /*format*/, va_list /*arguments*/) {
+    if (context == nullptr || level > AV_LOG_ERROR) return;
+    if (*static_cast<const AVClass* const*>(context) != avcodec_get_class()) return;
+    auto* const errors = static_cast<LoggedErrors*>(static_cast<AVCodecContext*>(context)->opaque);
+    if (errors != nullptr && errors->count++ == 0) errors->first_frame = errors->next_frame;
+}
+
+struct Deleter {
+    void operator()(AVFormatContext* file) const { avformat_close_input(&file); }
+    void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+    void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+};
+template <typename Type>
+using Owned = std::unique_ptr<Type, Deleter>;
+
+std::string reason(int error) {
+    char text[AV_ERROR_MAX_STRING_SIZE] = {};
+    av_strerror(error, text, sizeof(text));
+    return text;
+}
+
+/// Some hundred bytes may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of
+/// them: none of its blocks may be larger than its share of what the input may take.
+void limit_blocks(std::uint64_t bytes) {
+    constexpr std::uint64_t kBlocks = 2;  // the frame, and what it is converted to
+    av_max_alloc(most_memory(bytes) / kBlocks);
+}
+
+Owned<AVFormatContext> open_file(const std::string& name) {
+    AVFormatContext* file = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "protocol_whitelist", "file", 0);
+    // "file:" before it, for a name may have a colon.
+    int error = avformat_open_input(&file, ("file:" + name).c_str(), nullptr, &options);
+    av_dict_free(&options);
+    Owned<AVFormatContext> opened(file);
+    if (error >= 0) error = avformat_find_stream_info(file, nullptr);
+    if (error < 0)
+        throw InputError(name, fmt::format("cannot be read as video ({}); it is damaged, ends too "
+                                           "early or is none",
+                                           reason(error)));
+    return opened;
+}
+
+/// What a frame does not declare of its colours, its container may.
+void complete_colours(AVFrame& frame, const AVCodecParameters& container) {
+    if (frame.colorspace == AVCOL_SPC_UNSPECIFIED) frame.colorspace = container.color_space;
+    if (frame.color_range == AVCOL_RANGE_UNSPECIFIED) frame.color_range = container.color_range;
+    if (frame.color_trc == AVCOL_TRC_UNSPECIFIED) frame.color_trc = container.color_trc;
+}
+
+}  // namespace
+
+struct VideoDecoder::Impl {
+    std::string name;
+    LoggedErrors errors;
+    Owned<AVFormatContext> file;
+    const AVStream* stream = nullptr;
+    Owned<AVCodecContext> codec;
+    Owned<AVPacket> packet{av_packet_alloc()};
+    Owned<AVFrame> frame{av_frame_alloc()};
+    bool ended = false;  ///< the file, not yet the frames
+    int packets = 0;     ///< one a frame, those that an edit list hides too
+    double end_s =
+        0;  ///< when the last packet, of any stream if only the file has a duration, ends
+    std::string shortfall;
+    std::int64_t last_tick = AV_NOPTS_VALUE;  ///< time of a frame, in units of the stream
+    std::int64_t least_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
+    std::int64_t most_ticks = 0;
+
+    void open(const std::filesystem::path& path);
+    void send_packet();
+    void check_end();
+    void count_packet();
+    void note_time(std::int64_t tick);
+    [[nodiscard]] std::string unequal_times() const;
+    [[nodiscard]] double announced_s() const;
+    [[noreturn]] void fail(const std::string& problem) const {
+        throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
+                         problem + "; repair or cut the video first");
+    }
+};
+
+void VideoDecoder::Impl::open(const std::filesystem::path& path) {
+    av_log_set_callback(log_to_decoder);
+    name = path.string();
+    const std::uint64_t bytes = input_bytes(path);
+    limit_blocks(bytes);
+    file = open_file(name);
+    const AVCodec* decoder = nullptr;
+    const int index = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    if (index < 0)
+        throw InputError(name, index == AVERROR_DECODER_NOT_FOUND
+                                   ? "is coded in a way that FFmpeg here cannot decode"
+                                   : "holds no video");
+    stream = file->streams[index];
+    const AVCodecParameters& announced = *stream->codecpar;
+    if (announced.width > 0 && announced.height > 0)
+        check_memory(kBytesAPixel * static_cast<std::uint64_t>(announced.width) *
+                         static_cast<std::uint64_t>(announced.height),
+                     name, "a frame", bytes);
+    codec.reset(avcodec_alloc_context3(decoder));
+    avcodec_parameters_to_context(codec.get(), stream->codecpar);
+    codec->opaque = &errors;
+    codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT | AV_CODEC_FLAG_BITEXACT;
+    codec->err_recognition |= AV_EF_CRCCHECK;
+    codec->thread_count = 0;
+    codec->thread_type = FF_THREAD_SLICE;  // decoders in one context each log which frame is wrong
+    const int error = avcodec_open2(codec.get(), decoder, nullptr);
+    if (error < 0) throw InputError(name, "cannot be decoded: " + reason(error));
+}
+
+/// Gives the decoder what it needs for more frames.
+void VideoDecoder::Impl::send_packet() {
+    int error = 0;
+    do {
+        av_packet_unref(packet.get());
+        error = av_read_frame(file.get(), packet.get());
+        if (error >= 0) count_packet();
+    } while (error >= 0 && (packet->stream_index != stream->index || packet->size == 0));
+    if (error < 0 && error != AVERROR_EOF) fail("cannot be read: " + reason(error));
+    ended = error < 0;
+    if (!ended && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0) fail("is damaged or cut short");
+    error = avcodec_send_packet(codec.get(), ended ? nullptr : packet.get());
+    if (error < 0) fail("is damaged: " + reason(error));
+}
+
+void VideoDecoder::Impl::count_packet() {
+    const bool of_video = packet->stream_index == stream->index;
+    if (of_video) ++packets;
+    if (packet->pts == AV_NOPTS_VALUE || (stream->duration > 0 && !of_video)) return;
+    const AVStream& own = *file->streams[packet->stream_index];
+    const std::int64_t first = own.start_time == AV_NOPTS_VALUE ? 0 : own.start_time;
+    end_s = std::max(
+        end_s, static_cast<double>(packet->pts + packet->duration - first) * av_q2d(own.time_base));
+}
+
+/// Of the video, else of the whole file; not above 0 if unknown.
+double VideoDecoder::Impl::announced_s() const {
+    return stream->duration > 0 ? static_cast<double>(stream->duration) * av_q2d(stream->time_base)
+                                : static_cast<double>(file->duration) / AV_TIME_BASE;
+}
+
+/// Compares what was read with what the container announces: frames, else their time.
+void VideoDecoder::Impl::check_end() {
+    if (errors.next_frame == 0)
+        throw InputError(name, "holds no frame; it is damaged or ends too early");
+    const bool counts = stream->nb_frames > 0;
+    const double announced = counts ? static_cast<double>(stream->nb_frames) : announced_s();
+    const double found = counts ? packets : end_s;
+    const double one_frame = counts ? 1 : end_s / packets;
+    if (found >= announced - 1.5 * one_frame) return;
+    const std::string text =
+        counts
+            ? fmt::format("ends after {} of {} frames", packets, stream->nb_frames)
+            : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, end_s, announced);
+    if (found < kLeastFractionOfAnnounced * announced)
+        throw InputError(name, text + "; it is truncated or damaged");
+    shortfall = fmt::format("{}: {}; frames may be missing", name, text);
+}
+
+void VideoDecoder::Impl::note_time(std::int64_t tick) {
+    if (tick == AV_NOPTS_VALUE) return;
+    if (last_tick != AV_NOPTS_VALUE) {
+        least_ticks = std::min(least_ticks, tick - last_tick);
+        most_ticks = std::max(most_ticks, tick - last_tick);
+    }
+    last_tick = tick;
+}
+
+/// Empty where the frames are equally long but for the rounding of their times.
+std::string VideoDecoder::Impl::unequal_times() const {
+    constexpr std::int64_t kRounding = 2;
+    const std::int64_t allowed = std::max(kRounding, least_ticks / 2);
+    if (most_ticks == 0 || most_ticks - least_ticks <= allowed) return {};
+    const double tick_s = av_q2d(stream->time_base);
+    return fmt::format(
+        "{}: its frames are {:.4g} to {:.4g} s apart, but each becomes one slot; some "
+        "may be missing",
+        name, static_cast<double>(least_ticks) * tick_s, static_cast<double>(most_ticks) * tick_s);
+}
+
+VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+    impl_->open(file);
+}
+
+VideoDecoder::~VideoDecoder() = default;
+VideoDecoder::VideoDecoder(VideoDecoder&&) noexcept = default;
+VideoDecoder& VideoDecoder::operator=(VideoDecoder&&) noexcept = default;
+
+const AVFrame* VideoDecoder::next() {
+    AVFrame& frame = *impl_->frame;
+    int error = avcodec_receive_frame(impl_->codec.get(), &frame);
+    for (; error == AVERROR(EAGAIN) && !impl_->ended;
+         error = avcodec_receive_frame(impl_->codec.get(), &frame))
+        impl_->send_packet();
+    if (error == AVERROR_EOF) {
+        impl_->check_end();
+        return nullptr;
+    }
+    if (error < 0) impl_->fail("is damaged: " + reason(error));
+    if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
+        impl_->fail("is damaged: parts of it are missing or made up");
+    ++impl_->errors.next_frame;
+    impl_->note_time(frame.best_effort_timestamp);
+    complete_colours(frame, *impl_->stream->codecpar);
+    return &frame;
+}
+
+std::optional<double> VideoDecoder::film_hz() const {
+    constexpr double kMostHz =
+        80'000;  // where a container has no rate: the tick of its time stamps
+    const AVRational rate = impl_->stream->avg_frame_rate;
+    if (rate.num <= 0 || rate.den <= 0 || av_q2d(rate) >= kMostHz) return {};
+    return av_q2d(rate);
+}
+
+int VideoDecoder::quarter_turns() const {
+    const auto* const matrix = reinterpret_cast<const std::int32_t*>(
+        av_stream_get_side_data(impl_->stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
+    if (matrix == nullptr) return 0;
+    const double quarters = av_display_rotation_get(matrix) / 90;
+    const double determinant =
+        static_cast<double>(matrix[0]) * matrix[4] - static_cast<double>(matrix[1]) * matrix[3];
+    if (!(determinant > 0) || quarters != std::round(quarters))
+        throw InputError(impl_->name,
+                         "is to be shown mirrored, or turned by another angle than 90, 180 or 270 "
+                         "degrees; convert it first, e.g. by ffmpeg");
+    return (static_cast<int>(quarters) + 4) % 4;
+}
+
+std::vector<std::string> VideoDecoder::warnings() const {
+    std::vector<std::string> texts;
+    const int count = impl_->errors.count;
+    if (count > 0)
+        texts.push_back(fmt::format(
+            "{}: the decoder reports {} error{}, the first at frame {}: "
+            "frames from there on may be wrong",
+            impl_->name, count, count == 1 ? "" : "s", impl_->errors.first_frame.load()));
+    for (const std::string& text : {impl_->shortfall, impl_->unequal_times()})
+        if (!text.empty()) texts.push_back(text);
+    return texts;
+}
+
+}  // namespace stipple

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "io/picture.h"
+
+namespace stipple {
+
+/// True if the extension is one of a video file.
+[[nodiscard]] bool is_video_name(const std::filesystem::path& file);
+
+/// Reads a video file frame by frame, at its own depth, upright; grey as one plane, all others as
+/// RGB (video_planes.h).
+class VideoReader {
+  public:
+    /// Decodes the first frame. \throws InputError if the file is missing, damaged or empty, or its
+    /// pixels are of a kind that is not read.
+    explicit VideoReader(const std::filesystem::path& file);
+    ~VideoReader();
+    VideoReader(VideoReader&&) noexcept;
+    VideoReader& operator=(VideoReader&&) noexcept;
+
+    [[nodiscard]] FrameShape shape() const;
+    /// Frames a second at which it plays, if it tells.
+    [[nodiscard]] std::optional<double> film_hz() const;
+    [[nodiscard]] const SourceTraits& traits() const;
+    /// Signs, so far, that frames are damaged or missing.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+    /// The file and the frame read last, for messages.
+    [[nodiscard]] std::string place() const;
+
+    /// The next frame, order (plane, row, col), scaled to 0..1; false at the end.
+    /// \throws InputError if the video is damaged here, or ends well before the frame that its
+    /// container announces.
+    bool read(std::span<float> frame);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

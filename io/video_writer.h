@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// Writes a film for people to look at: tone-mapped (io/tone_map.h), 8 bit, H.264 where FFmpeg
+/// has an encoder for it, else MPEG-4. Odd sizes, and fewer than four columns, are
+/// padded by repeating the last row or column.
+class VideoWriter {
+  public:
+    /// Creates `file` (.mp4 or .mkv); messages say `place`. \throws DeviceError.
+    VideoWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+                double frames_per_second);
+    ~VideoWriter();
+    VideoWriter(VideoWriter&&) noexcept;
+    VideoWriter& operator=(VideoWriter&&) noexcept;
+
+    /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
+    void write(std::span<const float> frame);
+    /// Completes the file and reads it back, because OpenCV does not say whether the disk took it.
+    /// \throws DeviceError.
+    void finish();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stipple

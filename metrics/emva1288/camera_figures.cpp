@@ -1,0 +1,160 @@
+#include "metrics/emva1288/camera_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/error.h"
+
+namespace stipple::emva1288 {
+namespace {
+
+constexpr std::size_t kLeastPairs = 10;
+constexpr std::size_t kLeastLinearPairs = 5;
+constexpr double kLinearPart = 0.7;             ///< of saturation, for K and eta
+constexpr double kRoundingVariance = 1.0 / 12;  ///< of a converter, DN^2
+constexpr double kLeastTellingVariance = 0.24;  ///< DN^2; below, rounding hides the dark noise
+
+using Statistics = std::vector<GroupStatistics>;
+
+const ImageStatistics* dark_of(const Series& series, const Statistics& statistics,
+                               const ImageGroup& bright) {
+    for (std::size_t i = 0; i < series.groups.size(); ++i) {
+        const ImageGroup& group = series.groups[i];
+        if (group.dark && group.files.size() == 2 && group.exposure_ns == bright.exposure_ns)
+            return &statistics[i].images;
+    }
+    return nullptr;
+}
+
+const GroupStatistics& stack_of(const Series& series, const Statistics& statistics, bool dark,
+                                const std::string& place) {
+    for (std::size_t i = 0; i < series.groups.size(); ++i)
+        if (series.groups[i].dark == dark && series.groups[i].files.size() > 2)
+            return statistics[i];
+    throw InputError(place, fmt::format("has no stack of more than two {} images, which DSNU and "
+                                        "PRNU need",
+                                        dark ? "dark" : "bright"));
+}
+
+std::vector<TransferPoint> transfer_curve(const Series& series, const Statistics& statistics,
+                                          const std::string& place) {
+    std::vector<TransferPoint> points;
+    for (std::size_t i = 0; i < series.groups.size(); ++i) {
+        const ImageGroup& group = series.groups[i];
+        if (group.dark || group.files.size() != 2) continue;
+        const ImageStatistics* dark = dark_of(series, statistics, group);
+        if (dark == nullptr)
+            throw InputError(place, fmt::format("has no pair of dark images of {} ns, the exposure "
+                                                "of bright ones",
+                                                group.exposure_ns));
+        const ImageStatistics& bright = statistics[i].images;
+        points.push_back({group.photons, bright.mean_dn - dark->mean_dn,
+                          bright.temporal_variance_dn2 - dark->temporal_variance_dn2});
+    }
+    std::ranges::stable_sort(points, {}, &TransferPoint::photons);
+    if (points.size() < kLeastPairs)
+        throw InputError(place, fmt::format("has {} pairs of bright images; an evaluation takes {}",
+                                            points.size(), kLeastPairs));
+    return points;
+}
+
+/// Slope of the least-squares line through the origin.
+double slope(std::span<const TransferPoint> points, double TransferPoint::*x,
+             double TransferPoint::*y) {
+    double xy = 0, xx = 0;
+    for (const TransferPoint& point : points) {
+        xy += point.*x * point.*y;
+        xx += point.*x * point.*x;
+    }
+    return xy / xx;
+}
+
+/// LE: mean distance to the line that fits best relative to itself, 5 to 95 % of saturation.
+double linearity_error(const std::vector<TransferPoint>& points, double saturation_dn) {
+    double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+    std::vector<TransferPoint> used;
+    for (const TransferPoint& point : points)
+        if (point.mean_dn >= 0.05 * saturation_dn && point.mean_dn <= 0.95 * saturation_dn)
+            used.push_back(point);
+    for (const TransferPoint& point : used) {
+        const double weight = 1 / (point.mean_dn * point.mean_dn);
+        w += weight;
+        wx += weight * point.photons;
+        wy += weight * point.mean_dn;
+        wxx += weight * point.photons * point.photons;
+        wxy += weight * point.photons * point.mean_dn;
+    }
+    const double a1 = (w * wxy - wx * wy) / (w * wxx - wx * wx);
+    const double a0 = (wy - a1 * wx) / w;
+    double sum = 0;
+    for (const TransferPoint& point : used)
+        sum += std::abs(point.mean_dn / (a0 + a1 * point.photons) - 1);
+    return sum / static_cast<double>(used.size());
+}
+
+/// The points up to 70 % of saturation. \throws InputError if they do not make a line.
+std::span<const TransferPoint> linear_part(const Evaluation& evaluation, const std::string& place) {
+    const auto& points = evaluation.transfer;
+    if (points[evaluation.saturation].variance_dn2 <= 0)
+        throw InputError(place, "more light does not give more noise, so it cannot tell electrons");
+    const double most_dn = kLinearPart * points[evaluation.saturation].mean_dn;
+    std::size_t count = 0;
+    while (count < evaluation.saturation && points[count].mean_dn <= most_dn) ++count;
+    if (count < kLeastLinearPairs)
+        throw InputError(place,
+                         fmt::format("{} pairs of bright images are below 70 % of saturation (mean "
+                                     "{:.4g} DN); an evaluation takes {}",
+                                     count, most_dn / kLinearPart, kLeastLinearPairs));
+    return std::span(points).first(count);
+}
+
+double dark_noise_e(double dark_variance_dn2, double gain_dn_per_e) {
+    const double telling = std::max(dark_variance_dn2, kLeastTellingVariance);
+    return std::sqrt(telling - kRoundingVariance) / gain_dn_per_e;
+}
+
+void set_figures(Evaluation& evaluation, const ImageStatistics& bright, const ImageStatistics& dark,
+                 const std::string& place) {
+    const auto linear = linear_part(evaluation, place);
+    const TransferPoint& saturation = evaluation.transfer[evaluation.saturation];
+    const double k = slope(linear, &TransferPoint::mean_dn, &TransferPoint::variance_dn2);
+    const double responsivity = slope(linear, &TransferPoint::photons, &TransferPoint::mean_dn);
+    if (!(k > 0 && responsivity > 0 && std::isfinite(k) && std::isfinite(responsivity) &&
+          bright.mean_dn > dark.mean_dn))
+        throw InputError(place, "more light does not give more signal and more noise");
+    const double s_bright = bright.spatial_variance_dn2, s_dark = dark.spatial_variance_dn2;
+    CameraFigures& f = evaluation.figures;
+    f.gain_dn_per_e = k;
+    f.quantum_efficiency = responsivity / k;
+    f.dark_noise_e = dark_noise_e(evaluation.dark_variance_dn2, k);
+    f.saturation_e = f.quantum_efficiency * saturation.photons;
+    f.dsnu_e = std::sqrt(std::max(s_dark, 0.0)) / k;
+    f.prnu = std::sqrt(std::max(s_bright - s_dark, 0.0)) / (bright.mean_dn - dark.mean_dn);
+    f.snr_max = std::sqrt(f.saturation_e);
+    const double noise2_e2 = f.dark_noise_e * f.dark_noise_e + kRoundingVariance / (k * k);
+    f.sensitivity_threshold_p = (std::sqrt(noise2_e2 + 0.25) + 0.5) / f.quantum_efficiency;
+    f.dynamic_range = saturation.photons / f.sensitivity_threshold_p;
+    f.linearity_error = linearity_error(evaluation.transfer, saturation.mean_dn);
+}
+
+}  // namespace
+
+Evaluation evaluate(const Series& series, const Statistics& statistics, const std::string& place) {
+    Evaluation evaluation;
+    evaluation.transfer = transfer_curve(series, statistics, place);
+    const GroupStatistics& dark = stack_of(series, statistics, true, place);
+    const GroupStatistics& bright = stack_of(series, statistics, false, place);
+    evaluation.saturation = static_cast<std::size_t>(
+        std::ranges::max_element(evaluation.transfer, {}, &TransferPoint::variance_dn2) -
+        evaluation.transfer.begin());
+    evaluation.dark_mean_dn = dark.images.mean_dn;
+    evaluation.dark_variance_dn2 = dark.images.temporal_variance_dn2;
+    evaluation.dark_zero_fraction = dark.zero_fraction;
+    set_figures(evaluation, bright.images, dark.images, place);
+    return evaluation;
+}
+
+}  // namespace stipple::emva1288

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "metrics/emva1288/image_statistics.h"
+#include "metrics/emva1288/series.h"
+
+namespace stipple::emva1288 {
+
+/// What a series says of a camera, in the terms of EMVA 1288 (linear cameras); formulas in
+/// docs/characterize.md.
+struct CameraFigures {
+    double gain_dn_per_e = 0;            ///< K
+    double quantum_efficiency = 0;       ///< eta
+    double dark_noise_e = 0;             ///< sigma_d, temporal
+    double saturation_e = 0;             ///< mu_e.sat
+    double dsnu_e = 0;                   ///< DSNU1288
+    double prnu = 0;                     ///< PRNU1288, a fraction
+    double snr_max = 0;                  ///< sqrt(mu_e.sat)
+    double sensitivity_threshold_p = 0;  ///< mu_p.min, photons with SNR 1
+    double dynamic_range = 0;            ///< mu_p.sat / mu_p.min
+    double linearity_error = 0;          ///< LE, a fraction
+};
+
+/// One exposure of the photon transfer curve.
+struct TransferPoint {
+    double photons = 0;
+    double mean_dn = 0;       ///< less the dark images of the same exposure time
+    double variance_dn2 = 0;  ///< temporal, likewise
+};
+
+struct Evaluation {
+    CameraFigures figures;
+    std::vector<TransferPoint> transfer;  ///< by photons
+    std::size_t saturation = 0;           ///< index of the point with the largest variance
+    double dark_mean_dn = 0;
+    double dark_variance_dn2 = 0;
+    /// Part of the values of the dark stack that are 0; where it is much, the black level cuts the
+    /// noise off and all figures are biased.
+    double dark_zero_fraction = 0;
+};
+
+/// The statistics of one group of images, and the part of its values that are 0.
+struct GroupStatistics {
+    ImageStatistics images;
+    double zero_fraction = 0;
+};
+
+/// Evaluates a series whose groups have these statistics, in their order.
+/// \throws InputError at `place` if the series lacks what an evaluation needs: ten bright pairs,
+/// with dark images of their exposure time, at least five of them below 70 % of saturation, more
+/// light giving more signal, and one stack of more than two images each, bright and dark.
+[[nodiscard]] Evaluation evaluate(const Series& series,
+                                  const std::vector<GroupStatistics>& statistics,
+                                  const std::string& place);
+
+}  // namespace stipple::emva1288

@@ -1,0 +1,143 @@
+#include "metrics/emva1288/series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace stipple::emva1288 {
+namespace {
+
+constexpr std::size_t kMaxGroups = 100000;
+constexpr std::size_t kMaxImages = 1000000;
+
+class Parser {
+  public:
+    explicit Parser(std::string_view place) : place_(place) {}
+
+    void read_line(const std::string& line) {
+        ++line_;
+        std::istringstream words(line);
+        std::string key;
+        if (!(words >> key) || key.front() == '#') return;
+        if (key == "v")
+            read_version(words);
+        else if (key == "n")
+            read_format(words);
+        else if (key == "b" || key == "d")
+            begin_group(words, key == "d");
+        else if (key == "i")
+            read_image(words);
+        else
+            fail(fmt::format("\"{}\" is none of v, n, b, d, i", key));
+        std::string rest;
+        if (words >> rest) fail(fmt::format("\"{}\" is more than the line needs", rest));
+    }
+
+    [[nodiscard]] Series finished() {
+        if (!version_) fail("the file has no line \"v 4.0\"");
+        if (series_.bits == 0) fail("the file has no line \"n bits width height\"");
+        end_group();
+        if (series_.groups.empty()) fail("the file names no images");
+        return std::move(series_);
+    }
+
+  private:
+    [[noreturn]] void fail(std::string_view problem) const {
+        throw InputError(fmt::format("{}:{}", place_, line_), problem);
+    }
+
+    double number(std::istringstream& words, std::string_view what, double least, double most) {
+        std::string word;
+        if (!(words >> word)) fail(fmt::format("{} is missing", what));
+        double value = 0;
+        const char* const end = word.data() + word.size();
+        const auto [stop, error] = std::from_chars(word.data(), end, value);
+        if (error != std::errc() || stop != end)
+            fail(fmt::format("{} \"{}\" is not a number", what, word));
+        if (!(value >= least && value <= most))
+            fail(fmt::format("{} {} is outside {}..{}", what, word, least, most));
+        return value;
+    }
+
+    int integer(std::istringstream& words, std::string_view what, double most) {
+        const double value = number(words, what, 1, most);
+        if (value != std::floor(value)) fail(fmt::format("{} is not a whole number", what));
+        return static_cast<int>(value);
+    }
+
+    void read_version(std::istringstream& words) {
+        std::string version;
+        words >> version;
+        if (version != "4.0")
+            fail(fmt::format("version \"{}\" of the descriptor; this program reads 4.0", version));
+        version_ = true;
+    }
+
+    void read_format(std::istringstream& words) {
+        if (series_.bits != 0) fail("a second line n");
+        series_.bits = integer(words, "bits", 16);
+        series_.cols = integer(words, "width", 65535);
+        series_.rows = integer(words, "height", 65535);
+    }
+
+    void begin_group(std::istringstream& words, bool dark) {
+        if (!version_ || series_.bits == 0) fail("the lines v and n come before the images");
+        end_group();
+        if (series_.groups.size() == kMaxGroups) fail("too many groups of images");
+        ImageGroup group{.dark = dark, .files = {}};
+        group.exposure_ns = number(words, "exposure in ns", 0, 1e18);
+        if (!dark) group.photons = number(words, "photons", 0, 1e12);
+        series_.groups.push_back(std::move(group));
+    }
+
+    void end_group() const {
+        if (!series_.groups.empty() && series_.groups.back().files.size() < 2)
+            fail("the group of images before has fewer than the two that tell noise");
+    }
+
+    void read_image(std::istringstream& words) {
+        if (series_.groups.empty()) fail("an image before the first line b or d");
+        if (++images_ > kMaxImages) fail("too many images");
+        std::string file;
+        std::getline(words >> std::ws, file);
+        while (!file.empty() && (file.back() == '\r' || file.back() == ' ')) file.pop_back();
+        if (file.empty()) fail("the name of the image is missing");
+        std::ranges::replace(file, '\\', '/');
+        series_.groups.back().files.push_back(file);
+    }
+
+    std::string place_;
+    int line_ = 0;
+    std::size_t images_ = 0;
+    bool version_ = false;
+    Series series_;
+};
+
+}  // namespace
+
+Series parse_series(std::string_view text, std::string_view place) {
+    Parser parser(place);
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        parser.read_line(std::string(text.substr(0, end)));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return parser.finished();
+}
+
+std::string series_text(const Series& series) {
+    std::string text = fmt::format("v 4.0\nn {} {} {}\n", series.bits, series.cols, series.rows);
+    for (const ImageGroup& group : series.groups) {
+        text += group.dark ? fmt::format("d {}\n", group.exposure_ns)
+                           : fmt::format("b {} {}\n", group.exposure_ns, group.photons);
+        for (const std::string& file : group.files) text += fmt::format("i {}\n", file);
+    }
+    return text;
+}
+
+}  // namespace stipple::emva1288

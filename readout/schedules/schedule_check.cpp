@@ -1,0 +1,82 @@
+#include "readout/schedules/schedule_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "readout/timing/readout_account.h"
+
+namespace stipple {
+namespace {
+
+/// The first slot of the period in which more than `most` exposures of a pixel are under way.
+std::optional<std::size_t> crowded_slot(std::span<const Exposure> exposures, int period_slots,
+                                        int most) {
+    std::vector<int> under_way(static_cast<std::size_t>(period_slots), 0);
+    for (const Exposure& e : exposures)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(e.span_slots()); ++i)
+            ++under_way[(e.first_slot + i) % under_way.size()];
+    for (std::size_t slot = 0; slot < under_way.size(); ++slot)
+        if (under_way[slot] > most) return slot;
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> store_problem(const ExposureSchedule& schedule, int charge_stores) {
+    if (schedule.charge_stores() <= charge_stores) return std::nullopt;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col)
+            if (const auto slot = crowded_slot(schedule.exposures(row, col),
+                                               schedule.period_slots(), charge_stores))
+                return fmt::format(
+                    "pixel ({}, {}) slot {}: exposures interleave; this schedule takes {} charge "
+                    "stores per pixel, the sensor has {}{}",
+                    row, col, *slot, schedule.charge_stores(), charge_stores,
+                    schedule.charge_stores() == 2 ? " (its key charge_stores=2 gives it two)"
+                                                  : ", and two is the most that can be emulated");
+    return std::nullopt;
+}
+
+std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
+                                          const ReadoutTiming& timing, FrameShape shape,
+                                          double slot_us) {
+    const std::int64_t budget = slot_clocks(timing, slot_us);
+    ReadoutAccount account(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
+    const std::int64_t first = account.first_steady_slot();
+    std::int64_t slowest = first;
+    for (std::int64_t slot = first; slot < first + schedule.period_slots(); ++slot)
+        if (account.of(slot).clocks > account.of(slowest).clocks) slowest = slot;
+    const SlotAccount& worst = account.of(slowest);
+    if (!worst.overrun) return std::nullopt;
+    const double clocks_per_us = static_cast<double>(timing.clock_hz) / 1e6;
+    return fmt::format(
+        "slot {}: reading {} samples takes {:.6g} us, the slot {:.6g} us; what takes longest is {}",
+        slowest % schedule.period_slots(), worst.counts.samples,
+        static_cast<double>(worst.clocks) / clocks_per_us, slot_us, name_of(worst.limit));
+}
+
+std::optional<std::string> group_remark(const ExposureSchedule& schedule,
+                                        const ColumnAddressing& addressing, FrameShape shape) {
+    if (addressing.kind != ColumnAddressing::Kind::kGroup) return std::nullopt;
+    const auto exposures_of = [&](int row, int col) {
+        return schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols());
+    };
+    const int rows = std::min(shape.rows, std::lcm(schedule.tile_rows(), addressing.group_rows));
+    const int cols = std::min(shape.cols, std::lcm(schedule.tile_cols(), addressing.group_cols));
+    for (int row = 0; row < rows; ++row)
+        for (int col = 0; col < cols; ++col)
+            if (!std::ranges::equal(exposures_of(row, col),
+                                    exposures_of(row - row % addressing.group_rows,
+                                                 col - col % addressing.group_cols)))
+                return fmt::format(
+                    "pixel ({}, {}) has exposures of its own in a group of {} x {} pixels, which "
+                    "is "
+                    "transferred whole whenever one of them is due",
+                    row, col, addressing.group_rows, addressing.group_cols);
+    return std::nullopt;
+}
+
+}  // namespace stipple

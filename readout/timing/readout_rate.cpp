@@ -1,0 +1,56 @@
+#include "readout/timing/readout_rate.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "readout/schedules/full_schedule.h"
+
+namespace stipple {
+namespace {
+
+double per_second(const ReadoutTiming& timing, double clocks) {
+    return static_cast<double>(timing.clock_hz) / clocks;
+}
+
+/// Energy of a readout of the whole window, which needs no exposure code.
+double full_energy_pj(ReadoutTiming timing, FrameShape shape) {
+    timing.code_bit_pj = 0;
+    const ExposureSchedule every_slot = full_schedule(1, 1);
+    return ReadoutAccount(timing, every_slot, shape, {}).of(0).counts.energy_pj;
+}
+
+}  // namespace
+
+ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedule,
+                    FrameShape shape) {
+    ReadoutRate rate;
+    rate.full = full_readout(timing, shape);
+    rate.full_energy_pj = full_energy_pj(timing, shape);
+    ReadoutAccount account(timing, schedule, shape, {});
+    const std::int64_t first = account.first_steady_slot();
+    const int period = schedule.period_slots();
+    double clocks = 0;
+    for (std::int64_t slot = first; slot < first + period; ++slot) {
+        const SlotAccount& it = account.of(slot);
+        rate.period += it.counts;
+        clocks += static_cast<double>(it.clocks);
+        if (it.clocks <= rate.slowest.clocks) continue;
+        rate.slowest = it;
+        rate.slowest_phase = slot % period;
+    }
+    if (rate.period.samples == 0)
+        throw InputError("exposure schedule", "reads no pixel of the window");
+    rate.mean_slot_clocks = clocks / period;
+    const double samples_per_slot = static_cast<double>(rate.period.samples) / period;
+    rate.even = even_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
+    const double even_clocks =
+        std::max(rate.even.total, static_cast<double>(account.timing().code_load_clocks));
+    rate.full_hz = per_second(timing, static_cast<double>(rate.full.total));
+    rate.coded_hz = per_second(timing, static_cast<double>(rate.slowest.clocks));
+    rate.mean_coded_hz = per_second(timing, rate.mean_slot_clocks);
+    rate.gain = rate.coded_hz / rate.full_hz;
+    rate.even_gain = static_cast<double>(rate.full.total) / even_clocks;
+    return rate;
+}
+
+}  // namespace stipple

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+#include "core/geometry.h"
+#include "readout/timing/readout_timing.h"
+
+namespace stipple {
+
+/// What is read of a row in a slot.
+struct RowLoad {
+    int row = 0;              ///< dark rows are below 0
+    int due = 0;              ///< pixels whose samples leave in the stream
+    int columns = 0;          ///< transferred: those that are due, or all of their groups
+    int channel_columns = 0;  ///< of the busiest channel
+    int conversions = 1;      ///< of the busiest ADC
+
+    bool operator==(const RowLoad&) const = default;
+};
+
+/// \throws InputError if `shape`, what is read of the array, is empty or the array is smaller.
+void check_window(const ReadoutTiming& timing, FrameShape shape);
+
+/// The load of a row of which the first `cols` columns are read, all of them.
+[[nodiscard]] RowLoad full_row(const ReadoutTiming& timing, int cols);
+
+/// Counts what a schedule makes a sensor read, with the sensor's way to address columns.
+class RowLoads {
+  public:
+    /// `shape` is what is read of the array. `timing` and `schedule` must outlive this.
+    /// \throws InputError as `check_window`.
+    RowLoads(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape);
+
+    /// Fills `loads` with the rows that are read at the end of `slot`, in scan order; dark rows
+    /// first, if any row is read. Time grows with the pixels that are due.
+    void list(std::int64_t slot, std::vector<RowLoad>& loads);
+
+    /// The columns that each channel transfers of `row` at the end of `slot`; for waveforms.
+    [[nodiscard]] std::span<const int> channel_columns(std::int64_t slot, int row);
+
+  private:
+    void mark_block(std::int64_t slot, int first_row);
+    [[nodiscard]] RowLoad count_marked();
+
+    const ReadoutTiming& timing_;
+    const ExposureSchedule& schedule_;
+    FrameShape shape_;
+    int block_rows_;                       ///< rows that are transferred alike
+    bool count_adcs_;                      ///< whether shared ADCs skip columns
+    std::vector<std::uint16_t> channel_;   ///< of each column
+    std::vector<std::uint16_t> adc_;       ///< of each column, where ADCs skip
+    std::vector<std::uint16_t> marked_;    ///< first columns of what is transferred in a block
+    std::vector<std::uint8_t> is_marked_;  ///< by group
+    std::vector<int> due_;                 ///< by row of the block
+    std::vector<int> by_channel_;
+    std::vector<int> by_adc_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_timing.h"
+#include "readout/timing/slot_readout.h"
+
+namespace stipple {
+
+/// The readout as a value change dump (VCD, IEEE 1364), for a waveform viewer. Times are in ps,
+/// rounded, so that cursors read true times; the vector `cycle` holds the clock, exactly.
+///
+/// Signals: slot_start (the first clock of a slot), slot, overrun, code_load; row_select (a row is
+/// on the column lines) and row, adc_busy; link_valid and link_row, columns (of that row),
+/// channel_busy (a bit per channel). Dark rows have numbers below 0.
+class Waveform {
+  public:
+    /// `timing` must outlive this.
+    Waveform(const ReadoutTiming& timing, std::string_view sensor);
+
+    /// Declarations and initial values: the beginning of the file.
+    [[nodiscard]] std::string head() const;
+    /// The changes of `slot` that `account` gives from clock `begin` on.
+    /// Precondition: slots come in order and `begin` is the end of the one before.
+    [[nodiscard]] std::string slot(ReadoutAccount& account, std::int64_t slot, std::int64_t begin);
+    /// The end of the last slot, at clock `end`.
+    [[nodiscard]] std::string tail(std::int64_t end);
+
+  private:
+    enum Signal : std::uint8_t {
+        kCycle,
+        kSlotStart,
+        kSlot,
+        kOverrun,
+        kCodeLoad,
+        kRowSelect,
+        kRow,
+        kAdcBusy,
+        kLinkValid,
+        kLinkRow,
+        kColumns,
+        kChannelBusy,
+        kSignals
+    };
+    struct Change {
+        std::int64_t cycle;
+        Signal signal;
+        std::string value;
+    };
+    void set(std::int64_t cycle, Signal signal, std::int64_t value);
+    void set_channels(std::int64_t cycle, const std::vector<bool>& busy);
+    void add_row(const RowTimes& row, std::span<const int> channel_columns);
+    [[nodiscard]] std::string take_until(std::int64_t cycle);
+    [[nodiscard]] int bits_of(Signal signal) const;
+
+    const ReadoutTiming& timing_;
+    std::string sensor_;
+    std::vector<Change> changes_;   ///< not yet taken
+    std::vector<std::string> now_;  ///< last values, by signal
+};
+
+}  // namespace stipple

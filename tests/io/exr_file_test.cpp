@@ -1,0 +1,140 @@
+#include "io/exr_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+using Floats = std::vector<float>;
+
+/// A 2 x 3 picture, all channels 0, 1, 2, ... in scan order plus 10 times their place in the list.
+void write_channels(const std::filesystem::path& file, const std::vector<std::string>& names,
+                    Imf::PixelType type, Imf::Header header = Imf::Header(3, 2)) {
+    std::vector<half> halves(6 * names.size());
+    Floats floats(6 * names.size());
+    Imf::FrameBuffer planes;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            floats[6 * c + i] = static_cast<float>(10 * c + i);
+            halves[6 * c + i] = half(floats[6 * c + i]);
+        }
+        header.channels().insert(names[c], Imf::Channel(type));
+        char* plane = type == Imf::HALF ? reinterpret_cast<char*>(&halves[6 * c])
+                                        : reinterpret_cast<char*>(&floats[6 * c]);
+        const std::size_t step = type == Imf::HALF ? sizeof(half) : sizeof(float);
+        planes.insert(names[c], Imf::Slice::Make(type, plane, header.dataWindow(), step, 3 * step));
+    }
+    Imf::OutputFile output(file.c_str(), header, 0);
+    output.setFrameBuffer(planes);
+    output.writePixels(2);
+}
+
+class ExrFileTest : public testing::Test {
+  protected:
+    Picture read() {
+        Picture picture;
+        read_exr(file_, picture);
+        return picture;
+    }
+    std::string problem() {
+        return message_of<InputError>([&] { read(); });
+    }
+
+    TemporaryFolder folder_;
+    std::filesystem::path file_ = folder_ / "f.exr";
+};
+
+TEST_F(ExrFileTest, ReadsHalfAndFloatColourAsPlanes) {
+    Floats expected;
+    for (const float plane : {20.0F, 10.0F, 0.0F})
+        for (int i = 0; i < 6; ++i) expected.push_back(plane + static_cast<float>(i));
+    for (const auto type : {Imf::HALF, Imf::FLOAT}) {
+        write_channels(file_, {"B", "G", "R", "A", "Z"}, type);
+        EXPECT_EQ(read().shape, (FrameShape{2, 3, 3}));
+        EXPECT_EQ(read().values, expected);
+    }
+}
+
+TEST_F(ExrFileTest, ReadsASingleChannelAsMono) {
+    for (const char* name : {"Y", "R", "light"}) {
+        write_channels(file_, {name, "A"}, Imf::HALF);
+        EXPECT_EQ(read().shape, (FrameShape{2, 3, 1}));
+        EXPECT_EQ(read().values, (Floats{0, 1, 2, 3, 4, 5}));
+    }
+}
+
+TEST_F(ExrFileTest, RefusesChannelsThatAreNeitherMonoNorColour) {
+    write_channels(file_, {"R", "G"}, Imf::HALF);
+    expect_parts(problem(), {"f.exr: holds the channels G, R; give R, G, B or Y alone"});
+    write_channels(file_, {"X", "Y", "Z"}, Imf::HALF);
+    expect_parts(problem(), {"f.exr: holds CIE XYZ colour"});
+    write_channels(file_, {"Z", "A"}, Imf::FLOAT);
+    expect_parts(problem(), {"f.exr: holds distances (channel Z), no light"});
+    write_channels(file_, {"A"}, Imf::HALF);
+    expect_parts(problem(), {"f.exr: holds the channels ;"});
+}
+
+TEST_F(ExrFileTest, ReadsWindowsThatDoNotBeginAtZero) {
+    const Imath::Box2i window({-5, 7}, {-3, 8});
+    write_channels(file_, {"Y"}, Imf::FLOAT, Imf::Header(window, window));
+    EXPECT_EQ(read().values, (Floats{0, 1, 2, 3, 4, 5}));
+}
+
+TEST_F(ExrFileTest, RefusesADataWindowThatIsNotTheDisplayWindow) {
+    const Imath::Box2i display({0, 0}, {9, 9});
+    write_channels(file_, {"Y"}, Imf::FLOAT, Imf::Header(display, {{0, 0}, {2, 1}}));
+    expect_parts(problem(), {"f.exr: its data window differs"});
+}
+
+TEST_F(ExrFileTest, NamesATruncatedFileWhateverItsLength) {
+    write_channels(file_, {"R", "G", "B"}, Imf::FLOAT);
+    const std::string whole = read_text(file_);
+    for (std::size_t length = 0; length < whole.size(); length += 3) {
+        write_text(file_, whole.substr(0, length));
+        expect_parts(problem(), {"f.exr: "});
+    }
+}
+
+TEST_F(ExrFileTest, NeverCrashesOnADamagedFile) {
+    write_channels(file_, {"Y"}, Imf::FLOAT);
+    const std::string whole = read_text(file_);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        for (const int bits : {0x01, 0x80, 0xFF}) {
+            std::string damaged = whole;
+            damaged[i] = static_cast<char>(damaged[i] ^ bits);
+            write_text(file_, damaged);
+            try {
+                read();
+            } catch (const InputError&) {
+            }
+        }
+}
+
+TEST_F(ExrFileTest, ReadsWhatItWroteBitByBit) {
+    for (const int planes : {1, 3}) {
+        const FrameShape shape{37, 21, planes};  // not a multiple of the 16 rows of a ZIP block
+        Floats frame(shape.sites());
+        for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = 0.1F * static_cast<float>(i);
+        write_exr(file_, "f.exr", shape, frame);
+        EXPECT_EQ(read().shape, shape);
+        EXPECT_EQ(read().values, frame);
+    }
+}
+
+TEST_F(ExrFileTest, WritesTheSameBytesForTheSameFrame) {
+    const Floats frame(12, 0.5F);
+    write_exr(file_, "f.exr", {2, 2, 3}, frame);
+    const std::string first = read_text(file_);
+    write_exr(file_, "f.exr", {2, 2, 3}, frame);
+    EXPECT_EQ(read_text(file_), first);
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdint>
+
+#include "core/error.h"
+#include "io/frame_writer.h"
+#include "io/image_file.h"
+#include "io/output_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+using Floats = std::vector<float>;
+
+/// While it lives no file of this process can grow beyond `bytes`: as on a full disk, a write
+/// stores what fits and then fails.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &old_);
+        const rlimit limit{bytes, old_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &old_);
+        std::signal(SIGXFSZ, old_handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+  private:
+    rlimit old_{};
+    void (*old_handler_)(int);
+};
+
+/// A picture that no codec makes small.
+Floats noise(FrameShape shape, std::uint32_t state) {
+    Floats frame(shape.sites());
+    for (float& value : frame) {
+        state = state * 1664525U + 1013904223U;
+        value = static_cast<float>(state >> 8U) / 16777216.0F;
+    }
+    return frame;
+}
+
+TEST(FullDiskTest, EveryVideoFormatReportsItAndLeavesNothingBehind) {
+    const FrameShape shape{64, 64, 3};
+    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv"})
+        for (const rlim_t limit : {0U, 20000U}) {
+            const TemporaryFolder folder;
+            const FileSizeLimit full_disk(limit);
+            const auto message = message_of<DeviceError>([&] {
+                FrameWriter writer(folder / name, shape);
+                for (std::uint32_t seed = 0; seed < 20; ++seed) writer.write(noise(shape, seed));
+                writer.finish();
+            });
+            expect_parts(message, {(folder / name).string()});
+            EXPECT_EQ(message.find("partial"), std::string::npos) << message;
+            EXPECT_EQ(folder.names(), std::vector<std::string>{}) << name;
+        }
+}
+
+TEST(FullDiskTest, AFailureOfTheLastBytesIsReportedOnClose) {
+    OutputFile file("/dev/full", "clip.npy");
+    file.write(std::as_bytes(std::span("small", 5)));
+    expect_parts(message_of<DeviceError>([&] { file.close(); }),
+                 {"clip.npy: cannot be written: No space left on device"});
+}
+
+TEST(FullDiskTest, APictureReportsIt) {
+    expect_parts(message_of<DeviceError>([] {
+                     write_png("/dev/full", {1, 1, 1}, Floats{1});
+                 }),
+                 {"/dev/full: cannot be written: No space left on device"});
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,134 @@
+#include "readout/timing/readout_rate.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "core/error.h"
+#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/schedule_catalogue.h"
+#include "sensor_model/sensor_config.h"
+#include "tests/readout/timing/random_readout.h"
+#include "tests/readout/timing/sensor_timing.h"
+
+namespace stipple {
+namespace {
+
+TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
+    const auto timing = sensor_timing("lux1310");
+    const auto rate = rate_of(timing, full_schedule(4, 4), {1024, 1280, 1});
+    EXPECT_EQ(rate.full.total, 84143);
+    EXPECT_EQ(rate.slowest.clocks, 84143);
+    EXPECT_EQ(rate.slowest_phase, 3);
+    EXPECT_DOUBLE_EQ(rate.gain, 1);
+    EXPECT_NEAR(rate.full_hz, 1069.6, 0.1);
+    // In the other three slots, only the exposure code is loaded.
+    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 8640) / 4.0);
+    EXPECT_NEAR(rate.full_energy_pj, 1024 * (100 + 1280 * (4 * 100 + 12 * 10.0)),
+                1);  // config/sensors/lux1310.toml; 12 bits cost four times as much as 10
+}
+
+// docs/readout_timing.md: per-pixel random codes on a LUX1310 with channels that skip columns take
+// about 31 of the 82 clocks of a row, evenly spread ones 23.3.
+TEST(ReadoutRateTest, RandomCodesOnLux1310) {
+    const auto timing = sensor_timing("lux1310");
+    const FrameShape shape{256, 1280, 1};
+    const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
+    EXPECT_NEAR(rate.even.row, 80 * 4.0 / 15 + 2, 1e-9);
+    EXPECT_NEAR(rate.gain, 82 / 31.0, 0.1);
+    EXPECT_GT(rate.even_gain, 3.3);
+    EXPECT_LT(rate.gain, rate.even_gain);
+}
+
+// With groups of 16 x 2 pixels, nearly every group has some pixel due: all is transferred.
+TEST(ReadoutRateTest, RandomCodesGainNothingInGroupsOf16By2) {
+    const auto timing = sensor_timing("lux1310", {"timing.addressing=group"});
+    const FrameShape shape{128, 1280, 1};
+    const auto rate = rate_of(timing, random_schedule(128, 1280, kPaperExposureSlots, 1), shape);
+    EXPECT_NEAR(rate.gain, 1, 0.01);
+}
+
+// A tile of one row and 15 columns on 3 channels, where pixel c is due in slot c: in each slot a
+// single channel has all the columns to read. With 4 channels they share them.
+TEST(ReadoutRateTest, ATileInStepWithTheChannelsIsSlow) {
+    std::vector<Exposure> exposures;
+    std::vector<std::uint32_t> first{0};
+    for (std::uint32_t col = 0; col < 15; ++col) {
+        exposures.push_back({col, 1});
+        first.push_back(col + 1);
+    }
+    const ExposureSchedule schedule(1, 15, 15, first, exposures);
+    ReadoutTiming timing;
+    timing.clock_hz = 1000;
+    timing.rows = 1;
+    timing.cols = 60;
+    timing.addressing.channels = 3;
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 4);
+    timing.addressing.channels = 4;
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 1);
+}
+
+bool reads_every_row(const ReadoutTiming& timing, const ExposureSchedule& schedule,
+                     FrameShape shape) {
+    std::vector<RowLoad> loads;
+    const auto all_rows = static_cast<std::size_t>(shape.rows + timing.dark_rows);
+    RowLoads row_loads(timing, schedule, shape);
+    const int period = schedule.period_slots();
+    for (int slot = period; slot < 2 * period; ++slot) {
+        row_loads.list(slot, loads);
+        if (loads.size() != all_rows) return false;
+    }
+    return true;
+}
+
+TEST(ReadoutRateTest, NoScheduleThatReadsEveryRowBeatsTheBound) {
+    int tested = 0;
+    for (std::uint32_t seed = 0; seed < 300; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        const FrameShape shape{draw(1, timing.rows), timing.cols, 1};
+        const auto schedule = random_schedule(draw(1, 5), timing.cols, std::vector{1, 2, 1}, seed);
+        // A chip that settles less for fewer columns may gain by uneven rows.
+        if (!timing.settle_clocks.empty() || !reads_every_row(timing, schedule, shape)) continue;
+        const auto rate = rate_of(timing, schedule, shape);
+        EXPECT_LE(rate.gain, rate.even_gain * (1 + 1e-12)) << "seed " << seed;
+        ++tested;
+    }
+    EXPECT_GT(tested, 30);
+}
+
+// All sensors of config/sensors with a timing, in windows whose mean loads are no whole numbers;
+// codes made for the hardware come nearest to the bound.
+TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
+    int tested = 0;
+    for (const auto& file : std::filesystem::directory_iterator(project_path("config/sensors")))
+        for (const auto kind :
+             {ColumnAddressing::Kind::kSkipChannel, ColumnAddressing::Kind::kGroup}) {
+            Config config(file.path(), {});
+            const SensorParams params = read_sensor(config);
+            auto timing = read_timing(config, params.bit_depth);
+            if (!timing) continue;
+            timing->addressing.kind = kind;
+            for (const FrameShape shape : {FrameShape{128, 128, 1}, FrameShape{64, 320, 1}})
+                for (const char* name : {"random", "tiled", "hardware_tiled"}) {
+                    Config schedule(
+                        project_path("config/schedules") / (std::string(name) + ".toml"), {});
+                    const auto made = read_schedule(schedule, shape, 1, timing->addressing);
+                    if (!reads_every_row(*timing, made.schedule, shape)) continue;
+                    const auto rate = rate_of(*timing, made.schedule, shape);
+                    EXPECT_LE(rate.gain, rate.even_gain * (1 + 1e-12))
+                        << file.path().filename() << " " << name << " " << shape.cols;
+                    ++tested;
+                }
+        }
+    EXPECT_GT(tested, 60);
+}
+
+TEST(ReadoutRateTest, AScheduleThatReadsNothingIsRefused) {
+    const ExposureSchedule nothing(1, 1, 1, {0, 0}, {});
+    EXPECT_THROW(static_cast<void>(rate_of(sensor_timing("vita"), nothing, {4, 4, 1})), InputError);
+}
+
+}  // namespace
+}  // namespace stipple
