@@ -22,6 +22,7 @@
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
 #include "core/error.h"
+#include "core/version.h"
 #include "io/pending_output.h"
 
 namespace stipple {
@@ -51,7 +52,7 @@ SessionRecord session_record(const CameraDescription& camera, const CameraSettin
     record.camera = camera;
     record.settings = settings;
     record.host = host_facts();
-    record.host["stipple"] = STIPPLE_VERSION;
+    record.host["stipple"] = version();
     record.started_realtime_ns = realtime_ns();
     return record;
 }

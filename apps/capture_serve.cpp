@@ -16,6 +16,7 @@
 #include "apps/session_report.h"
 #include "apps/standard_error.h"
 #include "capture/serve/gige_server.h"
+#include "core/version.h"
 
 namespace stipple {
 namespace {
@@ -70,7 +71,7 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     const auto source = open_served_source(options.source);
     GigeServerOptions settings = options.server;
     settings.model = source->image().coded_header.empty() ? "Recording" : "Coded sensor";
-    settings.version = STIPPLE_VERSION;
+    settings.version = version();
     JsonFile json(run);
     GigeServer server(*source, settings);
     fmt::print("{}\n", ready_text(*source, settings));

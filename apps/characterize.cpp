@@ -14,13 +14,13 @@
 #include "apps/leftovers.h"
 #include "apps/number_check.h"
 #include "apps/progress.h"
-#include "apps/sensor_setup.h"
 #include "apps/session_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "apps/text_file.h"
 #include "core/error.h"
 #include "io/pending_output.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

@@ -13,9 +13,9 @@
 #include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/quality_json.h"
-#include "apps/read_ahead.h"
 #include "apps/session_report.h"
 #include "apps/subcommands.h"
+#include "capture/recording/read_ahead.h"
 #include "core/error.h"
 #include "metrics/video_quality.h"
 
@@ -75,7 +75,7 @@ std::optional<std::int64_t> frames_to_come(const CompareOptions& options,
 
 void compare(const CompareOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    ReadAhead result(
+    ReadAhead result = read_footage(
         options.result,
         {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
     if (result.gamma_coded())
@@ -83,7 +83,7 @@ void compare(const CompareOptions& options, const RunOptions& run) {
             fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
                         "stipple are tone-mapped; compare the .npy or the folder",
                         options.result));
-    ReadAhead reference(options.reference, options.footage);
+    ReadAhead reference = read_footage(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
     QualityMeter meter(reference.shape(), options.quality);
     VideoQuality quality;

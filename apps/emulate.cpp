@@ -5,23 +5,24 @@
 #include <optional>
 #include <string>
 
+#include "apps/emulation_text.h"
 #include "apps/footage_arguments.h"
+#include "apps/footage_origin.h"
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
 #include "apps/output_names.h"
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
-#include "apps/read_ahead.h"
-#include "apps/recording.h"
 #include "apps/recording_faults.h"
 #include "apps/sensor_arguments.h"
 #include "apps/session_report.h"
-#include "apps/slot_emulator.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
-#include "apps/waveform_file.h"
+#include "capture/recording/read_ahead.h"
 #include "io/frame_writer.h"
+#include "readout/stream_recorder.h"
+#include "readout/timing/waveform_file.h"
 
 namespace stipple {
 namespace {
@@ -36,7 +37,7 @@ struct EmulateOptions {
 };
 
 void emulate(const EmulateOptions& options, const RunOptions& run) {
-    ReadAhead footage(options.footage, options.reading);
+    ReadAhead footage = read_footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
     if (const auto hz = footage.film_hz())
@@ -48,29 +49,31 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
         say_leftover(options.truth);
     }
-    Recording recording(options.output, run.force, setup,
-                        origin_of(options.footage, options.reading));
+    StreamRecorder recorder(options.output, run.force, setup,
+                            provenance_of(setup, origin_of(options.footage, options.reading)));
+    say_leftover(options.output);
     Progress progress(run, "emulating", footage.slots());
     auto frame = footage.next();
     for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {
-        recording.expose(frame);
+        recorder.expose(frame);
         if (truth) truth->write(frame);
         progress.advance();
     }
     if (progress.done() == 0) throw_if_stopped();
     if (truth) truth->finish();
-    recording.finish();
+    recorder.finish();
     if (waveform)
-        waveform->write(*recording.account(), setup.params.name, 0,
-                        std::min<std::int64_t>(options.waveform.slots, progress.done()));
+        waveform->write(*recorder.account(), setup.params.name,
+                        {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
+                        [] { return stop_signal() == 0; });
     if (frame.empty() && footage.recording() != nullptr) {
         const RecordingFootage& frames = *footage.recording();
         say_warning(recording_faults(options.footage, frames));
         say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
     }
     const double slots_per_s = static_cast<double>(progress.done()) / progress.seconds();
-    json.write(recording_json(recording, slots_per_s));
-    run.say(fmt::format("{}: {}", options.output, recording_text(recording, slots_per_s)));
+    json.write(emulation_json(recorder, slots_per_s));
+    run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_s)));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "apps/number_check.h"
+#include "apps/session_report.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -31,6 +32,11 @@ void check_recording_options(const std::string& recording, const FootageOptions&
         throw InputError(recording,
                          "is a recording of a camera, whose numbers are linear: --transfer, "
                          "--luminance and --max-value are for other footage");
+}
+
+ReadAhead read_footage(const std::string& source, const FootageOptions& options) {
+    if (is_recording(source)) check_recording_options(source, options);
+    return ReadAhead(source, options, say_warning);
 }
 
 }  // namespace stipple

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "io/footage_reader.h"
+#include "capture/recording/read_ahead.h"
 
 namespace stipple {
 
@@ -14,6 +14,10 @@ void add_footage_arguments(Command& command, FootageOptions& options,
 
 /// `--max-value V`: positive and finite.
 void add_max_value(Command& command, std::optional<double>& max_value);
+
+/// Footage or a recording. What its reader warns of goes to standard error. \throws InputError as
+/// ReadAhead and check_recording_options.
+[[nodiscard]] ReadAhead read_footage(const std::string& source, const FootageOptions& options);
 
 /// \throws InputError for a recording if any of these options was given: its numbers are linear.
 void check_recording_options(const std::string& recording, const FootageOptions& options);

@@ -6,14 +6,14 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/provenance.h"
 #include "apps/recording_info.h"
 #include "apps/stream_text.h"
-#include "apps/stretched_slots.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "readout/provenance.h"
+#include "readout/timing/stretched_slots.h"
 
 namespace stipple {
 namespace {

@@ -8,7 +8,10 @@
 #include <string>
 #include <utility>
 
+#include "apps/emulation_text.h"
+#include "apps/footage_origin.h"
 #include "apps/interrupt.h"
+#include "apps/leftovers.h"
 #include "apps/number_text.h"
 #include "apps/progress.h"
 #include "apps/rate_warning.h"
@@ -47,22 +50,38 @@ FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription&
     return origin;
 }
 
+void say_event(const SessionEvent& event) {
+    if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
+    if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
+}
+
 }  // namespace
 
 LiveEmulation::LiveEmulation(const LiveArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
-      camera_(arguments.camera, arguments.session, arguments.queue_frames),
+      camera_(
+          [camera = arguments.camera, settings = camera_settings(arguments.camera)] {
+              return open_picture_camera(camera, settings);
+          },
+          {.session = session_options(arguments.camera, arguments.session),
+           .waiting_frames = arguments.queue_frames,
+           .from_start = is_replay(arguments.camera),
+           .tell = say_event}),
       to_light_(camera_.layout(), arguments.black_level_dn),
       setup_(set_up_sensor(arguments.sensor, to_light_.shape(), to_light_.filter())),
-      recording_(arguments.output, run.force, setup_, origin_of(arguments, camera_.description())),
+      recorder_(arguments.output, run.force, setup_,
+                provenance_of(setup_, origin_of(arguments, camera_.description()))),
       light_(to_light_.shape().sites()) {
+    say_leftover(arguments.output);
     say_warnings(camera_.description());
     say_warning(mosaic_warning(setup_, to_light_.filter()));
     // Threads and code are in place before the first frame comes.
-    static_cast<void>(SlotEmulator(setup_).expose(light_));
+    static_cast<void>(Emulator(setup_).expose(light_));
     if (!arguments.preview.file.empty())
-        preview_.emplace(arguments.preview.file,
-                         PreviewDecoder(stream_header_of(setup_, {}), arguments.preview));
+        preview_.emplace(
+            arguments.preview.file,
+            PreviewDecoder(stream_header_of(setup_, {}), preview_options(arguments.preview)));
 }
 
 bool LiveEmulation::wants_more(double seconds) const {
@@ -98,7 +117,7 @@ std::uint64_t LiveEmulation::lost_to_hold(std::uint64_t lost) {
             "{}: {} are missing before a frame, too many beside those that came: the frame before "
             "stands in for {} of them, so slots from {} on come too early",
             arguments_.camera.address, counted(lost, "frame"), held,
-            recording_.stats().slots + static_cast<std::int64_t>(held)));
+            recorder_.stats().slots + static_cast<std::int64_t>(held)));
     unheld_slots_ += lost - held;
     return held;
 }
@@ -114,7 +133,7 @@ void LiveEmulation::hold_missing(const FrameRecord& record) {
 }
 
 void LiveEmulation::expose(std::int64_t arrival_ns) {
-    const auto packets = recording_.expose(light_);
+    const auto packets = recorder_.expose(light_);
     if (preview_) preview_->add(packets, arrival_ns);
 }
 
@@ -137,7 +156,7 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
     ++late_slots_;
     if (late_.size() < kMostLateListed)
-        late_.push_back({recording_.stats().slots - 1, frame.record.host_monotonic_ns, latency_us});
+        late_.push_back({recorder_.stats().slots - 1, frame.record.host_monotonic_ns, latency_us});
 }
 
 void LiveEmulation::compare_rates() {
@@ -148,16 +167,16 @@ void LiveEmulation::compare_rates() {
 std::optional<double> LiveEmulation::slots_per_s() const {
     const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
     if (passed_s <= 0) return std::nullopt;  // of a single slot
-    return static_cast<double>(recording_.stats().slots - 1) / passed_s;
+    return static_cast<double>(recorder_.stats().slots - 1) / passed_s;
 }
 
 void LiveEmulation::put_in_place() {
     try {
-        if (!failure_) return recording_.finish();
+        if (!failure_) return recorder_.finish();
     } catch (...) {
         failure_ = std::current_exception();
     }
-    if (!recording_.keep()) return;  // the message of the failure says where it is
+    if (!recorder_.keep()) return;  // the message of the failure says where it is
     say_kept(arguments_.output.c_str());
 }
 
@@ -181,7 +200,7 @@ void LiveEmulation::finish() {
 }
 
 nlohmann::ordered_json LiveEmulation::json() const {
-    nlohmann::ordered_json json = recording_json(recording_, slots_per_s());
+    nlohmann::ordered_json json = emulation_json(recorder_, slots_per_s());
     json["frames"] = latencies_.count();
     json["frames_hz"] = rate_.hz() ? nlohmann::ordered_json(*rate_.hz()) : nullptr;
     json["slots_hz"] = 1e6 / setup_.params.slot_us;
@@ -211,7 +230,7 @@ std::string LiveEmulation::text() const {
         "incomplete{}\n"
         "lost: {}; incomplete: {}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
-        arguments_.output, recording_text(recording_, slots_per_s()),
+        arguments_.output, emulation_text(recorder_, slots_per_s()),
         counted(latencies_.count(), "frame"), counted(late_slots_, "slot"),
         arguments_.late_after_slots, held_slots_,
         unheld_slots_ == 0 ? "" : fmt::format(", {} left out", unheld_slots_), lost_text(totals_),

@@ -9,15 +9,15 @@
 
 #include "apps/camera_arguments.h"
 #include "apps/capture_limits.h"
-#include "apps/live_camera.h"
 #include "apps/live_preview.h"
 #include "apps/preview_arguments.h"
-#include "apps/recording.h"
 #include "apps/run_options.h"
-#include "apps/sensor_setup.h"
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
+#include "capture/live_camera.h"
 #include "core/duration_histogram.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
 
 namespace stipple {
 
@@ -70,7 +70,7 @@ class LiveEmulation {
     LiveCamera camera_;
     FrameLight to_light_;
     SensorSetup setup_;
-    Recording recording_;
+    StreamRecorder recorder_;
     std::optional<LivePreview> preview_;
     SessionTotals totals_;  ///< from the first slot to the last
     std::vector<float> light_;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "apps/interrupt.h"
+#include "apps/preview_picture.h"
 #include "apps/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/parallel.h"

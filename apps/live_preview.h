@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "apps/preview_decoder.h"
 #include "core/duration_histogram.h"
+#include "decoder/preview.h"
 
 namespace stipple {
 

@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
+#include "core/version.h"
 #include "io/disk_sync.h"
 #include "io/pending_output.h"
 
@@ -87,7 +88,7 @@ CommandLine::Parsed run(int argc, char** argv) {
     CommandLine line(
         "stipple",
         "Stipple: emulate a coded-exposure sensor, decode its stream to high-speed video",
-        STIPPLE_VERSION);
+        version());
     Command root = line.root();
     root.footer(kExamples);
     for (const auto add :

@@ -30,6 +30,10 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
         .type_name("WxH");
 }
 
+PreviewOptions preview_options(const PreviewArguments& arguments) {
+    return {.method = decode_method_from_name(arguments.method), .size = arguments.size};
+}
+
 void check_preview_file(const PreviewArguments& arguments, bool force) {
     const PendingOutput probe(arguments.file, force);
 }

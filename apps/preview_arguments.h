@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "core/geometry.h"
+#include "decoder/preview.h"
 
 namespace stipple {
 
@@ -17,6 +17,8 @@ struct PreviewArguments {
 
 /// `--preview`, `--preview-method` and `--preview-size`.
 void add_preview_arguments(Command& command, PreviewArguments& arguments);
+
+[[nodiscard]] PreviewOptions preview_options(const PreviewArguments& arguments);
 
 /// \throws InputError if `file` cannot become the preview of a recording named `output`: another
 /// file of that name, no folder, or the recording itself.

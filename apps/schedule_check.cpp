@@ -5,9 +5,9 @@
 #include "apps/json_file.h"
 #include "apps/schedule_choice.h"
 #include "apps/schedule_commands.h"
-#include "apps/sensor_setup.h"
 #include "core/error.h"
 #include "readout/schedules/schedule_check.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

@@ -1,8 +1,8 @@
 #include "apps/schedule_choice.h"
 
 #include "apps/number_check.h"
-#include "apps/sensor_setup.h"
 #include "apps/size_argument.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/command_line.h"
-#include "apps/sensor_setup.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

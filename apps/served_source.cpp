@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "apps/coded_frames.h"
 #include "apps/footage_arguments.h"
+#include "apps/footage_origin.h"
 #include "apps/names_of.h"
 #include "apps/session_report.h"
+#include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
@@ -39,8 +40,8 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
     if (choice.mode == "coded" || !is_recording(choice.path)) say_warnings_of_footage(choice);
     if (choice.mode == "coded")
-        return std::make_unique<CodedFrames>(choice.path, choice.reading, choice.sensor,
-                                             choice.frames_per_s);
+        return std::make_unique<CodedFrames>(choice.path, origin_of(choice.path, choice.reading),
+                                             choice.sensor, choice.frames_per_s);
     if (!is_recording(choice.path)) return open_footage(choice);
     if (!choice.format.empty())
         throw InputError("--format " + choice.format,

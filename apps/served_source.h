@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/sensor_setup.h"
 #include "capture/serve/frame_source.h"
 #include "io/footage_reader.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "apps/account_text.h"
+#include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/number_check.h"
-#include "apps/sensor_setup.h"
 #include "apps/size_argument.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
 #include "core/error.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {
@@ -42,8 +43,10 @@ void time_readout(const TimingOptions& options, const RunOptions& run) {
     ReadoutAccount account(timing, named.schedule, shape, budget);
     const ReadoutRate rate = rate_of(timing, named.schedule, shape);
     if (waveform)
-        waveform->write(account, sensor.params.name, account.first_steady_slot(),
-                        std::min(options.waveform.slots, named.schedule.period_slots()));
+        waveform->write(account, sensor.params.name,
+                        {account.first_steady_slot(),
+                         std::min(options.waveform.slots, named.schedule.period_slots())},
+                        [] { return stop_signal() == 0; });
     nlohmann::ordered_json figures{{"sensor", sensor.params.name}, {"schedule", named.name}};
     figures.update(rate_json(rate, account));
     json.write(figures);

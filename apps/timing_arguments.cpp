@@ -2,8 +2,8 @@
 
 #include "apps/number_check.h"
 #include "apps/output_names.h"
-#include "apps/sensor_setup.h"
 #include "core/error.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

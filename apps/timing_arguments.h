@@ -4,8 +4,8 @@
 #include <string>
 
 #include "apps/command_line.h"
-#include "apps/waveform_file.h"
 #include "readout/timing/readout_account.h"
+#include "readout/timing/waveform_file.h"
 
 namespace stipple {
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "apps/interrupt.h"
+#include "apps/leftovers.h"
 #include "apps/progress.h"
-#include "apps/recording.h"
-#include "apps/sensor_setup.h"
+#include "readout/provenance.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
 
 namespace stipple {
 
@@ -26,17 +28,19 @@ FluxVideo render_video(const Scene& scene, const RunOptions& run) {
 RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
                            const std::filesystem::path& file, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor({.schedule = schedule}, light.shape());
-    Recording recording(file, run.force, setup, {.name = "embedded scene"});
+    StreamRecorder recorder(file, run.force, setup,
+                            provenance_of(setup, {.name = "embedded scene"}));
+    say_leftover(file);
     Progress progress(run, fmt::format("recording ({})", schedule), light.slots());
     for (int slot = 0; slot < light.slots(); ++slot) {
         throw_if_stopped();
-        recording.expose(light.frame(slot));
+        recorder.expose(light.frame(slot));
         progress.advance();
     }
-    recording.finish();
+    recorder.finish();
     const double duration_us = light.slots() * setup.params.slot_us;
-    const std::uint64_t bits = recording.payload_bits();
-    return {recording.compression_ratio(), bits, static_cast<double>(bits) / duration_us};
+    const std::uint64_t bits = recorder.payload_bits();
+    return {recorder.compression_ratio(), bits, static_cast<double>(bits) / duration_us};
 }
 
 VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod method,

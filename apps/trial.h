@@ -27,7 +27,7 @@ struct RecordingSize {
 [[nodiscard]] FluxVideo render_video(const Scene& scene, const RunOptions& run);
 
 /// Records `light` with the default sensor and the named schedule to the stream `file`.
-/// \throws Interrupted, and as Recording.
+/// \throws Interrupted, and as StreamRecorder.
 RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
                            const std::filesystem::path& file, const RunOptions& run);
 

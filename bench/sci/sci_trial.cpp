@@ -12,11 +12,10 @@
 #include "decoder/reconstruct.h"
 #include "io/footage_reader.h"
 #include "metrics/video_quality.h"
-#include "readout/coded_sensor.h"
 #include "readout/schedules/volume_schedule.h"
+#include "readout/stream_recorder.h"
 #include "scenes/scene.h"
 #include "sensor_model/sensor_config.h"
-#include "stream/stream_writer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -34,20 +33,13 @@ SensorParams ideal_sensor(const SciSensor& sensor) {
 
 void write_stream(const FluxVideo& video, const ExposureSchedule& schedule,
                   const SensorParams& params, const std::filesystem::path& file) {
-    StreamWriter writer(file, {.shape = video.shape(),
-                               .slot_us = params.slot_us,
-                               .calibration = calibration_of(params),
-                               .schedule = schedule,
-                               .schedule_source = {},
-                               .schedule_name = "masks",
-                               .provenance = ""});
-    CodedSensor sensor(params, video.shape(), schedule, 1);
-    SamplePacket packet;
-    for (int slot = 0; slot < video.slots(); ++slot) {
-        sensor.expose(video.frame(slot), packet);
-        writer.write(packet);
-    }
-    writer.finish();
+    const SensorSetup setup{.params = params,
+                            .schedule = {.name = "masks", .source = {}, .schedule = schedule},
+                            .shape = video.shape(),
+                            .footage = video.shape()};
+    StreamRecorder recorder(file, true, setup, "");
+    for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
+    recorder.finish();
 }
 
 }  // namespace

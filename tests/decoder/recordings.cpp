@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "readout/coded_sensor.h"
+#include "readout/emulator.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
@@ -16,17 +16,16 @@ const SampleNoise& paper_noise() {
 Recorded record(const FluxVideo& video, const ExposureSchedule& schedule, SensorParams params,
                 std::uint64_t seed) {
     params.charge_stores = schedule.charge_stores();
-    Recorded recorded{{.shape = video.shape(),
-                       .slot_us = 5000,
-                       .calibration = calibration_of(params),
-                       .schedule = schedule,
-                       .schedule_source = {},
-                       .schedule_name = "test",
-                       .provenance = ""},
-                      std::vector<SamplePacket>(static_cast<std::size_t>(video.slots()))};
-    CodedSensor sensor(params, video.shape(), recorded.header.schedule, seed);
+    const SensorSetup setup{.params = params,
+                            .schedule = {.name = "test", .source = {}, .schedule = schedule},
+                            .shape = video.shape(),
+                            .footage = video.shape(),
+                            .seed = seed};
+    Recorded recorded{stream_header_of(setup, ""), {}};
+    Emulator emulator(setup);
     for (int slot = 0; slot < video.slots(); ++slot)
-        sensor.expose(video.frame(slot), recorded.packets[static_cast<std::size_t>(slot)]);
+        for (const SamplePacket& packet : emulator.expose(video.frame(slot)))
+            recorded.packets.push_back(packet);
     return recorded;
 }
 

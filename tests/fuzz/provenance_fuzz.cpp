@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/provenance.h"
+#include "readout/provenance.h"
 #include "stream/plain_text.h"
 
 /// Input: the provenance text of a stream. The command made of it is one line of plain text.

@@ -7,11 +7,10 @@
 #include "core/config.h"
 #include "decoder/measurements.h"
 #include "io/footage_reader.h"
-#include "readout/coded_sensor.h"
 #include "readout/schedules/schedule_catalogue.h"
+#include "readout/stream_recorder.h"
 #include "sensor_model/colour_mosaic.h"
 #include "sensor_model/sensor_config.h"
-#include "stream/stream_writer.h"
 #include "tests/support/footage_folder.h"
 #include "tests/support/temporary_folder.h"
 
@@ -35,44 +34,21 @@ std::optional<FluxVideo> read_clip(const std::string& name, bool luminance) {
     return video;
 }
 
-SensorParams with_stores_for(const ExposureSchedule& schedule, SensorParams sensor) {
-    sensor.charge_stores = schedule.charge_stores();
-    return sensor;
+/// A sensor with as many charge stores as the schedule takes.
+SensorSetup setup_of(const NamedSchedule& named, FrameShape footage, const SensorParams& sensor,
+                     std::uint64_t seed) {
+    SensorSetup setup{
+        .params = sensor, .schedule = named, .shape = footage, .footage = footage, .seed = seed};
+    setup.params.charge_stores = named.schedule.charge_stores();
+    return setup;
 }
 
-/// A sensor with a schedule, and the stream that it writes.
-class Recorder {
-  public:
-    Recorder(const NamedSchedule& named, FrameShape shape, ColourFilter cfa,
-             const SensorParams& sensor = {})
-        : params_(with_stores_for(named.schedule, sensor)),
-          header_{.shape = shape,
-                  .slot_us = params_.slot_us,
-                  .calibration = calibration_of(params_),
-                  .schedule = named.schedule,
-                  .schedule_source = named.source,
-                  .schedule_name = named.name,
-                  .provenance = "",
-                  .cfa = cfa} {}
-
-    /// The samples of `light(slot)`, frames of the array.
-    template <typename Light>
-    void write(int slots, std::uint64_t seed, const std::filesystem::path& file,
-               const Light& light) const {
-        StreamWriter writer(file, header_);
-        CodedSensor sensor(params_, header_.shape, header_.schedule, seed);
-        SamplePacket packet;
-        for (int slot = 0; slot < slots; ++slot) {
-            sensor.expose(light(slot), packet);
-            writer.write(packet);
-        }
-        writer.finish();
-    }
-
-  private:
-    SensorParams params_;
-    StreamHeader header_;
-};
+void write_stream(const FluxVideo& video, const SensorSetup& setup,
+                  const std::filesystem::path& file) {
+    StreamRecorder recorder(file, true, setup, "");
+    for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
+    recorder.finish();
+}
 
 }  // namespace
 
@@ -112,8 +88,7 @@ void write_recording(const FluxVideo& video, const std::string& schedule,
 
 void write_recording(const FluxVideo& video, const NamedSchedule& named, std::uint64_t seed,
                      const std::filesystem::path& file) {
-    const Recorder recorder(named, video.shape(), ColourFilter::kNone);
-    recorder.write(video.slots(), seed, file, [&](int slot) { return video.frame(slot); });
+    write_stream(video, setup_of(named, video.shape(), {}, seed), file);
 }
 
 SensorParams sensor_of(const std::string& name, const std::vector<std::string>& settings,
@@ -131,19 +106,23 @@ double clipping_light(const SensorParams& sensor) {
 
 void write_recording(const FluxVideo& video, const NamedSchedule& named, const SensorParams& sensor,
                      const std::filesystem::path& file) {
-    const Recorder recorder(named, video.shape(), ColourFilter::kNone, sensor);
-    recorder.write(video.slots(), kSeed, file, [&](int slot) { return video.frame(slot); });
+    write_stream(video, setup_of(named, video.shape(), sensor, kSeed), file);
 }
 
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& named,
                   const std::filesystem::path& file) {
-    const Recorder recorder(
-        named, {.rows = video.shape().rows, .cols = video.shape().cols, .planes = 1}, cfa);
+    const SensorSetup setup = setup_of(
+        named, {.rows = video.shape().rows, .cols = video.shape().cols, .planes = 1}, {}, kSeed);
+    StreamHeader header = stream_header_of(setup, "");
+    header.cfa = cfa;
+    StreamWriter writer(file, header);
+    Emulator emulator(setup);
     std::vector<float> mosaic(video.shape().pixels());
-    recorder.write(video.slots(), kSeed, file, [&](int slot) {
+    for (int slot = 0; slot < video.slots(); ++slot) {
         take_mosaic(cfa, video.shape(), video.frame(slot), mosaic);
-        return std::span<const float>(mosaic);
-    });
+        for (const SamplePacket& packet : emulator.expose(mosaic)) writer.write(packet);
+    }
+    writer.finish();
 }
 
 FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method) {

@@ -1,4 +1,4 @@
-#include "apps/sensor_setup.h"
+#include "readout/sensor_file.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <future>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -12,12 +14,14 @@
 namespace stipple {
 
 /// Footage, or a recording of a camera, whose next frame is read in the background while one is
-/// worked on. What its reader warns of goes to standard error.
+/// worked on.
 class ReadAhead {
   public:
-    /// \throws InputError as FootageReader and RecordingFootage; if a recording shall have another
-    /// transfer than linear or be reduced to luminance; as check_memory if frames are too large.
-    ReadAhead(const std::filesystem::path& source, const FootageOptions& options);
+    /// Hands what the reader warns of to `warn`. The light of a recording is linear; it takes no
+    /// options. \throws InputError as FootageReader and RecordingFootage, and as check_memory if
+    /// frames are too large.
+    ReadAhead(const std::filesystem::path& source, const FootageOptions& options,
+              std::function<void(const std::string&)> warn);
     ~ReadAhead() = default;
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;
@@ -39,9 +43,10 @@ class ReadAhead {
     [[nodiscard]] const RecordingFootage* recording() const;
 
   private:
-    void say_warnings();
+    void pass_warnings_on();
     void start_reading();
 
+    std::function<void(const std::string&)> warn_;
     std::variant<FootageReader, RecordingFootage> reader_;
     std::vector<float> current_;
     std::vector<float> coming_;

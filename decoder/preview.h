@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "apps/preview_arguments.h"
 #include "decoder/checkpoint.h"
 #include "decoder/decode_method.h"
 #include "decoder/measurements.h"
@@ -25,12 +24,17 @@ struct PreviewFrame {
     [[nodiscard]] double mean_light() const;
 };
 
+struct PreviewOptions {
+    DecodeMethod method = DecodeMethod::kNaive;  ///< or kFast
+    std::optional<FrameShape> size;              ///< rows and columns of the middle of the frame
+};
+
 /// Decodes single frames out of the midst of a stream, from as few slots as hold the exposures
 /// around them. Not so many voxels are decoded that it takes more than some seconds or some hundred
 /// MB: of a frame that is too large only the middle is.
 class PreviewDecoder {
   public:
-    PreviewDecoder(StreamHeader header, const PreviewArguments& arguments);
+    PreviewDecoder(StreamHeader header, const PreviewOptions& options);
 
     /// Slots that a frame is made of.
     [[nodiscard]] int slots() const { return region_.slots; }
@@ -49,9 +53,5 @@ class PreviewDecoder {
     DecodeMethod method_;
     VideoWindow region_;  ///< of the first slots
 };
-
-/// Replaces `file` at once as a whole: a .png with what is too bright in red and a line of text
-/// above, or a .npy of linear light, (1, H, W) or (1, H, W, 3). \throws InputError, DeviceError.
-void write_preview(const std::filesystem::path& file, const PreviewFrame& frame);
 
 }  // namespace stipple

@@ -3,10 +3,19 @@
 #include <string>
 #include <vector>
 
-#include "apps/footage_origin.h"
-#include "apps/sensor_setup.h"
+#include "io/footage_reader.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
+
+/// Where light comes from and how its numbers were read: what a stream says of its footage.
+struct FootageOrigin {
+    std::string name = {};       ///< without folders
+    std::string sha256 = {};     ///< of its files, one after the other; empty where there are none
+    std::string recording = {};  ///< tells recordings of one camera apart; empty of files
+    FootageOptions reading = {};
+    double black_level_dn = 0;  ///< that was taken off a recording
+};
 
 /// The text that a stream carries of where it comes from (TOML, docs/stream_format.md): all that
 /// decides its bytes. No time and no folder, so that the same run gives the same bytes.

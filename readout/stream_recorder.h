@@ -1,24 +1,23 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <span>
 #include <string>
 
-#include "apps/slot_emulator.h"
 #include "io/pending_output.h"
+#include "readout/emulator.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {
 
-/// An emulated sensor whose samples go to a stream file.
-class Recording {
+/// An emulated sensor whose samples go to a stream file: light in, packets out. The file appears
+/// under its name when `finish` or `keep` has put it there.
+class StreamRecorder {
   public:
-    /// `setup` must outlive the recording. \throws InputError, DeviceError as PendingOutput and
-    /// StreamWriter.
-    Recording(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-              const FootageOrigin& footage);
+    /// `setup` must outlive the recorder; `provenance` as in stream_header_of. \throws InputError,
+    /// DeviceError as PendingOutput and StreamWriter.
+    StreamRecorder(const std::filesystem::path& file, bool force, const SensorSetup& setup,
+                   std::string provenance);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples: those that the readout has time for, if rows are dropped.
@@ -43,7 +42,7 @@ class Recording {
     [[nodiscard]] double saturated_fraction() const;
     /// Part of the light that is collected once the first exposures are over.
     [[nodiscard]] double light_throughput() const;
-    /// Part of the light since slot 0 that the samples hold, as SlotEmulator.
+    /// Part of the light since slot 0 that the samples hold, as Emulator.
     [[nodiscard]] double light_read() const { return emulator_.light_read(); }
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
@@ -51,17 +50,8 @@ class Recording {
 
   private:
     PendingOutput output_;
-    SlotEmulator emulator_;
+    Emulator emulator_;
     StreamWriter writer_;
 };
-
-/// What was recorded, at which speed (nothing: not known), for programs: the keys of `emulate` in
-/// docs/cli.md.
-[[nodiscard]] nlohmann::ordered_json recording_json(const Recording& recording,
-                                                    std::optional<double> slots_per_s);
-
-/// The same in two lines for people.
-[[nodiscard]] std::string recording_text(const Recording& recording,
-                                         std::optional<double> slots_per_s);
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "apps/provenance.h"
+#include "readout/provenance.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/toml_keys.h"
+#include "core/version.h"
 #include "sensor_model/physical_keys.h"
 #include "stream/plain_text.h"
 
@@ -148,7 +149,7 @@ toml::table table_of(const std::string& provenance) {
 std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage) {
     toml::table sensor = sensor_table(setup.params);
     if (setup.timing) sensor.insert("timing", toml::parse(timing_keys(setup.choice)));
-    toml::table text{{"emulator", "stipple " STIPPLE_VERSION},
+    toml::table text{{"emulator", fmt::format("stipple {}", version())},
                      {"footage", footage_table(footage)},
                      {"options", options_table(setup.choice)},
                      {"overrun", setup.overrun == OverrunPolicy::kDrop ? "drop" : "stretch"},

@@ -5,25 +5,32 @@
 #include <cstddef>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
-#include "apps/camera_arguments.h"
 #include "capture/capture_session.h"
 
 namespace stipple {
+
+struct LiveCameraOptions {
+    SessionOptions session;
+    std::size_t waiting_frames = 64;
+    bool from_start = false;  ///< frames wait for `begin`: of a replay, whose first one counts
+    /// Told of outages, recoveries and the end, by the thread that takes the frames.
+    std::function<void(const SessionEvent&)> tell;
+};
 
 /// A camera whose frames a thread takes and keeps, a few of them, until somebody has time. When as
 /// many as that wait, or as `most_memory` holds, further ones are dropped; the next frame says how
 /// many (kOwnDrop).
 class LiveCamera {
   public:
-    /// Opens and starts the camera; until `begin`, its frames are let go, but those of a replay
-    /// wait. \throws InputError, DeviceError.
-    LiveCamera(const CameraArguments& camera, const SessionOptions& session,
-               std::size_t waiting_frames);
+    /// Opens and starts the camera; until `begin`, its frames are let go, unless they wait.
+    /// \throws InputError, DeviceError.
+    LiveCamera(CaptureSession::Opener open, LiveCameraOptions options);
     ~LiveCamera();
     LiveCamera(const LiveCamera&) = delete;
     LiveCamera& operator=(const LiveCamera&) = delete;
@@ -49,7 +56,7 @@ class LiveCamera {
     void run(const std::stop_token& stop) noexcept;
     void take(CapturedFrame frame);
 
-    bool replay_;
+    LiveCameraOptions options_;
     CaptureSession session_;
     FrameLayout layout_;
     CameraDescription description_;

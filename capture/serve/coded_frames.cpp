@@ -1,16 +1,18 @@
-#include "apps/coded_frames.h"
+#include "capture/serve/coded_frames.h"
+
+#include <utility>
 
 #include "core/error.h"
 
 namespace stipple {
 
-CodedFrames::CodedFrames(const std::string& footage, const FootageOptions& reading,
+CodedFrames::CodedFrames(std::filesystem::path footage, const FootageOrigin& origin,
                          const SensorChoice& sensor, std::optional<double> slots_per_s)
-    : footage_(footage),
-      reading_(reading),
+    : footage_(std::move(footage)),
+      reading_(origin.reading),
       reader_(footage_, reading_),
       setup_(set_up_sensor(sensor, reader_.shape())),
-      header_(coded_header(stream_header_of(setup_, origin_of(footage, reading)))),
+      header_(coded_header(stream_header_of(setup_, provenance_of(setup_, origin)))),
       image_(coded_image(header_.stream)),
       light_(setup_.footage.sites()) {
     if (slots_per_s) image_.frames_per_s = *slots_per_s;

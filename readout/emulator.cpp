@@ -1,23 +1,24 @@
-#include "apps/slot_emulator.h"
+#include "readout/emulator.h"
 
-#include "apps/provenance.h"
+#include <utility>
+
 #include "readout/light_account.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
 
-StreamHeader stream_header_of(const SensorSetup& setup, const FootageOrigin& footage) {
+StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance) {
     return {.shape = setup.shape,
             .slot_us = setup.params.slot_us,
             .calibration = calibration_of(setup.params),
             .schedule = setup.schedule.schedule,
             .schedule_source = setup.schedule.source,
             .schedule_name = setup.schedule.name,
-            .provenance = provenance_of(setup, footage),
+            .provenance = std::move(provenance),
             .cfa = setup.params.physical.cfa};
 }
 
-SlotEmulator::SlotEmulator(const SensorSetup& setup)
+Emulator::Emulator(const SensorSetup& setup)
     : setup_(setup),
       filters_(calibration_of(setup.params).tile),
       sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
@@ -26,7 +27,7 @@ SlotEmulator::SlotEmulator(const SensorSetup& setup)
     account_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
 }
 
-std::span<const SamplePacket> SlotEmulator::expose(std::span<const float> frame) {
+std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
     const ColourFilter filter = setup_.params.physical.cfa;
     if (filter != ColourFilter::kNone && setup_.footage.planes == 3) {
         mosaic_.resize(setup_.shape.pixels());
@@ -37,14 +38,14 @@ std::span<const SamplePacket> SlotEmulator::expose(std::span<const float> frame)
     return account_ ? what_fits(account_->add_next()) : std::span(packets_).first(1);
 }
 
-double SlotEmulator::light_read() const {
+double Emulator::light_read() const {
     const double light =
         light_due_in_clip(setup_.schedule.schedule, filters_, setup_.shape, stats().slots);
     return (light - dropped_light_) /
            (static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.pixels()));
 }
 
-std::span<const SamplePacket> SlotEmulator::what_fits(const SlotAccount& slot) {
+std::span<const SamplePacket> Emulator::what_fits(const SlotAccount& slot) {
     SamplePacket& whole = packets_[0];
     if (slot.end_row == whole.rows) {
         whole.flags = slot.overrun ? SamplePacket::kOverrun : 0;

@@ -1,9 +1,8 @@
-#include "apps/live_camera.h"
+#include "capture/live_camera.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "apps/session_report.h"
 #include "core/memory_limit.h"
 
 namespace stipple {
@@ -13,16 +12,14 @@ constexpr std::chrono::milliseconds kPatience{50};
 
 }  // namespace
 
-LiveCamera::LiveCamera(const CameraArguments& camera, const SessionOptions& session,
-                       std::size_t waiting_frames)
-    : replay_(is_replay(camera)),
-      session_([camera, settings = camera_settings(
-                            camera)] { return open_picture_camera(camera, settings); },
-               session_options(camera, session)),
+LiveCamera::LiveCamera(CaptureSession::Opener open, LiveCameraOptions options)
+    : options_(std::move(options)),
+      session_(std::move(open), options_.session),
       layout_(session_.layout()),
       description_(session_.description()),
-      most_(std::clamp<std::size_t>(
-          most_memory() / std::max<std::size_t>(layout_.payload_bytes(), 1), 1, waiting_frames)),
+      most_(
+          std::clamp<std::size_t>(most_memory() / std::max<std::size_t>(layout_.payload_bytes(), 1),
+                                  1, options_.waiting_frames)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 LiveCamera::~LiveCamera() {
@@ -51,17 +48,17 @@ void LiveCamera::take(CapturedFrame frame) {
 }
 
 void LiveCamera::run(const std::stop_token& stop) noexcept try {
-    if (replay_) {
+    if (options_.from_start) {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, stop, [&] { return begun_; });
     }
     while (!stop.stop_requested()) {
         SessionEvent event = session_.next(kPatience);
-        if (auto* const frame = std::get_if<CapturedFrame>(&event)) take(std::move(*frame));
-        if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
-        if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
+        if (auto* const frame = std::get_if<CapturedFrame>(&event))
+            take(std::move(*frame));
+        else if (!std::holds_alternative<NoFrame>(event))
+            options_.tell(event);
         if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
-            say_warning(lost->warning);
             const std::lock_guard lock(mutex_);
             end_ = *lost;
             changed_.notify_all();

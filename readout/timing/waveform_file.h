@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "io/pending_output.h"
 #include "readout/timing/readout_account.h"
 
 namespace stipple {
+
+struct SlotRange {
+    std::int64_t first = 0;
+    std::int64_t slots = 0;
+};
 
 /// A VCD file of the readout. Made before the work, so that a name that cannot be used is refused
 /// at once.
@@ -15,10 +21,10 @@ class WaveformFile {
     /// \throws InputError as PendingOutput.
     WaveformFile(const std::string& file, bool force) : output_(file, force) {}
 
-    /// Writes `slots` slots from `first_slot` on, of which the first begins at time 0.
+    /// Writes the slots of `range`, of which the first begins at time 0, while `goes_on`.
     /// \throws DeviceError.
-    void write(ReadoutAccount& account, const std::string& sensor, std::int64_t first_slot,
-               std::int64_t slots);
+    void write(ReadoutAccount& account, const std::string& sensor, SlotRange range,
+               const std::function<bool()>& goes_on);
 
   private:
     PendingOutput output_;

@@ -1,8 +1,8 @@
-#include "apps/stretched_slots.h"
+#include "readout/timing/stretched_slots.h"
 
-#include "apps/provenance.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "readout/provenance.h"
 #include "readout/timing/readout_account.h"
 
 namespace stipple {

@@ -1,18 +1,13 @@
-#include "apps/preview_decoder.h"
-
-#include <fmt/format.h>
+#include "decoder/preview.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "apps/side_by_side.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "io/frame_writer.h"
-#include "io/tone_map.h"
 
 namespace stipple {
 namespace {
@@ -33,17 +28,17 @@ DecodeOptions options_of(DecodeMethod method) {
     return options;
 }
 
-VideoWindow region_of(const StreamHeader& header, const PreviewArguments& arguments) {
+VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options) {
     const FrameShape whole = decoded_shape(header);
     VideoWindow region{.slots = std::max(kLeastSlots, 2 * header.schedule.longest_span_slots()),
                        .shape = whole};
-    const double most = arguments.method == "naive" ? kNaiveVoxels : kFastVoxels;
+    const double most = options.method == DecodeMethod::kNaive ? kNaiveVoxels : kFastVoxels;
     const double scale = std::min(1.0, std::sqrt(most / static_cast<double>(region.voxels())));
     const auto side = [&](int all, int wanted) {
         return wanted > 0 ? std::min(wanted, all)
                           : std::max(1, static_cast<int>(std::floor(all * scale)));
     };
-    const FrameShape wanted = arguments.size.value_or(FrameShape{.rows = 0, .cols = 0});
+    const FrameShape wanted = options.size.value_or(FrameShape{.rows = 0, .cols = 0});
     region.shape.rows = side(whole.rows, wanted.rows);
     region.shape.cols = side(whole.cols, wanted.cols);
     region.first_row = (whole.rows - region.shape.rows) / 2;
@@ -68,27 +63,6 @@ std::vector<bool> too_bright_pixels(const Measurements& measurements) {
     return result;
 }
 
-/// In colour, with the pixels that are too bright in red.
-std::vector<float> marked(const PreviewFrame& frame) {
-    const std::size_t pixels = frame.shape.pixels();
-    std::vector<float> light(3 * pixels);
-    for (std::size_t plane = 0; plane < 3; ++plane)
-        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-            const float own = frame.light[frame.shape.planes == 3 ? plane * pixels + pixel : pixel];
-            const float red = plane == 0 ? kWhiteLight : 0;
-            light[plane * pixels + pixel] = frame.too_bright[pixel] ? red : own;
-        }
-    return light;
-}
-
-void write_picture(const std::filesystem::path& file, const PreviewFrame& frame) {
-    const auto text = fmt::format("slot {}: mean light {:.3f}, {:.2f} % too bright", frame.slot,
-                                  frame.mean_light(), 100 * frame.too_bright_fraction());
-    SideBySide picture({frame.shape.rows, frame.shape.cols, 3}, {text});
-    picture.put(0, marked(frame));
-    picture.write(file, true);
-}
-
 }  // namespace
 
 double PreviewFrame::too_bright_fraction() const {
@@ -100,10 +74,8 @@ double PreviewFrame::mean_light() const {
     return std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
 }
 
-PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewArguments& arguments)
-    : header_(std::move(header)),
-      method_(decode_method_from_name(arguments.method)),
-      region_(region_of(header_, arguments)) {}
+PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewOptions& options)
+    : header_(std::move(header)), method_(options.method), region_(region_of(header_, options)) {}
 
 std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
                                                    std::span<const SamplePacket> packets,
@@ -123,13 +95,6 @@ std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
     std::transform(shown.begin(), shown.end(), frame.light.begin(),
                    [](float light) { return std::max(light, 0.0F); });
     return frame;
-}
-
-void write_preview(const std::filesystem::path& file, const PreviewFrame& frame) {
-    if (file.extension() == ".png") return write_picture(file, frame);
-    FrameWriter writer(file, frame.shape, {.force = true});
-    writer.write(frame.light);
-    writer.finish();
 }
 
 }  // namespace stipple

@@ -2,12 +2,13 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
+#include <vector>
 
-#include "apps/slot_emulator.h"
 #include "capture/serve/coded_payload.h"
 #include "capture/serve/frame_source.h"
 #include "io/footage_reader.h"
+#include "readout/emulator.h"
+#include "readout/provenance.h"
 
 namespace stipple {
 
@@ -16,8 +17,9 @@ namespace stipple {
 /// every client gets the same bits.
 class CodedFrames final : public FrameSource {
   public:
-    /// Without a rate, that of the sensor's slots. \throws InputError as `emulate`.
-    CodedFrames(const std::string& footage, const FootageOptions& reading,
+    /// Light of the files of `origin`, which lie at `footage`. Without a rate, that of the sensor's
+    /// slots. \throws InputError as FootageReader and set_up_sensor.
+    CodedFrames(std::filesystem::path footage, const FootageOrigin& origin,
                 const SensorChoice& sensor, std::optional<double> slots_per_s);
 
     [[nodiscard]] const ServedImage& image() const override { return image_; }
@@ -31,7 +33,7 @@ class CodedFrames final : public FrameSource {
     SensorSetup setup_;
     CodedHeader header_;
     ServedImage image_;
-    std::optional<SlotEmulator> emulator_;
+    std::optional<Emulator> emulator_;
     std::vector<float> light_;
     std::uint64_t slot_ = 0;
 };

@@ -1,11 +1,9 @@
-#include "apps/read_ahead.h"
+#include "capture/recording/read_ahead.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "apps/footage_arguments.h"
-#include "apps/session_report.h"
 #include "core/memory_limit.h"
 
 namespace stipple {
@@ -16,27 +14,27 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
     if (!is_recording(source))
         return std::variant<FootageReader, RecordingFootage>(std::in_place_type<FootageReader>,
                                                              source, options);
-    check_recording_options(source.string(), options);
     return std::variant<FootageReader, RecordingFootage>(std::in_place_type<RecordingFootage>,
                                                          source);
 }
 
 }  // namespace
 
-ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options)
-    : reader_(open_footage(source, options)) {
+ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options,
+                     std::function<void(const std::string&)> warn)
+    : warn_(std::move(warn)), reader_(open_footage(source, options)) {
     constexpr std::uint64_t kSiteBytes = 18;  // two frames here, and what works on them
     check_memory(kSiteBytes * shape().sites(), source.string(),
                  fmt::format("frames of {} x {}", shape().cols, shape().rows), input_bytes(source));
     current_.resize(shape().sites());
     coming_.resize(shape().sites());
-    say_warnings();
+    pass_warnings_on();
     start_reading();
 }
 
-void ReadAhead::say_warnings() {
+void ReadAhead::pass_warnings_on() {
     if (auto* const footage = std::get_if<FootageReader>(&reader_))
-        for (const std::string& warning : footage->take_warnings()) say_warning(warning);
+        for (const std::string& warning : footage->take_warnings()) warn_(warning);
 }
 
 bool ReadAhead::gamma_coded() const {
@@ -74,7 +72,7 @@ void ReadAhead::start_reading() {
 
 std::span<const float> ReadAhead::next() {
     const bool has_frame = reading_.valid() && reading_.get();
-    say_warnings();
+    pass_warnings_on();
     if (!has_frame) return {};
     std::swap(current_, coming_);
     start_reading();

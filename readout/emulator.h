@@ -4,25 +4,26 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "apps/footage_origin.h"
-#include "apps/sensor_setup.h"
 #include "readout/coded_sensor.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_account.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
 
-/// The header of the stream that this sensor makes of `footage`.
-[[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, const FootageOrigin& footage);
+/// The header of the stream that this sensor makes; `provenance` as `provenance_of` writes it, or
+/// empty.
+[[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance);
 
 /// A sensor that turns light into the packets of a stream, slot by slot.
-class SlotEmulator {
+class Emulator {
   public:
     /// `setup` must outlive the emulator.
-    explicit SlotEmulator(const SensorSetup& setup);
+    explicit Emulator(const SensorSetup& setup);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)). The
     /// packets of the slot, valid until the next call: one, or two where the readout has no time

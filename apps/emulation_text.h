@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "readout/stream_recorder.h"
+
+namespace stipple {
+
+/// What was emulated, at which speed (nothing: not known), for programs: the keys of `emulate` in
+/// docs/cli.md.
+[[nodiscard]] nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
+                                                    std::optional<double> slots_per_s);
+
+/// The same in two lines for people.
+[[nodiscard]] std::string emulation_text(const StreamRecorder& recorder,
+                                         std::optional<double> slots_per_s);
+
+}  // namespace stipple

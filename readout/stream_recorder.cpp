@@ -1,0 +1,55 @@
+#include "readout/stream_recorder.h"
+
+#include <utility>
+
+#include "readout/light_account.h"
+
+namespace stipple {
+
+StreamRecorder::StreamRecorder(const std::filesystem::path& file, bool force,
+                               const SensorSetup& setup, std::string provenance)
+    : output_(file, force),
+      emulator_(setup),
+      writer_(output_.partial(), stream_header_of(setup, std::move(provenance)),
+              output_.final_path().string()) {}
+
+std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
+    const auto packets = emulator_.expose(frame);
+    for (const SamplePacket& packet : packets) writer_.write(packet);
+    return packets;
+}
+
+void StreamRecorder::finish() {
+    writer_.finish();
+    output_.commit();
+}
+
+bool StreamRecorder::keep() {
+    if (output_.kept()) return false;
+    output_.commit();
+    return true;
+}
+
+std::uint64_t StreamRecorder::samples() const {
+    return stats().samples - (account() ? account()->totals().dropped_samples : 0);
+}
+
+std::uint64_t StreamRecorder::payload_bits() const {
+    return samples() * static_cast<std::uint64_t>(setup().params.bit_depth);
+}
+
+double StreamRecorder::compression_ratio() const {
+    const double light_values =
+        static_cast<double>(stats().slots) * static_cast<double>(setup().shape.sites());
+    return light_values / static_cast<double>(samples());
+}
+
+double StreamRecorder::saturated_fraction() const {
+    return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
+}
+
+double StreamRecorder::light_throughput() const {
+    return stipple::light_throughput(setup().schedule.schedule, emulator_.filters(), setup().shape);
+}
+
+}  // namespace stipple

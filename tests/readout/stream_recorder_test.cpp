@@ -1,0 +1,131 @@
+#include "readout/stream_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/flux_video.h"
+#include "readout/coded_sensor.h"
+#include "readout/light_account.h"
+#include "readout/provenance.h"
+#include "sensor_model/colour_mosaic.h"
+#include "stream/stream_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kSlots = 24;
+constexpr FrameShape kShape{.rows = 32, .cols = 48, .planes = 1};
+
+/// Light that differs from site to site and from slot to slot.
+FluxVideo ramp(FrameShape shape) {
+    FluxVideo video(kSlots, shape);
+    float light = 0;
+    for (float& value : video.data()) value = light = std::fmod(light + 0.37F, 3.0F);
+    return video;
+}
+
+std::vector<SamplePacket> record(StreamRecorder& recorder, const FluxVideo& video) {
+    std::vector<SamplePacket> all;
+    for (int slot = 0; slot < video.slots(); ++slot)
+        for (const SamplePacket& packet : recorder.expose(video.frame(slot))) all.push_back(packet);
+    return all;
+}
+
+std::vector<SamplePacket> read(const std::filesystem::path& file) {
+    StreamReader reader(file, ReadPolicy::kStrict);
+    std::vector<SamplePacket> all;
+    SamplePacket packet;
+    while (reader.next(packet)) all.push_back(packet);
+    return all;
+}
+
+TEST(StreamRecorderTest, TheStreamHoldsWhatTheChipRead) {
+    const TemporaryFolder folder;
+    const auto video = ramp(kShape);
+    const SensorSetup setup = set_up_sensor({.schedule = "tiled"}, kShape);
+    StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+    const auto packets = record(recorder, video);
+    recorder.finish();
+
+    CodedSensor sensor(setup.params, kShape, setup.schedule.schedule, setup.seed);
+    std::vector<SamplePacket> expected(kSlots);
+    for (int slot = 0; slot < kSlots; ++slot)
+        sensor.expose(video.frame(slot), expected[static_cast<std::size_t>(slot)]);
+    EXPECT_EQ(packets, expected);
+    EXPECT_EQ(read(folder / "a.stipple"), expected);
+    EXPECT_EQ(recorder.samples(), sensor.stats().samples);
+    // All exposures of one slot to eight, without gaps: the samples hold all light but that of
+    // exposures that began before slot 0 or go on after the last.
+    EXPECT_DOUBLE_EQ(recorder.light_throughput(), 1);
+    EXPECT_LT(recorder.light_read(), 1);
+    EXPECT_GT(recorder.light_read(), 1 - 2.0 * 8 / kSlots);
+}
+
+TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfTheirOwn) {
+    const TemporaryFolder folder;
+    const auto video = ramp(kShape);
+    const SensorSetup setup = set_up_sensor({.sensor = "lux1310",
+                                             .schedule = "tiled",
+                                             .settings = {"slot_us=6"},
+                                             .overrun = OverrunPolicy::kDrop},
+                                            kShape);
+    StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+    const auto packets = record(recorder, video);
+    recorder.finish();
+
+    std::int64_t dropped_rows = 0, rows = 0;
+    for (const SamplePacket& packet : packets) {
+        rows += packet.rows;
+        if ((packet.flags & SamplePacket::kDropped) == 0) continue;
+        dropped_rows += packet.rows;
+        EXPECT_TRUE(packet.dn.empty());
+        EXPECT_EQ(packet.first_row + packet.rows, kShape.rows);
+    }
+    EXPECT_EQ(rows, kSlots * kShape.rows);
+    EXPECT_GT(dropped_rows, 0);
+    EXPECT_LT(dropped_rows, rows);
+    EXPECT_EQ(recorder.samples() + recorder.account()->totals().dropped_samples,
+              recorder.stats().samples);
+    EXPECT_EQ(read(folder / "a.stipple"), packets);
+}
+
+TEST(StreamRecorderTest, ColourFallsOnTheFiltersOfTheArray) {
+    const TemporaryFolder folder;
+    const FrameShape colour{kShape.rows, kShape.cols, 3};
+    const auto video = ramp(colour);
+    const SensorChoice choice{.sensor = "ideal", .schedule = "tiled", .settings = {"cfa=rggb"}};
+    const SensorSetup setup = set_up_sensor(choice, colour);
+    StreamRecorder recorder(folder / "colour.stipple", false, setup, "");
+    FluxVideo mosaic(kSlots, kShape);
+    for (int slot = 0; slot < kSlots; ++slot)
+        take_mosaic(ColourFilter::kRggb, colour, video.frame(slot), mosaic.frame(slot));
+    const SensorSetup grey = set_up_sensor(choice, kShape, ColourFilter::kRggb);
+    StreamRecorder of_mosaic(folder / "mosaic.stipple", false, grey, "");
+    EXPECT_EQ(record(recorder, video), record(of_mosaic, mosaic));
+}
+
+TEST(StreamRecorderTest, ARunThatIsGivenUpLeavesNoFile) {
+    const TemporaryFolder folder;
+    const SensorSetup setup = set_up_sensor({}, kShape);
+    {
+        StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+        recorder.expose(ramp(kShape).frame(0));
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(StreamRecorderTest, TheHeaderSaysHowToMakeTheStreamAgain) {
+    const FootageOrigin origin{.name = "clip", .sha256 = "00"};
+    const SensorSetup setup =
+        set_up_sensor({.schedule = "tiled", .settings = {"read_noise_e=5"}, .seed = 7}, kShape);
+    EXPECT_EQ(command_of(provenance_of(setup, origin)),
+              "stipple emulate clip -o again.stipple --schedule tiled --set read_noise_e=5 "
+              "--seed 7");
+}
+
+}  // namespace
+}  // namespace stipple
