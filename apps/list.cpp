@@ -57,28 +57,14 @@ std::vector<Entry> configurations(const std::string& kind) {
     return entries;
 }
 
-const char* text_of(DecodeMethod method) {
-    switch (method) {
-        case DecodeMethod::kNaive:
-            return "each pixel holds its nearest samples: at once, noisy";
-        case DecodeMethod::kFast:
-            return "motion-compensated total variation";
-        case DecodeMethod::kBest:
-            return "collaborative filter of similar blocks: slower, 2 to 3 dB better than fast";
-        case DecodeMethod::kPortz2013:
-            return "the method of the paper (Portz, Zhang, Jiang, ICCP 2013), in two stages";
-    }
-    return "";
-}
-
 std::vector<Entry> entries_of(const std::string& kind) {
     std::vector<Entry> entries;
     if (kind == "scenes")
         for (const NamedScene& scene : scenes())
             entries.push_back({std::string(scene.name), std::string(scene.text)});
     else if (kind == "methods")
-        for (const auto& [name, method] : decode_methods())
-            entries.push_back({std::string(name), text_of(method)});
+        for (const NamedDecodeMethod& method : decode_methods())
+            entries.push_back({std::string(method.name), std::string(method.text)});
     else
         entries = configurations(kind);
     return entries;

@@ -2,26 +2,61 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/joined.h"
+#include "decoder/block_partition.h"
+#include "decoder/decode_options.h"
+#include "decoder/measurements.h"
+#include "decoder/naive/nearest_samples.h"
+#include "decoder/prior_decoding.h"
 
 namespace stipple {
 namespace {
 
 constexpr NamedDecodeMethod kMethods[] = {
-    {"naive", DecodeMethod::kNaive},
-    {"fast", DecodeMethod::kFast},
-    {"best", DecodeMethod::kBest},
-    {"portz2013", DecodeMethod::kPortz2013},
+    {"naive", DecodeMethod::kNaive, "each pixel holds its nearest samples: at once, noisy",
+     kMaxCoreSites, 13, [](Config&, DecodeOptions&) {},
+     [](const BlockTask& block) -> std::optional<FluxVideo> {
+         return nearest_samples(block.measurements);
+     }},
+    {"fast", DecodeMethod::kFast, "motion-compensated total variation", kMaxCoreSites, 48,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },
+     [](const BlockTask& block) {
+         return decode_with_prior(block, [](const PriorTask& task) {
+             return decode_motion_tv(task.measurements, task.noise, task.options.fast,
+                                     task.checkpoint);
+         });
+     }},
+    {"best", DecodeMethod::kBest,
+     "collaborative filter of similar blocks: slower, 2 to 3 dB better than fast", kMaxCoreSites,
+     48, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
+     [](const BlockTask& block) {
+         return decode_with_prior(block, [](const PriorTask& task) {
+             return decode_collaborative(task.measurements, task.noise, task.options.best,
+                                         task.checkpoint);
+         });
+     }},
+    {"portz2013", DecodeMethod::kPortz2013,
+     "the method of the paper (Portz, Zhang, Jiang, ICCP 2013), in two stages", kPortz2013CoreSites,
+     400, [](Config& config, DecodeOptions& options) { read_options(config, options.portz2013); },
+     [](const BlockTask& block) {
+         return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
+                                 block.checkpoint);
+     }},
 };
 
 }  // namespace
 
 std::span<const NamedDecodeMethod> decode_methods() {
     return kMethods;
+}
+
+const NamedDecodeMethod& named(DecodeMethod method) {
+    return *std::ranges::find(kMethods, method, &NamedDecodeMethod::method);
 }
 
 DecodeMethod decode_method_from_name(std::string_view name) {

@@ -11,16 +11,9 @@
 #include "core/error.h"
 #include "core/gap_limit.h"
 #include "core/memory_limit.h"
-#include "decoder/best/collaborative.h"
 #include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
-#include "decoder/defects.h"
-#include "decoder/fast/motion_tv.h"
-#include "decoder/frame_exposures.h"
 #include "decoder/measurements.h"
-#include "decoder/motion/frame_interpolation.h"
-#include "decoder/naive/nearest_samples.h"
-#include "decoder/pixel_response.h"
 #include "decoder/saturated_samples.h"
 
 namespace stipple {
@@ -87,11 +80,6 @@ class PacketBuffer {
 };
 
 using Block = std::optional<FluxVideo>;  ///< nothing if stopped
-
-/// Methods that need more memory for a voxel work on smaller tiles.
-std::int64_t max_core_sites(DecodeMethod method) {
-    return method == DecodeMethod::kPortz2013 ? kPortz2013CoreSites : kMaxCoreSites;
-}
 
 /// Where a block's core goes in the frames of its slots.
 struct Placement {
@@ -176,7 +164,7 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
     const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
     if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
-    const std::vector<Tile> tiles = frame_tiles(shape, max_core_sites(options.method));
+    const std::vector<Tile> tiles = frame_tiles(shape, named(options.method).max_tile_sites);
     StageRelay stages(options.stages, shape, slots);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const auto tile_checkpoint = [&](double fraction) {
@@ -212,31 +200,13 @@ void check_proportion(const StreamHeader& header, const DecodeOptions& options, 
                                  slots - 1, samples, light * sizeof(float) * 1e-6));
 }
 
-/// Memory of the estimate and all that belongs to it, in bytes a voxel.
-std::uint64_t voxel_bytes(DecodeMethod method) {
-    switch (method) {
-        case DecodeMethod::kNaive:
-            return 13;
-        case DecodeMethod::kPortz2013:
-            return 400;
-        case DecodeMethod::kFast:
-        case DecodeMethod::kBest:
-            break;
-    }
-    return 48;
-}
-
-std::string_view name_of(DecodeMethod method) {
-    return std::ranges::find(decode_methods(), method, &NamedDecodeMethod::method)->name;
-}
-
 /// \throws InputError as check_memory for a block of slots. A small file is one for it that has
 /// less than a byte for 32 voxels, as no common schedule and bit depth make it.
 void check_block(const StreamHeader& header, const DecodeOptions& options, const Stretch& slots) {
     constexpr std::uint64_t kVoxelsAByte = 32;
     const FrameShape shape = decoded_shape(header);
     std::uint64_t tile_pixels = 0;
-    for (const auto& [rows, cols] : frame_tiles(shape, max_core_sites(options.method)))
+    for (const auto& [rows, cols] : frame_tiles(shape, named(options.method).max_tile_sites))
         tile_pixels = std::max(tile_pixels, static_cast<std::uint64_t>((rows.end - rows.begin) *
                                                                        (cols.end - cols.begin)));
     const auto block_slots = static_cast<std::uint64_t>(slots.end - slots.begin);
@@ -244,29 +214,12 @@ void check_block(const StreamHeader& header, const DecodeOptions& options, const
     const std::uint64_t voxels =
         block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
     const bool small = voxels / kVoxelsAByte > options.input_bytes;
-    check_memory(core_slots * shape.sites() * sizeof(float) + voxels * voxel_bytes(options.method),
-                 options.place,
-                 fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
-                             shape.rows, name_of(options.method)),
-                 small ? options.input_bytes : kEndlessInput);
-}
-
-/// By the methods that have a prior on the video, `fast` and `best`.
-Block decode_by_prior(Measurements& measurements, const SampleNoise& noise,
-                      const DecodeOptions& options, const Checkpoint& checkpoint) {
-    unobserve_defects(measurements);
-    return options.method == DecodeMethod::kFast
-               ? decode_motion_tv(measurements, noise, options.fast, checkpoint)
-               : decode_collaborative(measurements, noise, options.best, checkpoint);
-}
-
-/// A frame's one exposure has all its read noise, most of it below 0 where it is dark, and no other
-/// sample says what the filter has taken.
-DecodeOptions options_of_frames(DecodeOptions options) {
-    options.best.offset_slots = 1;
-    options.best.least_light = -1;
-    options.best.feedback = 0;
-    return options;
+    check_memory(
+        core_slots * shape.sites() * sizeof(float) + voxels * named(options.method).voxel_bytes,
+        options.place,
+        fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols, shape.rows,
+                    named(options.method).name),
+        small ? options.input_bytes : kEndlessInput);
 }
 
 }  // namespace
@@ -274,26 +227,7 @@ DecodeOptions options_of_frames(DecodeOptions options) {
 std::optional<FluxVideo> decode_block(Measurements measurements, const Calibration& calibration,
                                       const DecodeOptions& options, const Checkpoint& checkpoint,
                                       const StageObserver& observer) {
-    switch (options.method) {
-        case DecodeMethod::kNaive:
-            return nearest_samples(measurements);
-        case DecodeMethod::kPortz2013:
-            return decode_portz2013(measurements, options.portz2013, observer, checkpoint);
-        case DecodeMethod::kFast:
-        case DecodeMethod::kBest:
-            break;
-    }
-    const SampleNoise noise(calibration);
-    if (const auto exposures = frame_exposures(measurements)) {
-        Measurements frames = measurements_of_frames(measurements, *exposures, noise);
-        const auto lights = decode_by_prior(frames, noise_of_frames(calibration, *exposures),
-                                            options_of_frames(options), checkpoint);
-        if (!lights) return {};
-        FluxVideo x = interpolate_frames(*lights, centre_slots(*exposures), measurements.slots);
-        add_what_frames_lack(measurements, *exposures, *lights, x);
-        return x;
-    }
-    return decode_by_prior(measurements, noise, options, checkpoint);
+    return named(options.method).decode({measurements, calibration, options, checkpoint, observer});
 }
 
 DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,

@@ -11,6 +11,7 @@
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
 #include "decoder/measurements.h"
+#include "decoder/option_reader.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -178,6 +179,30 @@ CollaborativeOptions options_for(const Measurements& measurements, Collaborative
 }
 
 }  // namespace
+
+void read_options(Config& config, CollaborativeOptions& options) {
+    read_integer(config, "iterations", 0, 10000, options.iterations);
+    read_integer(config, "motion_every", 1, 10000, options.motion_every);
+    read_integer(config, "match_every", 1, 10000, options.match_every);
+    read_integer(config, "block_step", 1, kBlockSide, options.block_step);
+    read_integer(config, "matching.slots", 0, 32, options.matching.slots);
+    read_integer(config, "matching.own_radius", 0, 32, options.matching.own_radius);
+    read_integer(config, "matching.path_radius", 0, 32, options.matching.path_radius);
+    read_number(config, "first_sigma", 1e-3, 10, options.first_sigma);
+    read_number(config, "last_noise", 0, 100, options.last_noise);
+    read_number(config, "least_sigma", 1e-3, 10, options.least_sigma);
+    read_number(config, "light_offset", 1e-4, 1e3, options.light_offset);
+    read_number(config, "least_light", -10, 0, options.least_light);
+    read_number(config, "feedback", 0, 2, options.feedback);
+    read_number(config, "feedback_kept", 0, 1, options.feedback_kept);
+    read_number(config, "momentum", 0, 1, options.momentum);
+    read_integer(config, "mosaic.iterations", 0, 10000, options.mosaic.iterations);
+    read_number(config, "mosaic.first_sigma", 1e-3, 10, options.mosaic.first_sigma);
+    read_integer(config, "mosaic.near_iterations", 0, 10000, options.mosaic.near_iterations);
+    read_integer(config, "mosaic.near.slots", 0, 32, options.mosaic.near.slots);
+    read_integer(config, "mosaic.near.own_radius", 0, 32, options.mosaic.near.own_radius);
+    read_integer(config, "mosaic.near.path_radius", 0, 32, options.mosaic.near.path_radius);
+}
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
                                               const CollaborativeOptions& all_options,

@@ -9,6 +9,7 @@
 
 namespace stipple {
 
+class Config;
 class SampleNoise;
 struct Measurements;
 
@@ -58,5 +59,8 @@ struct CollaborativeOptions {
 [[nodiscard]] std::optional<FluxVideo> decode_collaborative(
     Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
     const Checkpoint& checkpoint = [](double) { return true; });
+
+/// The keys of docs/decoder_options.md. \throws InputError as Config.
+void read_options(Config& config, CollaborativeOptions& options);
 
 }  // namespace stipple

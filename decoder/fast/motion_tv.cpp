@@ -12,6 +12,7 @@
 #include "decoder/fast/presumed_samples.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
+#include "decoder/option_reader.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -115,6 +116,24 @@ MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions op
 }
 
 }  // namespace
+
+void read_options(Config& config, MotionTvOptions& options) {
+    read_integer(config, "at_rest.iterations", 0, 10000, options.at_rest.iterations);
+    read_number(config, "at_rest.spatial_weight", 0, 1e4, options.at_rest.spatial_weight);
+    read_number(config, "at_rest.temporal_weight", 0, 1e4, options.at_rest.temporal_weight);
+    read_integer(config, "along_motion.iterations", 0, 10000, options.along_motion.iterations);
+    read_number(config, "along_motion.spatial_weight", 0, 1e4, options.along_motion.spatial_weight);
+    read_number(config, "along_motion.temporal_weight", 0, 1e4,
+                options.along_motion.temporal_weight);
+    read_integer(config, "rounds", 0, 100, options.rounds);
+    read_integer(config, "last_iterations", 0, 10000, options.last_iterations);
+    read_number(config, "mosaic.spatial_weight", 0, 1e4, options.mosaic.spatial_weight);
+    read_number(config, "mosaic.chroma_weight", 0, 1e4, options.mosaic.chroma_weight);
+    read_integer(config, "mosaic.last_iterations", 0, 10000, options.mosaic.last_iterations);
+    read_number(config, "step", 1e-6, 1, options.step);
+    read_number(config, "step_flux", 1e-4, 1e4, options.step_flux);
+    read_number(config, "max_step_ratio", 1, 1e4, options.max_step_ratio);
+}
 
 std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
                                           const MotionTvOptions& all_options,

@@ -9,6 +9,7 @@
 
 namespace stipple {
 
+class Config;
 class SampleNoise;
 struct Measurements;
 
@@ -42,5 +43,8 @@ struct MotionTvOptions {
 [[nodiscard]] std::optional<FluxVideo> decode_motion_tv(
     Measurements& measurements, const SampleNoise& noise, const MotionTvOptions& options,
     const Checkpoint& checkpoint = [](double) { return true; });
+
+/// The keys of docs/decoder_options.md. \throws InputError as Config.
+void read_options(Config& config, MotionTvOptions& options);
 
 }  // namespace stipple

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
+#include "decoder/option_reader.h"
 #include "decoder/portz2013/exposure_table.h"
 
 namespace stipple {
@@ -145,7 +146,57 @@ class Decoder {
     bool stopped_ = false;
 };
 
+/// Keys of one stage: `prefix` is "stage1." or "stage2.".
+class StageKeys {
+  public:
+    StageKeys(Config& config, std::string prefix) : config_(config), prefix_(std::move(prefix)) {}
+    void number(const char* key, double least, double most, float& value) {
+        read_number(config_, prefix_ + key, least, most, value);
+    }
+    void integer(const char* key, int least, int most, int& value) {
+        read_integer(config_, prefix_ + key, least, most, value);
+    }
+    void search(MatchSearch& search) {
+        integer("patch_rows", 1, 64, search.size.rows);
+        integer("patch_cols", 1, 64, search.size.cols);
+        integer("patch_slots", 1, 32, search.size.slots);
+        integer("step_px", 1, 64, search.step_px);
+        integer("window_px", 0, 64, search.window_px);
+        integer("window_slots", 0, 64, search.window_slots);
+        number("sigma", 1e-4, 1e3, search.sigma);
+    }
+    void admm(MatchAdmmOptions& admm) {
+        integer("iterations", 0, 10000, admm.iterations);
+        number("rho", 1e-4, 1e6, admm.rho);
+        integer("cg_iterations", 1, 10000, admm.cg_iterations);
+        number("cg_tolerance", 0, 1, admm.cg_tolerance);
+    }
+
+  private:
+    Config& config_;
+    std::string prefix_;
+};
+
 }  // namespace
+
+void read_options(Config& config, Portz2013Options& options) {
+    read_number(config, "values_per_flux", 1e-3, 1e6, options.values_per_flux);
+    StageKeys first(config, "stage1.");
+    first.search(options.stage1.search);
+    first.integer("most_matches", 0, 1000, options.stage1.most_matches);
+    first.number("gamma", 0, 1e4, options.stage1.gamma);
+    first.admm(options.stage1.admm);
+    StageKeys second(config, "stage2.");
+    second.search(options.stage2.search);
+    second.number("search_weight", 0, 1e3, options.stage2.search.weight);
+    second.integer("most_matches", 0, 1000, options.stage2.most_matches);
+    second.number("gamma", 0, 1e4, options.stage2.gamma);
+    second.integer("flow_block_px", 1, 64, options.stage2.flow.block_px);
+    second.integer("flow_radius_slots", 0, 64, options.stage2.flow.radius_slots);
+    second.number("flow_consistency_px", 0, 1e3, options.stage2.flow.consistency_px);
+    second.admm(options.stage2.admm);
+    options.stage2.flow.sigma = options.stage2.search.sigma;
+}
 
 std::optional<FluxVideo> decode_portz2013(const Measurements& measurements,
                                           const Portz2013Options& options,

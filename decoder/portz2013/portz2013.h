@@ -12,6 +12,8 @@
 
 namespace stipple {
 
+class Config;
+
 struct Measurements;
 
 /// The method `portz2013`. docs/decoder_portz2013.md says which values are published, how the
@@ -49,5 +51,8 @@ inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
 [[nodiscard]] std::optional<FluxVideo> decode_portz2013(
     const Measurements& measurements, const Portz2013Options& options,
     const StageObserver& observer = {}, const Checkpoint& checkpoint = [](double) { return true; });
+
+/// The keys of docs/decoder_options.md. \throws InputError as Config.
+void read_options(Config& config, Portz2013Options& options);
 
 }  // namespace stipple

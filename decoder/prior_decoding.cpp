@@ -1,0 +1,43 @@
+#include "decoder/prior_decoding.h"
+
+#include "decoder/decode_options.h"
+#include "decoder/defects.h"
+#include "decoder/frame_exposures.h"
+#include "decoder/measurements.h"
+#include "decoder/motion/frame_interpolation.h"
+#include "decoder/pixel_response.h"
+
+namespace stipple {
+namespace {
+
+/// A frame's one exposure has all its read noise, most of it below 0 where it is dark, and no other
+/// sample says what the filter has taken.
+DecodeOptions options_of_frames(DecodeOptions options) {
+    options.best.offset_slots = 1;
+    options.best.least_light = -1;
+    options.best.feedback = 0;
+    return options;
+}
+
+}  // namespace
+
+std::optional<FluxVideo> decode_with_prior(
+    const BlockTask& block, std::optional<FluxVideo> (*decode)(const PriorTask& task)) {
+    const SampleNoise noise(block.calibration);
+    Measurements& measurements = block.measurements;
+    const auto exposures = frame_exposures(measurements);
+    if (!exposures) {
+        unobserve_defects(measurements);
+        return decode({measurements, noise, block.options, block.checkpoint});
+    }
+    Measurements frames = measurements_of_frames(measurements, *exposures, noise);
+    unobserve_defects(frames);
+    const auto lights = decode({frames, noise_of_frames(block.calibration, *exposures),
+                                options_of_frames(block.options), block.checkpoint});
+    if (!lights) return {};
+    FluxVideo x = interpolate_frames(*lights, centre_slots(*exposures), measurements.slots);
+    add_what_frames_lack(measurements, *exposures, *lights, x);
+    return x;
+}
+
+}  // namespace stipple
