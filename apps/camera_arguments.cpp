@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include "apps/number_check.h"
 
+#include "capture/camera_kind.h"
 #include "capture/open_camera.h"
 #include "core/config.h"
 #include "core/error.h"
@@ -10,11 +11,7 @@
 namespace stipple {
 
 void add_camera_arguments(Command& command, CameraArguments& arguments) {
-    command
-        .add_option("ADDRESS", arguments.address,
-                    "gige:IP, usb:SERIAL, v4l2:/dev/videoN or replay:FILE")
-        .required()
-        .input();
+    command.add_option("ADDRESS", arguments.address, address_forms()).required().input();
     command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
         .type_name("FILE")
         .input();
@@ -51,7 +48,7 @@ std::unique_ptr<Camera> open_picture_camera(const CameraArguments& arguments,
 }
 
 bool is_replay(const CameraArguments& arguments) {
-    return arguments.address.rfind("replay:", 0) == 0;
+    return camera_kind(arguments.address).is_replay;
 }
 
 SessionOptions session_options(const CameraArguments& arguments, SessionOptions options) {

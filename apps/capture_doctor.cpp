@@ -7,10 +7,7 @@
 #include "apps/capture_commands.h"
 #include "apps/json_file.h"
 #include "apps/number_text.h"
-#include "capture/doctor/network_doctor.h"
-#include "capture/doctor/usb_findings.h"
-#include "capture/open_camera.h"
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/camera_kind.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -23,25 +20,26 @@ const char* name_of(Level level) {
     return kLevels[static_cast<std::size_t>(level)];
 }
 
-/// Of the camera at `address`, if there is one.
-std::vector<DoctorFinding> examine_camera(const std::string& address) {
-    if (address.empty()) return {};
-    const std::string kind = camera_kind(address);
-    if (kind == "gige" || kind == "usb") return examine_genicam_camera(address);
+/// The kind of the camera to look at; null if there is none.
+const CameraKind* kind_of(const std::string& address) {
+    if (address.empty()) return nullptr;
+    const CameraKind& kind = camera_kind(address);
+    if (kind.examine_camera != nullptr) return &kind;
     throw InputError(address,
                      "the doctor looks at one camera if it is gige:IP or usb:SERIAL; without an "
                      "address it looks at all V4L2 devices, and a replay needs no doctor");
 }
 
 std::vector<DoctorFinding> examine(const std::string& address) {
-    const std::vector<DoctorFinding> camera = examine_camera(address);
-    std::vector<DoctorFinding> findings = examine_network();
+    const CameraKind* const asked = kind_of(address);
+    std::vector<DoctorFinding> findings;
     const auto add = [&](const std::vector<DoctorFinding>& more) {
         findings.insert(findings.end(), more.begin(), more.end());
     };
-    add(camera);
-    add(usb_findings());
-    add(v4l2_findings());
+    for (const CameraKind& kind : camera_kinds()) {
+        if (kind.examine_machine != nullptr) add(kind.examine_machine());
+        if (&kind == asked) add(kind.examine_camera(address));
+    }
     return findings;
 }
 

@@ -1,7 +1,6 @@
 #include "capture/camera_listing.h"
 
-#include "capture/aravis/aravis_camera.h"
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/camera_kind.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -20,7 +19,8 @@ void add_cameras(CameraSearch& search, std::vector<CameraListing> (*source)()) {
 
 CameraSearch list_cameras() {
     CameraSearch search;
-    for (const auto source : {list_aravis_cameras, list_v4l2_cameras}) add_cameras(search, source);
+    for (const CameraKind& kind : camera_kinds())
+        if (kind.list != nullptr) add_cameras(search, kind.list);
     return search;
 }
 
