@@ -138,15 +138,15 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
         {"cols", account.shape().cols},
         {"full_readout_hz", rate.full_hz},
         {"coded_readout_hz", rate.coded_hz},
-        {"gain", rate.gain},
+        {"speedup", rate.speedup},
         {"limited_by", name_of(rate.slowest.limit)},
         {"frame_clocks", rate.full.total},
         {"frame_time_s", seconds(timing, static_cast<double>(rate.full.total))},
         {"row_clocks", rate.full.row},
         {"full_settle_clocks", rate.full.settle},
         {"slowest_settle_clocks", rate.slowest.settle_clocks},
-        {"even_gain", rate.even_gain},
-        {"even_row_clocks", rate.even.row},
+        {"balanced_speedup", rate.balanced_speedup},
+        {"balanced_row_clocks", rate.even.row},
         {"slowest_slot_clocks", rate.slowest.clocks},
         {"slowest_slot_time_s", seconds(timing, static_cast<double>(rate.slowest.clocks))},
         {"slowest_phase", rate.slowest_phase},
@@ -176,7 +176,7 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account) {
         "{}window       {} x {} (width x height)\n"
         "full         {:.5g} readouts/s: {} clocks, {} a row\n"
         "coded        {:.5g} slots/s: {} clocks in the slowest slot, {:.6g} on average\n"
-        "gain         {:.3f}, limited by {}; {:.3f} if each row read its mean load evenly\n"
+        "speed-up     {:.3f}, limited by {}; {:.3f} if the load were balanced over the rows\n"
         "in use       rows {:.1f} %, ADCs {:.1f} %, link {:.1f} %\n"
         "energy       {:.4g} uJ a full readout, {:.4g} pJ a sample; {:.4g} uJ a slot, {:.4g} pJ a "
         "sample\n"
@@ -185,8 +185,8 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account) {
         "slot         {} clocks: the readout {}",
         hypothetical_text(rate, account), account.shape().cols, account.shape().rows, rate.full_hz,
         rate.full.total, rate.full.row, rate.coded_hz, rate.slowest.clocks, rate.mean_slot_clocks,
-        rate.gain, name_of(rate.slowest.limit), rate.even_gain, 100 * use.rows, 100 * use.adc,
-        100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, account),
+        rate.speedup, name_of(rate.slowest.limit), rate.balanced_speedup, 100 * use.rows,
+        100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, account),
         rate.period.energy_pj / period * 1e-6, slot_sample_pj(rate),
         schedule_memory_bits(account.schedule()),
         1e-6 * code_bits_per_second(account, rate.coded_hz), account.timing().code_load_clocks,

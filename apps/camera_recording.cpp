@@ -34,7 +34,7 @@ using std::chrono::milliseconds;
 constexpr std::size_t kQueueBytes = std::size_t{1} << 28U;
 
 /// How often a signal is looked for.
-constexpr milliseconds kPatience{100};
+constexpr milliseconds kPollInterval{100};
 
 /// `output`, or a file in it that is named by the time.
 std::filesystem::path file_for(const std::string& output) {
@@ -143,7 +143,7 @@ void CameraRecording::run(const RunOptions& run) {
     try {
         while (wants_more(progress.seconds())) {
             std::visit([this](auto&& event) { take(std::forward<decltype(event)>(event)); },
-                       session_.next(kPatience));
+                       session_.next(kPollInterval));
             progress.reach(static_cast<double>(taken_));
             progress.note(losses_text(session_.totals()));
         }

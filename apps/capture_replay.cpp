@@ -28,7 +28,7 @@ struct ReplayOptions {
     double black_level_dn = 0;
 };
 
-constexpr std::size_t kMostPlaces = 10;  // that are told to people
+constexpr std::size_t kMaxPlaces = 10;  // that are told to people
 
 nlohmann::ordered_json figures_of(const RecordingFootage& footage, std::int64_t slots) {
     const RecordingReport& report = footage.recording().report();
@@ -47,9 +47,9 @@ nlohmann::ordered_json figures_of(const RecordingFootage& footage, std::int64_t 
 std::string gaps_text(const RecordingFootage& footage) {
     std::string text;
     const auto& gaps = footage.gaps();
-    for (std::size_t i = 0; i < std::min(gaps.size(), kMostPlaces); ++i)
+    for (std::size_t i = 0; i < std::min(gaps.size(), kMaxPlaces); ++i)
         text += fmt::format("{}{} at slot {}", i == 0 ? "" : ", ", gaps[i].frames, gaps[i].slot);
-    if (gaps.size() > kMostPlaces) text += ", and more (--json lists them)";
+    if (gaps.size() > kMaxPlaces) text += ", and more (--json lists them)";
     return text;
 }
 
@@ -63,10 +63,10 @@ void say_what_is_wrong(const std::string& file, const RecordingFootage& footage)
     const std::size_t places = report.damage.size() + report.unlisted_damage;
     if (places == 0) return;
     std::string text = "the recording is damaged";
-    for (std::size_t i = 0; i < std::min(report.damage.size(), kMostPlaces); ++i)
+    for (std::size_t i = 0; i < std::min(report.damage.size(), kMaxPlaces); ++i)
         text += fmt::format("\n  byte {}: {}, {} skipped", report.damage[i].offset,
                             report.damage[i].cause, counted(report.damage[i].bytes, "byte"));
-    if (places > kMostPlaces) text += fmt::format("\n  and {} more", places - kMostPlaces);
+    if (places > kMaxPlaces) text += fmt::format("\n  and {} more", places - kMaxPlaces);
     throw InputError(file, text + "\n  the output is made of what is left");
 }
 

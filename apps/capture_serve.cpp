@@ -114,9 +114,9 @@ void add_source_arguments(Command& command, ServedSourceChoice& source) {
 
 /// GigE Vision 2.0, 27.17: 16 bytes, the last of which is 0.
 std::string check_serial(const std::string& serial) {
-    constexpr std::size_t kMostBytes = 15;
-    if (!serial.empty() && serial.size() <= kMostBytes) return {};
-    return fmt::format("has {} bytes; GigE Vision has room for 1 to {}", serial.size(), kMostBytes);
+    constexpr std::size_t kMaxBytes = 15;
+    if (!serial.empty() && serial.size() <= kMaxBytes) return {};
+    return fmt::format("has {} bytes; GigE Vision has room for 1 to {}", serial.size(), kMaxBytes);
 }
 
 void check_mode(const Command& command, const ServedSourceChoice& source) {

@@ -83,7 +83,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     say_leftover(options.output);
     {
         Progress progress(run, "photographing", kSeriesImages);
-        photograph_series(params, options.sensor.seed, folder.partial(), [&] {
+        capture_flat_fields(params, options.sensor.seed, folder.partial(), [&] {
             throw_if_stopped();
             progress.advance();
         });

@@ -32,7 +32,7 @@ constexpr std::chrono::milliseconds kWait{100};
 /// A camera that sends nothing for so long has come to its end.
 constexpr std::chrono::seconds kSilence{3};
 /// A longer gap than this is no loss but another stream.
-constexpr std::int64_t kMostMissing = 1'000'000;
+constexpr std::int64_t kMaxMissing = 1'000'000;
 
 /// A feature that a camera with a coded stream must have.
 std::string coded_feature(const CameraDescription& camera, const std::string& name) {
@@ -66,7 +66,7 @@ class SlotRecorder {
     }
     /// Drops what is missing before `next`.
     void drop_before(StreamPosition next) {
-        if (next.slot - order_.expected().slot > kMostMissing)
+        if (next.slot - order_.expected().slot > kMaxMissing)
             throw InputError("the coded stream", fmt::format("jumps from slot {} to {}",
                                                              order_.expected().slot, next.slot));
         while (order_.expected() < next) {

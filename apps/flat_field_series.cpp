@@ -17,7 +17,7 @@ namespace {
 constexpr FrameShape kShape{.rows = 240, .cols = 320, .planes = 1};
 constexpr int kPairs = 50;
 constexpr int kStack = 100;
-constexpr double kMostSaturation = 1.15;
+constexpr double kMaxSaturation = 1.15;
 
 /// Photons that fill the well or the converter of a mean pixel.
 double saturation_photons(const SensorParams& params) {
@@ -77,8 +77,9 @@ bool is_series_image_name(std::string_view name) {
     return error == std::errc() && name == fmt::format("image_{:04}.png", image);
 }
 
-void photograph_series(const SensorParams& params, std::uint64_t seed,
-                       const std::filesystem::path& folder, const std::function<void()>& advance) {
+void capture_flat_fields(const SensorParams& params, std::uint64_t seed,
+                         const std::filesystem::path& folder,
+                         const std::function<void()>& advance) {
     if (!params.physical.transmittance.empty() || !params.physical.gain_map.empty())
         throw InputError(fmt::format("sensor \"{}\"", params.name),
                          "has pixels of unequal transmittance or gain, which EMVA 1288 does not "
@@ -86,8 +87,7 @@ void photograph_series(const SensorParams& params, std::uint64_t seed,
     Bench bench(params, seed, folder, advance);
     const double saturation = saturation_photons(params);
     bench.photograph(0, 2);
-    for (int i = 1; i <= kPairs; ++i)
-        bench.photograph(kMostSaturation * saturation * i / kPairs, 2);
+    for (int i = 1; i <= kPairs; ++i) bench.photograph(kMaxSaturation * saturation * i / kPairs, 2);
     bench.photograph(saturation / 2, kStack);
     bench.photograph(0, kStack);
     const std::string text = series_text(bench.series());

@@ -25,8 +25,8 @@ inline constexpr const char* kDescriptorName = "emva1288_data.txt";
 /// image, the whole array read in each. A colour filter array is left off. Images are 16-bit PNG
 /// with the DN as they are. `advance` is called after each. \throws InputError if the sensor has
 /// maps of unequal pixels, DeviceError.
-void photograph_series(const SensorParams& params, std::uint64_t seed,
-                       const std::filesystem::path& folder, const std::function<void()>& advance);
+void capture_flat_fields(const SensorParams& params, std::uint64_t seed,
+                         const std::filesystem::path& folder, const std::function<void()>& advance);
 
 /// Reads the images that a descriptor names and evaluates them; messages call it `place`. `advance`
 /// is called after each image.

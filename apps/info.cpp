@@ -37,7 +37,7 @@ void info(const std::string& file, const RunOptions& run) {
     StreamReader reader(file, ReadPolicy::kCounts);
     JsonFile json(run);
     SamplePacket packet;
-    StretchedSlots stretched(reader.header(), most_memory(input_bytes(file)));
+    StretchedSlots stretched(reader.header(), max_memory(input_bytes(file)));
     while (reader.next(packet)) {
         throw_if_stopped();
         stretched.add(packet);

@@ -26,9 +26,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPatience{50};
+constexpr milliseconds kPollInterval{50};
 constexpr double kRateAfterS = 1;
-constexpr std::size_t kMostLateListed = 1000;
+constexpr std::size_t kMaxLateListed = 1000;
 
 /// A random number: packets of two recordings with the same settings are told apart by it
 /// (docs/stream_format.md, "Packet").
@@ -93,7 +93,7 @@ void LiveEmulation::run(const RunOptions& run) {
     camera_.begin();
     try {
         while (wants_more(progress.seconds())) {
-            if (const auto frame = camera_.next(kPatience))
+            if (const auto frame = camera_.next(kPollInterval))
                 take(*frame);
             else
                 end_ = camera_.end();
@@ -110,7 +110,7 @@ void LiveEmulation::run(const RunOptions& run) {
 /// says of them has no limit.
 std::uint64_t LiveEmulation::lost_to_hold(std::uint64_t lost) {
     const auto frames = static_cast<std::int64_t>(latencies_.count()) + 1;
-    const auto most = static_cast<std::uint64_t>(most_missing_slots(frames, to_light_.shape()));
+    const auto most = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
     const std::uint64_t held = std::min(lost, most - std::min(most, held_slots_));
     if (held < lost && unheld_slots_ == 0)
         say_warning(fmt::format(
@@ -155,7 +155,7 @@ void LiveEmulation::take(const CapturedFrame& frame) {
     latencies_.add(latency_us);
     if (latency_us <= arguments_.late_after_slots * setup_.params.slot_us) return;
     ++late_slots_;
-    if (late_.size() < kMostLateListed)
+    if (late_.size() < kMaxLateListed)
         late_.push_back({recorder_.stats().slots - 1, frame.record.host_monotonic_ns, latency_us});
 }
 

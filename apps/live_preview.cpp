@@ -35,7 +35,7 @@ void stop_waiting_for_idle(std::thread& thread) {
     static_cast<void>(pthread_setschedparam(thread.native_handle(), SCHED_OTHER, &parameters));
 }
 
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kPollInterval{2};
 
 }  // namespace
 
@@ -108,7 +108,7 @@ void LivePreview::finish() {
     if (made_ + failed_ > 0) give_up_ = true;
     wake_.release();
     stop_waiting_for_idle(thread_);
-    if (!ended_.try_acquire_for(kPatience))
+    if (!ended_.try_acquire_for(kPollInterval))
         say_error(
             "the recording is complete; its preview ends slowly, as the machine is "
             "busy. Ctrl-C twice does not wait");

@@ -7,7 +7,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint64_t kLeastPeriods = 8;
+constexpr std::uint64_t kMinPeriods = 8;
 /// Clocks of cameras agree to 0.01 %; arrivals of frames jitter by several ms in a second.
 constexpr double kTolerance = 0.02;
 
@@ -17,7 +17,7 @@ bool agree(double frames_hz, const SensorParams& sensor) {
 
 /// The rate, if it is known and not that of the slots.
 std::optional<double> other_rate(const FrameRate& frames, const SensorParams& sensor) {
-    if (frames.periods() < kLeastPeriods) return std::nullopt;
+    if (frames.periods() < kMinPeriods) return std::nullopt;
     const auto hz = frames.hz();
     return hz && !agree(*hz, sensor) ? hz : std::nullopt;
 }

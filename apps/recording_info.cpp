@@ -25,8 +25,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostGapsListed = 1000;
-constexpr std::size_t kMostGapsShown = 10;
+constexpr std::size_t kMaxGapsListed = 1000;
+constexpr std::size_t kMaxGapsShown = 10;
 
 /// Frames that are missing between two that are there.
 struct Gap {
@@ -54,7 +54,7 @@ struct FrameSummary {
         if (lost == 0) return;
         missing += lost;
         ++gaps;
-        if (listed.size() < kMostGapsListed) listed.push_back({record.id, lost, record.cause});
+        if (listed.size() < kMaxGapsListed) listed.push_back({record.id, lost, record.cause});
     }
 };
 
@@ -110,11 +110,11 @@ std::string gaps_text(const FrameSummary& frames) {
     if (frames.gaps == 0) return "missing      none";
     std::string text =
         fmt::format("missing      {} frames in {} places", frames.missing, frames.gaps);
-    for (std::size_t i = 0; i < std::min(frames.listed.size(), kMostGapsShown); ++i)
+    for (std::size_t i = 0; i < std::min(frames.listed.size(), kMaxGapsShown); ++i)
         text += fmt::format("\n             {} before frame {}: {}", frames.listed[i].frames,
                             frames.listed[i].before_frame, cause_of(frames.listed[i]));
-    if (frames.gaps > kMostGapsShown)
-        text += fmt::format("\n             and {} more", frames.gaps - kMostGapsShown);
+    if (frames.gaps > kMaxGapsShown)
+        text += fmt::format("\n             and {} more", frames.gaps - kMaxGapsShown);
     return text;
 }
 

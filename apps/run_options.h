@@ -14,7 +14,7 @@ struct RunOptions {
     bool quiet = false;
     bool force = false;
     bool no_sync = false;          ///< see NoSync
-    std::uint64_t max_memory = 0;  ///< bytes; 0: see most_memory
+    std::uint64_t max_memory = 0;  ///< bytes; 0: see max_memory
     int threads = 0;               ///< 0: all cores; of those that have `--threads`
     std::string json;              ///< file for the figures; empty: none, "-": standard output
 

@@ -7,7 +7,7 @@
 namespace stipple {
 namespace {
 
-constexpr int kMostSide = 65535;
+constexpr int kMaxSide = 65535;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .add_parsed(
             "--size",
             [&choice](const std::string& text) {
-                parse_size("--size", text, 1, kMostSide, choice.shape);
+                parse_size("--size", text, 1, kMaxSide, choice.shape);
             },
             "width and height of the array (640x480)")
         .type_name("WxH");

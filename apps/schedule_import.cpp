@@ -24,11 +24,11 @@ struct ImportOptions {
     int period_slots = 0;
 };
 
-constexpr std::size_t kMostNameBytes = 64;  // a stream's header has room for no more
+constexpr std::size_t kMaxNameBytes = 64;  // a stream's header has room for no more
 
 std::string check_name(const std::string& name) {
-    if (name.size() <= kMostNameBytes) return {};
-    return fmt::format("has {} bytes; {} is the most", name.size(), kMostNameBytes);
+    if (name.size() <= kMaxNameBytes) return {};
+    return fmt::format("has {} bytes; {} is the most", name.size(), kMaxNameBytes);
 }
 
 void import(const ImportOptions& options, const RunOptions& run) {
@@ -39,7 +39,7 @@ void import(const ImportOptions& options, const RunOptions& run) {
         options.lengths ? lengths_schedule(volume, options.period_slots, options.volume)
                         : mask_schedule(volume, options.volume);
     const std::string stem = std::filesystem::path(options.output).stem().string();
-    const std::string name = (options.name.empty() ? stem : options.name).substr(0, kMostNameBytes);
+    const std::string name = (options.name.empty() ? stem : options.name).substr(0, kMaxNameBytes);
     JsonFile json(run);
     write_text_file(options.output, run.force, code_text(schedule, name));
     const ScheduleFigures figures =

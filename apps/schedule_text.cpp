@@ -47,28 +47,28 @@ nlohmann::ordered_json figures_json(const std::string& name, const ScheduleFigur
             {"period_slots", figures.period_slots},
             {"compression_ratio", figures.compression_ratio},
             {"light_throughput", figures.light_throughput},
-            {"least_exposures", figures.least_exposures},
-            {"most_exposures", figures.most_exposures},
-            {"least_due", figures.least_due},
+            {"min_exposures", figures.min_exposures},
+            {"max_exposures", figures.max_exposures},
+            {"min_due", figures.min_due},
             {"mean_due", figures.mean_due},
-            {"most_due", figures.most_due},
+            {"max_due", figures.max_due},
             {"charge_stores", figures.charge_stores},
             {"code_memory_bits", figures.code_memory_bits}};
 }
 
 std::string figures_text(const std::string& name, const ScheduleFigures& figures) {
     const std::string exposures =
-        figures.least_exposures == figures.most_exposures
-            ? fmt::format("{}", figures.most_exposures)
-            : fmt::format("{} to {}", figures.least_exposures, figures.most_exposures);
+        figures.min_exposures == figures.max_exposures
+            ? fmt::format("{}", figures.max_exposures)
+            : fmt::format("{} to {}", figures.min_exposures, figures.max_exposures);
     return fmt::format(
         "{}: tile of {} x {} pixels, {} slots\n"
         "compression {:.4g}, light throughput {:.4g} %, {} exposures a pixel, {} charge store{}\n"
         "pixels read in a slot: {} to {}, mean {:.1f}; code memory {} bits",
         name, figures.tile_cols, figures.tile_rows, figures.period_slots, figures.compression_ratio,
         100 * figures.light_throughput, exposures, figures.charge_stores,
-        figures.charge_stores == 1 ? "" : "s", figures.least_due, figures.most_due,
-        figures.mean_due, figures.code_memory_bits);
+        figures.charge_stores == 1 ? "" : "s", figures.min_due, figures.max_due, figures.mean_due,
+        figures.code_memory_bits);
 }
 
 std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, FrameShape array,

@@ -56,8 +56,8 @@ emva1288::Evaluation evaluate_series(const std::filesystem::path& descriptor,
 
 emva1288::CameraFigures configured_figures(const SensorParams& params) {
     const PhysicalTerms& terms = params.physical;
-    const int most_dn = (1 << params.bit_depth) - 1;
-    const double range_e = (most_dn - terms.black_level_dn) * params.gain_e_per_dn();
+    const int max_dn = (1 << params.bit_depth) - 1;
+    const double range_e = (max_dn - terms.black_level_dn) * params.gain_e_per_dn();
     const double alive = 1 - terms.dead_pixel_fraction;
     SensorParams hot = params;
     hot.physical.dark_current_e_per_s = terms.hot_pixel_dark_current;

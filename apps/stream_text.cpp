@@ -130,9 +130,9 @@ bool undamaged(const StreamReport& report) {
 }
 
 std::string damage_text(const StreamReport& report) {
-    constexpr std::size_t kMostPlaces = 10;
+    constexpr std::size_t kMaxPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
-    const std::size_t listed = std::min(report.damage.size(), kMostPlaces);
+    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
     if (report.damage.empty() && report.missing_slots == 0)
         return fmt::format(
             "the stream is cut off: {} are whole, then it ends within a packet, "

@@ -8,13 +8,13 @@
 namespace stipple {
 
 void add_waveform_arguments(Command& command, WaveformOptions& options) {
-    constexpr int kMostSlots = 1'000'000;
+    constexpr int kMaxSlots = 1'000'000;
     const auto file =
         command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
             .type_name("FILE")
             .output(kWaveformName);
     command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
-        .check(whole_check(1, kMostSlots))
+        .check(whole_check(1, kMaxSlots))
         .type_name("N")
         .needs(file);
 }

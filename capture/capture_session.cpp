@@ -24,7 +24,7 @@ constexpr int kStallPeriods = 5;
 constexpr milliseconds kCountEvery{200};
 
 /// From one frame to the next, by which a counter that began anew is known.
-constexpr std::uint64_t kMostSteps = 8;
+constexpr std::uint64_t kMaxSteps = 8;
 
 /// A feature as a number; 0 if there is none.
 double number_of(const CameraDescription& camera, const char* feature) {
@@ -125,7 +125,7 @@ struct CaptureSession::Impl {
 
     void take_over(std::unique_ptr<Camera> opened);
     [[nodiscard]] nanoseconds period() const;
-    [[nodiscard]] std::optional<nanoseconds> patience() const;
+    [[nodiscard]] std::optional<nanoseconds> stall_timeout() const;
     [[nodiscard]] SessionEvent begin_outage(std::string reason);
     [[nodiscard]] SessionEvent wait_for_camera(milliseconds timeout);
     [[nodiscard]] SessionEvent wait_for_frame(milliseconds timeout);
@@ -161,7 +161,7 @@ nanoseconds CaptureSession::Impl::period() const {
 }
 
 /// How long the camera may be silent; empty: for ever.
-std::optional<nanoseconds> CaptureSession::Impl::patience() const {
+std::optional<nanoseconds> CaptureSession::Impl::stall_timeout() const {
     if (options.stall <= milliseconds(0) || waits_for_triggers(description)) return std::nullopt;
     const nanoseconds several = kStallPeriods * period();
     const milliseconds least = first_frame ? options.stall : options.first_frame;
@@ -258,7 +258,7 @@ bool CaptureSession::Impl::follows_doubtful(const FrameRecord& record) const {
     const FrameRecord& first = doubtful->record;
     const std::uint64_t steps = ids.steps(first.wire_id, record.wire_id);
     const bool is_older = have_stamps(record, first) && record.device_ns < first.device_ns;
-    return steps > 0 && steps <= kMostSteps && !is_older;
+    return steps > 0 && steps <= kMaxSteps && !is_older;
 }
 
 void CaptureSession::Impl::drop_doubtful() {
@@ -307,7 +307,7 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
 
 SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     if (coming) return deliver(*std::exchange(coming, {}));
-    const auto limit = patience();
+    const auto limit = stall_timeout();
     const auto silent = Clock::now() - last_sign;
     if (limit) {
         const auto left = std::chrono::ceil<milliseconds>(*limit - silent);

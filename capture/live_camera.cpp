@@ -8,7 +8,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{50};
+constexpr std::chrono::milliseconds kPollInterval{50};
 
 }  // namespace
 
@@ -18,7 +18,7 @@ LiveCamera::LiveCamera(CaptureSession::Opener open, LiveCameraOptions options)
       layout_(session_.layout()),
       description_(session_.description()),
       most_(
-          std::clamp<std::size_t>(most_memory() / std::max<std::size_t>(layout_.payload_bytes(), 1),
+          std::clamp<std::size_t>(max_memory() / std::max<std::size_t>(layout_.payload_bytes(), 1),
                                   1, options_.waiting_frames)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -53,7 +53,7 @@ void LiveCamera::run(const std::stop_token& stop) noexcept try {
         changed_.wait(lock, stop, [&] { return begun_; });
     }
     while (!stop.stop_requested()) {
-        SessionEvent event = session_.next(kPatience);
+        SessionEvent event = session_.next(kPollInterval);
         if (auto* const frame = std::get_if<CapturedFrame>(&event))
             take(std::move(*frame));
         else if (!std::holds_alternative<NoFrame>(event))

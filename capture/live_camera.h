@@ -24,7 +24,7 @@ struct LiveCameraOptions {
 };
 
 /// A camera whose frames a thread takes and keeps, a few of them, until somebody has time. When as
-/// many as that wait, or as `most_memory` holds, further ones are dropped; the next frame says how
+/// many as that wait, or as `max_memory` holds, further ones are dropped; the next frame says how
 /// many (kOwnDrop).
 class LiveCamera {
   public:

@@ -143,7 +143,7 @@ Config::Config(const std::filesystem::path& file, const std::vector<std::string>
     const std::string text(bytes.begin(), bytes.end());
     if (const std::size_t line = line_of_long_key(text); line != 0)
         throw InputError(fmt::format("{}:{}", impl_->file, line),
-                         fmt::format("a key has more than {} parts", kMostKeyParts));
+                         fmt::format("a key has more than {} parts", kMaxKeyParts));
     try {
         impl_->tables.push_back(toml::parse(text, impl_->file));
     } catch (const toml::parse_error& e) {

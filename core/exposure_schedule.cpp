@@ -19,7 +19,7 @@ std::size_t index(int value) {
 
 /// The most of a pixel's exposures whose spans cover one slot of the period. `under_way` holds a
 /// zero for each slot, before and after.
-int most_at_once(std::span<const Exposure> exposures, std::span<int> under_way) {
+int max_at_once(std::span<const Exposure> exposures, std::span<int> under_way) {
     const auto slot = [&](const Exposure& e, int i) -> int& {
         return under_way[(e.first_slot + index(i)) % under_way.size()];
     };
@@ -68,7 +68,7 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
         throw InputError(kPlace, "the list of exposures does not match the tile");
     std::vector<int> zeros(index(period_slots), 0);
     for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel, zeros);
-    if (most_at_once_ == 2) assign_stores();
+    if (max_at_once_ == 2) assign_stores();
     list_due_pixels();
 }
 
@@ -105,7 +105,7 @@ void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
     for (auto e = begin; e != end; ++e)
         visit_open(*e, [&](std::uint32_t slot) { zeros[slot] = 0; });
     if (interleaved || covered_slots > period)
-        most_at_once_ = std::max(most_at_once_, most_at_once({begin, end}, zeros));
+        max_at_once_ = std::max(max_at_once_, max_at_once({begin, end}, zeros));
 }
 
 void ExposureSchedule::assign_stores() {

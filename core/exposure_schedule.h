@@ -63,9 +63,9 @@ class ExposureSchedule {
     /// True if every pixel collects light in every slot.
     [[nodiscard]] bool gapless() const;
     /// True if some pixel begins an exposure before an earlier one has ended (two-bucket pixels).
-    [[nodiscard]] bool interleaved() const { return most_at_once_ > 1; }
+    [[nodiscard]] bool interleaved() const { return max_at_once_ > 1; }
     /// The most exposures of one pixel that are under way in one slot: the charge stores it needs.
-    [[nodiscard]] int charge_stores() const { return most_at_once_; }
+    [[nodiscard]] int charge_stores() const { return max_at_once_; }
     /// The most slots from the first to the last open one of an exposure; 0 if there is none.
     [[nodiscard]] int longest_span_slots() const { return longest_span_slots_; }
     /// The charge store (0 or 1) of exposure `i` of a tile pixel, when it begins in repetition
@@ -94,7 +94,7 @@ class ExposureSchedule {
     int tile_rows_;
     int tile_cols_;
     int period_slots_;
-    int most_at_once_ = 1;
+    int max_at_once_ = 1;
     int longest_span_slots_ = 0;
     std::vector<std::uint32_t> first_;
     std::vector<Exposure> exposures_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
-constexpr std::uint64_t kMostOfSmallInputs = 256 * kMiB;
+constexpr std::uint64_t kMaxOfSmallInputs = 256 * kMiB;
 
 std::uint64_t told_bytes = 0;  ///< by the living MemoryLimit; 0: none lives
 
@@ -60,18 +60,18 @@ std::uint64_t input_bytes(const fs::path& file) {
     return error ? kEndlessInput : bytes;
 }
 
-std::uint64_t most_memory(std::uint64_t input_bytes) {
+std::uint64_t max_memory(std::uint64_t input_bytes) {
     if (told_bytes > 0) return told_bytes;
     static const std::uint64_t half = machine_memory() / 2;  // asked for at each picture
-    return input_bytes < kSmallInput ? std::min(half, kMostOfSmallInputs) : half;
+    return input_bytes < kSmallInput ? std::min(half, kMaxOfSmallInputs) : half;
 }
 
 void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
                   std::uint64_t input_bytes) {
-    const std::uint64_t most = most_memory(input_bytes);
+    const std::uint64_t most = max_memory(input_bytes);
     if (bytes <= most) return;
     const char* const whose = told_bytes > 0 ? "--max-memory says"
-                              : most == most_memory()
+                              : most == max_memory()
                                   ? "a run may take, half of this machine's memory"
                                   : "a file of less than 1 MB may take";
     throw InputError(place,

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// While it lives, `most_memory` is so many bytes, whatever the machine has. Not for more than one
+/// While it lives, `max_memory` is so many bytes, whatever the machine has. Not for more than one
 /// thread at a time.
 class MemoryLimit {
   public:
@@ -32,10 +32,10 @@ inline constexpr std::uint64_t kSmallInput = 1'000'000;
 
 /// Bytes that may be taken at a time for an input of `input_bytes`: those of the living
 /// MemoryLimit, else half of `machine_memory`, of inputs below 1 MB no more than 256 MiB.
-[[nodiscard]] std::uint64_t most_memory(std::uint64_t input_bytes = kEndlessInput);
+[[nodiscard]] std::uint64_t max_memory(std::uint64_t input_bytes = kEndlessInput);
 
 /// Before memory is taken. \throws InputError at `place` if `bytes` for `what` are more than
-/// `most_memory(input_bytes)`: it names both, and the option that allows it.
+/// `max_memory(input_bytes)`: it names both, and the option that allows it.
 void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
                   std::uint64_t input_bytes = kEndlessInput);
 

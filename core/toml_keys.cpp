@@ -37,7 +37,7 @@ std::size_t line_of_long_key(std::string_view toml) {
                                    : c == '#'            ? comment_length(toml)
                                                          : 1;
         if (kEndsKey.find(c) != std::string_view::npos) parts = 1;
-        if (c == '.' && ++parts > kMostKeyParts) return line;
+        if (c == '.' && ++parts > kMaxKeyParts) return line;
         const std::string_view piece = toml.substr(0, length);
         line += static_cast<std::size_t>(std::count(piece.begin(), piece.end(), '\n'));
         toml.remove_prefix(length);

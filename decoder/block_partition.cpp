@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kHaloPixels = 32;
 
-Stretch part(std::int64_t length, std::int64_t i, std::int64_t parts) {
+HaloRange part(std::int64_t length, std::int64_t i, std::int64_t parts) {
     const std::int64_t begin = length * i / parts;
     const std::int64_t end = length * (i + 1) / parts;
     return {.begin = std::max<std::int64_t>(begin - kHaloPixels, 0),
@@ -22,7 +22,7 @@ std::int64_t halo_slots(int longest_span_slots) {
     return std::clamp<std::int64_t>(longest_span_slots - 1, kHaloSlots, kMaxHaloSlots);
 }
 
-Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots, std::int64_t halo) {
+HaloRange slot_range(std::int64_t core_begin, std::int64_t slots, std::int64_t halo) {
     const bool last = slots - core_begin <= kCoreSlots + kRestSlots;
     const std::int64_t core_end = last ? slots : core_begin + kCoreSlots;
     return {.begin = std::max<std::int64_t>(core_begin - halo, 0),

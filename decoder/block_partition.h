@@ -9,7 +9,7 @@ namespace stipple {
 
 /// A stretch of rows, columns or slots: [begin, end) is decoded, [core_begin, core_end) is kept.
 /// What lies between is the halo, in which the edge of the block does harm.
-struct Stretch {
+struct HaloRange {
     std::int64_t begin = 0;
     std::int64_t core_begin = 0;
     std::int64_t core_end = 0;
@@ -29,13 +29,13 @@ inline constexpr std::int64_t kRestSlots = 16;
 /// The block of slots whose core begins at `core_begin`, of a recording that has `slots` slots; if
 /// it may go on, `slots` is what is known so far, more than core_begin + kCoreSlots + kRestSlots
 /// and no less than core_begin + kCoreSlots + halo.
-[[nodiscard]] Stretch slot_stretch(std::int64_t core_begin, std::int64_t slots,
+[[nodiscard]] HaloRange slot_range(std::int64_t core_begin, std::int64_t slots,
                                    std::int64_t halo = kHaloSlots);
 
 /// Tiles of a frame, in rows and columns.
 struct Tile {
-    Stretch rows;
-    Stretch cols;
+    HaloRange rows;
+    HaloRange cols;
 };
 
 inline constexpr std::int64_t kMaxCoreSites = std::int64_t{1} << 20;

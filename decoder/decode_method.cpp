@@ -28,16 +28,16 @@ constexpr NamedDecodeMethod kMethods[] = {
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_motion_tv(task.measurements, task.noise, task.options.fast,
-                                     task.checkpoint);
+                                     task.progress);
          });
      }},
     {"best", DecodeMethod::kBest,
-     "collaborative filter of similar blocks: slower, 2 to 3 dB better than fast", kMaxCoreSites,
+     "collaborative filter of similar patches: slower, 2 to 3 dB better than fast", kMaxCoreSites,
      48, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_collaborative(task.measurements, task.noise, task.options.best,
-                                         task.checkpoint);
+                                         task.progress);
          });
      }},
     {"portz2013", DecodeMethod::kPortz2013,
@@ -45,7 +45,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      400, [](Config& config, DecodeOptions& options) { read_options(config, options.portz2013); },
      [](const BlockTask& block) {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
-                                 block.checkpoint);
+                                 block.progress);
      }},
 };
 

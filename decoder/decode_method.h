@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/flux_video.h"
-#include "decoder/checkpoint.h"
+#include "decoder/progress_callback.h"
 
 namespace stipple {
 
@@ -19,7 +19,7 @@ struct StageObserver;
 enum class DecodeMethod {
     kNaive,      ///< each pixel holds its nearest samples; no model of the scene
     kFast,       ///< motion-compensated total variation
-    kBest,       ///< collaborative filter of similar blocks
+    kBest,       ///< collaborative filter of similar patches
     kPortz2013,  ///< the method of the paper, in two stages
 };
 
@@ -28,7 +28,7 @@ struct BlockTask {
     Measurements& measurements;  ///< a method may change them
     const Calibration& calibration;
     const DecodeOptions& options;
-    const Checkpoint& checkpoint;
+    const ProgressCallback& progress;
     const StageObserver& observer;
 };
 

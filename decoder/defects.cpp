@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kFewestSamples = 4;
 constexpr int kFewestNeighbours = 3;
-constexpr int kMostUnsound = 2;
+constexpr int kMaxUnsound = 2;
 constexpr float kHotTimes = 3;         ///< brighter than every neighbour
 constexpr float kDarkErrors = 3;       ///< standard errors that no light may differ from 0
 constexpr float kExpectedErrors = 20;  ///< of the light that neighbours have
@@ -91,7 +91,7 @@ Surroundings around(const std::vector<SiteSum>& plane, FrameShape shape, int row
 
 bool is_stuck(const SiteSum& site, const Surroundings& beside) {
     if (site.samples < kFewestSamples || beside.with_samples < kFewestNeighbours) return false;
-    if (beside.sound < beside.with_samples - kMostUnsound) return false;
+    if (beside.sound < beside.with_samples - kMaxUnsound) return false;
     if (site.all_saturated()) return site.at_least > kHotTimes * beside.brightest;
     const float expected = beside.darkest * static_cast<float>(site.open_slots);
     return site.all_dark() && expected > kExpectedErrors * site.error();
@@ -108,7 +108,7 @@ void unobserve(Measurements& m, std::size_t site) {
 
 }  // namespace
 
-std::size_t unobserve_defects(Measurements& measurements) {
+std::size_t mask_defects(Measurements& measurements) {
     const FrameShape shape = measurements.shape;
     const std::size_t cols = index(shape.cols);
     std::vector<SiteSum> plane(shape.pixels());

@@ -17,6 +17,6 @@ struct Measurements;
 /// groups, in planes of a mosaic whose next sites are of another colour, or that come and go. A
 /// single bright or black point that is still for a whole block, with a sharp edge all around,
 /// looks the same and is lost.
-std::size_t unobserve_defects(Measurements& measurements);
+std::size_t mask_defects(Measurements& measurements);
 
 }  // namespace stipple

@@ -18,7 +18,7 @@ constexpr double kFastVoxels = 640 * 480 * 16;
 constexpr double kNaiveVoxels = 4 * kFastVoxels;
 
 /// Fewer slots give motion too little to go by.
-constexpr int kLeastSlots = 12;
+constexpr int kMinSlots = 12;
 
 DecodeOptions options_of(DecodeMethod method) {
     DecodeOptions options{.method = method};
@@ -30,7 +30,7 @@ DecodeOptions options_of(DecodeMethod method) {
 
 VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options) {
     const FrameShape whole = decoded_shape(header);
-    VideoWindow region{.slots = std::max(kLeastSlots, 2 * header.schedule.longest_span_slots()),
+    VideoWindow region{.slots = std::max(kMinSlots, 2 * header.schedule.longest_span_slots()),
                        .shape = whole};
     const double most = options.method == DecodeMethod::kNaive ? kNaiveVoxels : kFastVoxels;
     const double scale = std::min(1.0, std::sqrt(most / static_cast<double>(region.voxels())));
@@ -79,7 +79,7 @@ PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewOptions& option
 
 std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
                                                    std::span<const SamplePacket> packets,
-                                                   const Checkpoint& checkpoint) const {
+                                                   const ProgressCallback& progress) const {
     VideoWindow window = region_;
     window.first_slot = first_slot;
     Measurements measurements = collect_measurements(header_, packets, window);
@@ -88,7 +88,7 @@ std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
                        .light = {},
                        .too_bright = too_bright_pixels(measurements)};
     const auto video =
-        decode_block(std::move(measurements), header_.calibration, options_of(method_), checkpoint);
+        decode_block(std::move(measurements), header_.calibration, options_of(method_), progress);
     if (!video) return std::nullopt;
     const auto shown = video->frame(shown_slot());
     frame.light.resize(shown.size());

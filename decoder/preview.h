@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "decoder/checkpoint.h"
 #include "decoder/decode_method.h"
 #include "decoder/measurements.h"
+#include "decoder/progress_callback.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
@@ -42,11 +42,11 @@ class PreviewDecoder {
     [[nodiscard]] int shown_slot() const { return region_.slots / 2; }
     [[nodiscard]] FrameShape shape() const { return region_.shape; }
 
-    /// From the packets of slots() slots, `first_slot` and those after it. Nothing if `checkpoint`
+    /// From the packets of slots() slots, `first_slot` and those after it. Nothing if `progress`
     /// has stopped it. \throws InputError as collect_measurements.
     [[nodiscard]] std::optional<PreviewFrame> decode(std::int64_t first_slot,
                                                      std::span<const SamplePacket> packets,
-                                                     const Checkpoint& checkpoint) const;
+                                                     const ProgressCallback& progress) const;
 
   private:
     StreamHeader header_;

@@ -14,8 +14,8 @@ namespace {
 /// sample says what the filter has taken.
 DecodeOptions options_of_frames(DecodeOptions options) {
     options.best.offset_slots = 1;
-    options.best.least_light = -1;
-    options.best.feedback = 0;
+    options.best.min_light = -1;
+    options.best.residual_gain = 0;
     return options;
 }
 
@@ -27,13 +27,13 @@ std::optional<FluxVideo> decode_with_prior(
     Measurements& measurements = block.measurements;
     const auto exposures = frame_exposures(measurements);
     if (!exposures) {
-        unobserve_defects(measurements);
-        return decode({measurements, noise, block.options, block.checkpoint});
+        mask_defects(measurements);
+        return decode({measurements, noise, block.options, block.progress});
     }
     Measurements frames = measurements_of_frames(measurements, *exposures, noise);
-    unobserve_defects(frames);
+    mask_defects(frames);
     const auto lights = decode({frames, noise_of_frames(block.calibration, *exposures),
-                                options_of_frames(block.options), block.checkpoint});
+                                options_of_frames(block.options), block.progress});
     if (!lights) return {};
     FluxVideo x = interpolate_frames(*lights, centre_slots(*exposures), measurements.slots);
     add_what_frames_lack(measurements, *exposures, *lights, x);

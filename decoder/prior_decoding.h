@@ -14,7 +14,7 @@ struct PriorTask {
     Measurements& measurements;
     const SampleNoise& noise;
     const DecodeOptions& options;
-    const Checkpoint& checkpoint;
+    const ProgressCallback& progress;
 };
 
 /// Decodes a block by such a method. Pixels that are stuck are taken out first; where all pixels

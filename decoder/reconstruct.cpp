@@ -60,7 +60,7 @@ class PacketBuffer {
     void reach(std::int64_t slot) {
         if (slot <= slots_) return;
         missing_ += slot - slots_;
-        const std::int64_t most = most_missing_slots(present_, decoded_shape(reader_.header()));
+        const std::int64_t most = max_missing_slots(present_, decoded_shape(reader_.header()));
         if (!options_.fill_gaps && missing_ > most)
             throw InputError(options_.place,
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
@@ -84,7 +84,7 @@ using Block = std::optional<FluxVideo>;  ///< nothing if stopped
 /// Where a block's core goes in the frames of its slots.
 struct Placement {
     Tile tile;
-    Stretch slots;
+    HaloRange slots;
 };
 
 /// Copies the core of a decoded block; light is not negative.
@@ -108,7 +108,7 @@ void copy_core(const FluxVideo& block, const Placement& at, FluxVideo& video) {
 /// Puts together what the tiles of a block of slots tell of their stages.
 class StageRelay {
   public:
-    StageRelay(const StageSink& sink, FrameShape shape, const Stretch& slots)
+    StageRelay(const StageSink& sink, FrameShape shape, const HaloRange& slots)
         : sink_(sink), shape_(shape), slots_(slots) {}
 
     /// The observer of one tile, while this object lives.
@@ -142,11 +142,11 @@ class StageRelay {
 
     const StageSink& sink_;
     FrameShape shape_;
-    Stretch slots_;
+    HaloRange slots_;
     std::vector<std::pair<std::string, FluxVideo>> videos_;
 };
 
-VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
+VideoWindow window_of(const Tile& tile, const HaloRange& slots, int planes) {
     return {.first_slot = slots.begin,
             .slots = static_cast<int>(slots.end - slots.begin),
             .first_row = static_cast<int>(tile.rows.begin),
@@ -158,8 +158,8 @@ VideoWindow window_of(const Tile& tile, const Stretch& slots, int planes) {
 
 /// Decodes the cores of all tiles of a block of slots. No packet is older than the block.
 Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
-                   const DecodeOptions& options, const Stretch& slots,
-                   const Checkpoint& checkpoint) {
+                   const DecodeOptions& options, const HaloRange& slots,
+                   const ProgressCallback& progress) {
     const FrameShape shape = decoded_shape(header);
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
     const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
@@ -167,15 +167,15 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
     const std::vector<Tile> tiles = frame_tiles(shape, named(options.method).max_tile_sites);
     StageRelay stages(options.stages, shape, slots);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
-        const auto tile_checkpoint = [&](double fraction) {
-            return checkpoint((static_cast<double>(i) + fraction) /
-                              static_cast<double>(tiles.size()));
+        const auto tile_progress = [&](double fraction) {
+            return progress((static_cast<double>(i) + fraction) /
+                            static_cast<double>(tiles.size()));
         };
         const VideoWindow window = window_of(tiles[i], slots, shape.planes);
         const Block block =
             decode_block(collect_measurements(header, packets, window), header.calibration, options,
-                         tile_checkpoint, stages.observer(tiles[i], i));
-        if (!block || !tile_checkpoint(1)) return {};
+                         tile_progress, stages.observer(tiles[i], i));
+        if (!block || !tile_progress(1)) return {};
         copy_core(*block, {tiles[i], slots}, video);
     }
     stages.deliver();
@@ -202,7 +202,7 @@ void check_proportion(const StreamHeader& header, const DecodeOptions& options, 
 
 /// \throws InputError as check_memory for a block of slots. A small file is one for it that has
 /// less than a byte for 32 voxels, as no common schedule and bit depth make it.
-void check_block(const StreamHeader& header, const DecodeOptions& options, const Stretch& slots) {
+void check_block(const StreamHeader& header, const DecodeOptions& options, const HaloRange& slots) {
     constexpr std::uint64_t kVoxelsAByte = 32;
     const FrameShape shape = decoded_shape(header);
     std::uint64_t tile_pixels = 0;
@@ -225,9 +225,10 @@ void check_block(const StreamHeader& header, const DecodeOptions& options, const
 }  // namespace
 
 std::optional<FluxVideo> decode_block(Measurements measurements, const Calibration& calibration,
-                                      const DecodeOptions& options, const Checkpoint& checkpoint,
+                                      const DecodeOptions& options,
+                                      const ProgressCallback& progress,
                                       const StageObserver& observer) {
-    return named(options.method).decode({measurements, calibration, options, checkpoint, observer});
+    return named(options.method).decode({measurements, calibration, options, progress, observer});
 }
 
 DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
@@ -239,16 +240,16 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
     for (bool more = true; more;) {
         buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
-        const Stretch slots = slot_stretch(report.slots, buffer.slots(), halo);
+        const HaloRange slots = slot_range(report.slots, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
         check_proportion(header, options, slots.core_end, buffer.counts().samples());
         check_block(header, options, slots);
         buffer.drop_below(slots.begin);
-        const auto checkpoint = [&](double fraction) {
+        const auto progress = [&](double fraction) {
             return monitor(static_cast<double>(slots.core_begin) +
                            fraction * static_cast<double>(slots.core_end - slots.core_begin));
         };
-        const Block video = decode_slots(header, buffer.packets(), options, slots, checkpoint);
+        const Block video = decode_slots(header, buffer.packets(), options, slots, progress);
         if (!video) break;
         for (int slot = 0; slot < video->slots() && more; ++slot) {
             more = sink(report.slots, video->frame(slot));

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/flux_video.h"
-#include "decoder/checkpoint.h"
 #include "decoder/decode_method.h"
+#include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
 
@@ -38,7 +38,7 @@ struct DecodeReport {
 /// A mosaic of colours is decoded to three planes as one problem, in which the colours that a
 /// pixel does not see are unobserved: frames have the `decoded_shape` of the header.
 /// \throws InputError as StreamReader::next, if the method cannot decode the schedule, or if slots
-/// without samples are out of proportion to the others (most_missing_slots; more than 128 MB of
+/// without samples are out of proportion to the others (max_missing_slots; more than 128 MB of
 /// frames and 128 values for a sample, or of a file of less than 1 MB more than 256 MB), unless the
 /// options have `fill_gaps`; as check_memory if a block takes too much.
 DecodeReport decode(
@@ -50,10 +50,11 @@ DecodeReport decode(
     StreamReader& reader, DecodeMethod method, const FrameSink& sink,
     const DecodeMonitor& monitor = [](double) { return true; });
 
-/// Decodes one block as `decode` does; the result may be slightly negative. Nothing if `checkpoint`
+/// Decodes one block as `decode` does; the result may be slightly negative. Nothing if `progress`
 /// has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_block(
     Measurements measurements, const Calibration& calibration, const DecodeOptions& options,
-    const Checkpoint& checkpoint = [](double) { return true; }, const StageObserver& observer = {});
+    const ProgressCallback& progress = [](double) { return true; },
+    const StageObserver& observer = {});
 
 }  // namespace stipple

@@ -83,11 +83,11 @@ std::string missing_numbers(const fs::path& folder, const std::vector<fs::path>&
     std::size_t follow = 0;
     std::string first;
     for (std::size_t i = 1; i < files.size(); ++i) {
-        constexpr std::int64_t kMostStep = 1'000'000;
+        constexpr std::int64_t kMaxStep = 1'000'000;
         const std::string before = files[i - 1].filename().string();
         const std::string name = files[i].filename().string();
         const auto step = step_between(before, name);
-        if (!step || step->to <= step->from || step->to - step->from > kMostStep) continue;
+        if (!step || step->to <= step->from || step->to - step->from > kMaxStep) continue;
         if (step->to == step->from + 1) ++follow;
         missing += step->to - step->from - 1;
         if (first.empty() && missing > 0)

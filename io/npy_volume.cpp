@@ -17,7 +17,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint64_t kMostValues = std::uint64_t{1} << 26U;
+constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 26U;
 constexpr std::uint64_t kLongestSide = 65535;
 
 /// How the values of a type become numbers.
@@ -68,7 +68,7 @@ void check_shape(const std::vector<std::uint64_t>& shape, std::string_view place
                                                 shape[1], shape[2], kLongestSide));
         values *= side;
     }
-    if (values > kMostValues)
+    if (values > kMaxValues)
         throw InputError(place, fmt::format("shape ({}, {}, {}) has more than 2^26 values",
                                             shape[0], shape[1], shape[2]));
 }
@@ -104,7 +104,7 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view pl
 NpyVolume read_npy_volume(const std::filesystem::path& file) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (!error && size > kMostValues * 8 + kMaxNpyHeaderBytes)
+    if (!error && size > kMaxValues * 8 + kMaxNpyHeaderBytes)
         throw InputError(file.string(), "is too long for a volume of at most 2^26 values");
     const std::vector<std::uint8_t> bytes = read_file(file);
     return parse_npy_volume(std::as_bytes(std::span(bytes)), file.string());

@@ -100,10 +100,10 @@ void remove_own_files(const fs::path& folder, IsOwnName is_own) {
 
 /// What the link `path` leads to, by further links too; `path` if it is none.
 fs::path link_target(const fs::path& path) {
-    constexpr int kMostLinks = 40;  // as of Linux
+    constexpr int kMaxLinks = 40;  // as of Linux
     fs::path target = path;
     std::error_code error;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
+    for (int i = 0; i < kMaxLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
         struct statfs system {};
         if (statfs(folder_of(target).c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC)
             throw InputError(path.string(),

@@ -56,7 +56,7 @@ struct Page {
     explicit Page(TIFF* tiff);
     [[nodiscard]] std::string problem() const;
     /// How many bytes of pixels a byte of the file can hold at most.
-    [[nodiscard]] std::uint64_t most_packed() const;
+    [[nodiscard]] std::uint64_t max_packed() const;
 };
 
 Page::Page(TIFF* tiff) {
@@ -104,7 +104,7 @@ std::string Page::problem() const {
     return {};
 }
 
-std::uint64_t Page::most_packed() const {
+std::uint64_t Page::max_packed() const {
     switch (compression) {
         case COMPRESSION_NONE:
             return 1;
@@ -149,7 +149,7 @@ class PageReader {
         return true;
     }
     bool read_tiles(int channel) {
-        constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30U;
+        constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
         const auto rows = static_cast<std::uint32_t>(pixels_->shape.rows);
         const auto cols = static_cast<std::uint32_t>(pixels_->shape.cols);
         std::uint32_t width = 0;
@@ -158,7 +158,7 @@ class PageReader {
         TIFFGetField(tiff_, TIFFTAG_TILELENGTH, &height);
         const std::uint64_t bytes = TIFFTileSize64(tiff_);
         const std::size_t row_bytes = width * stored_pixel();
-        if (width == 0 || height == 0 || bytes > kMostBytes || bytes < row_bytes * height)
+        if (width == 0 || height == 0 || bytes > kMaxBytes || bytes < row_bytes * height)
             return false;
         std::vector<std::byte> tile(bytes);
         for (std::uint32_t y = 0; y < rows; y += height)
@@ -297,7 +297,7 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.channels = about.channels;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, place(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
-    check_packed(bytes, impl_->file_bytes, place(page), about.most_packed());
+    check_packed(bytes, impl_->file_bytes, place(page), about.max_packed());
     check_memory(bytes + sizeof(float) * pixels.shape.sites(), place(page), "the picture",
                  impl_->file_bytes);
     pixels.bytes.resize(bytes);

@@ -22,7 +22,7 @@ namespace stipple {
 namespace {
 
 /// Containers announce a number of frames or a duration, which may be off by some frames.
-constexpr double kLeastFractionOfAnnounced = 0.9;
+constexpr double kMinFractionOfAnnounced = 0.9;
 constexpr std::uint64_t kBytesAPixel = 12;  ///< at most: three of 16 bits, and converted
 
 /// Errors that a decoder logs. Some decoders tell of damage nowhere else.
@@ -59,7 +59,7 @@ std::string reason(int error) {
 /// them: none of its blocks may be larger than its share of what the input may take.
 void limit_blocks(std::uint64_t bytes) {
     constexpr std::uint64_t kBlocks = 2;  // the frame, and what it is converted to
-    av_max_alloc(most_memory(bytes) / kBlocks);
+    av_max_alloc(max_memory(bytes) / kBlocks);
 }
 
 Owned<AVFormatContext> open_file(const std::string& name) {
@@ -101,8 +101,8 @@ struct VideoDecoder::Impl {
         0;  ///< when the last packet, of any stream if only the file has a duration, ends
     std::string shortfall;
     std::int64_t last_tick = AV_NOPTS_VALUE;  ///< time of a frame, in units of the stream
-    std::int64_t least_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
-    std::int64_t most_ticks = 0;
+    std::int64_t min_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
+    std::int64_t max_ticks = 0;
 
     void open(const std::filesystem::path& path);
     void send_packet();
@@ -190,7 +190,7 @@ void VideoDecoder::Impl::check_end() {
         counts
             ? fmt::format("ends after {} of {} frames", packets, stream->nb_frames)
             : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, end_s, announced);
-    if (found < kLeastFractionOfAnnounced * announced)
+    if (found < kMinFractionOfAnnounced * announced)
         throw InputError(name, text + "; it is truncated or damaged");
     shortfall = fmt::format("{}: {}; frames may be missing", name, text);
 }
@@ -198,8 +198,8 @@ void VideoDecoder::Impl::check_end() {
 void VideoDecoder::Impl::note_time(std::int64_t tick) {
     if (tick == AV_NOPTS_VALUE) return;
     if (last_tick != AV_NOPTS_VALUE) {
-        least_ticks = std::min(least_ticks, tick - last_tick);
-        most_ticks = std::max(most_ticks, tick - last_tick);
+        min_ticks = std::min(min_ticks, tick - last_tick);
+        max_ticks = std::max(max_ticks, tick - last_tick);
     }
     last_tick = tick;
 }
@@ -207,13 +207,13 @@ void VideoDecoder::Impl::note_time(std::int64_t tick) {
 /// Empty where the frames are equally long but for the rounding of their times.
 std::string VideoDecoder::Impl::unequal_times() const {
     constexpr std::int64_t kRounding = 2;
-    const std::int64_t allowed = std::max(kRounding, least_ticks / 2);
-    if (most_ticks == 0 || most_ticks - least_ticks <= allowed) return {};
+    const std::int64_t allowed = std::max(kRounding, min_ticks / 2);
+    if (max_ticks == 0 || max_ticks - min_ticks <= allowed) return {};
     const double tick_s = av_q2d(stream->time_base);
     return fmt::format(
         "{}: its frames are {:.4g} to {:.4g} s apart, but each becomes one slot; some "
         "may be missing",
-        name, static_cast<double>(least_ticks) * tick_s, static_cast<double>(most_ticks) * tick_s);
+        name, static_cast<double>(min_ticks) * tick_s, static_cast<double>(max_ticks) * tick_s);
 }
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
@@ -244,10 +244,9 @@ const AVFrame* VideoDecoder::next() {
 }
 
 std::optional<double> VideoDecoder::film_hz() const {
-    constexpr double kMostHz =
-        80'000;  // where a container has no rate: the tick of its time stamps
+    constexpr double kMaxHz = 80'000;  // where a container has no rate: the tick of its time stamps
     const AVRational rate = impl_->stream->avg_frame_rate;
-    if (rate.num <= 0 || rate.den <= 0 || av_q2d(rate) >= kMostHz) return {};
+    if (rate.num <= 0 || rate.den <= 0 || av_q2d(rate) >= kMaxHz) return {};
     return av_q2d(rate);
 }
 

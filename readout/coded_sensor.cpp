@@ -169,7 +169,7 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
     const auto planes = static_cast<std::size_t>(shape.planes);
     for (std::size_t i = 0; i < band.pixels.size(); ++i) {
         band.dn[i * planes + plane] = band.plane_dn[i];
-        if (band.clipped[i] != 0 || band.plane_dn[i] == adc.most_dn()) ++band.saturated;
+        if (band.clipped[i] != 0 || band.plane_dn[i] == adc.max_dn()) ++band.saturated;
     }
 }
 

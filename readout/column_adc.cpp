@@ -27,9 +27,9 @@ std::vector<float> step_errors(const SensorParams& params) {
 }  // namespace
 
 ColumnAdc::ColumnAdc(const SensorParams& params)
-    : law_{.full_scale_e = params.full_scale_e,
-           .most_dn = static_cast<double>((1 << params.bit_depth) - 1),
-           .to_round = params.rounding == AdcRounding::kNearest ? 0.5 : 0.0},
+    : transfer_{.full_scale_e = params.full_scale_e,
+                .max_dn = static_cast<double>((1 << params.bit_depth) - 1),
+                .to_round = params.rounding == AdcRounding::kNearest ? 0.5 : 0.0},
       plain_(params.mode == SensorMode::kPaper),
       black_level_dn_(params.physical.black_level_dn),
       inl_dn_(params.physical.inl_dn),
@@ -37,9 +37,11 @@ ColumnAdc::ColumnAdc(const SensorParams& params)
 
 std::uint16_t ColumnAdc::convert_physical(float electrons) const noexcept {
     const double straight =
-        static_cast<double>(electrons) * law_.most_dn / law_.full_scale_e + black_level_dn_;
-    const double x = law_.clamped(straight) / law_.most_dn;
-    const double level = law_.clamped(straight + 4 * inl_dn_ * x * (1 - x)) + law_.to_round;
+        static_cast<double>(electrons) * transfer_.max_dn / transfer_.full_scale_e +
+        black_level_dn_;
+    const double x = transfer_.clamped(straight) / transfer_.max_dn;
+    const double level =
+        transfer_.clamped(straight + 4 * inl_dn_ * x * (1 - x)) + transfer_.to_round;
     auto dn = static_cast<std::int32_t>(level);
     if (step_error_.empty()) return static_cast<std::uint16_t>(dn);
     const auto step_to = [&](std::int32_t code) {
@@ -47,7 +49,7 @@ std::uint16_t ColumnAdc::convert_physical(float electrons) const noexcept {
     };
     if (dn > 0 && level < step_to(dn))
         --dn;
-    else if (dn < most_dn() && level >= step_to(dn + 1))
+    else if (dn < max_dn() && level >= step_to(dn + 1))
         ++dn;
     return static_cast<std::uint16_t>(dn);
 }
@@ -59,8 +61,9 @@ void ColumnAdc::convert(std::span<const float> electrons,
         for (std::size_t i = 0; i < dn.size(); ++i) dn[i] = convert_physical(electrons[i]);
         return;
     }
-    const Law law = law_;  // a copy that `dn` cannot alias, so the loop vectorises
-    for (std::size_t i = 0; i < dn.size(); ++i) dn[i] = law.convert(electrons[i]);
+    const TransferFunction transfer =
+        transfer_;  // a copy that `dn` cannot alias, so the loop vectorises
+    for (std::size_t i = 0; i < dn.size(); ++i) dn[i] = transfer.convert(electrons[i]);
 }
 
 }  // namespace stipple

@@ -26,11 +26,13 @@ class ColumnAdc {
     /// Precondition: `validate(params)` passes.
     explicit ColumnAdc(const SensorParams& params);
 
-    [[nodiscard]] std::uint16_t most_dn() const { return static_cast<std::uint16_t>(law_.most_dn); }
+    [[nodiscard]] std::uint16_t max_dn() const {
+        return static_cast<std::uint16_t>(transfer_.max_dn);
+    }
 
     /// Precondition: not NaN.
     [[nodiscard]] std::uint16_t convert_one(float electrons) const noexcept {
-        return plain_ ? law_.convert(electrons) : convert_physical(electrons);
+        return plain_ ? transfer_.convert(electrons) : convert_physical(electrons);
     }
 
     /// Precondition: equal lengths; no electrons are NaN.
@@ -38,24 +40,24 @@ class ColumnAdc {
 
   private:
     /// Eq. 1.
-    struct Law {
+    struct TransferFunction {
         double full_scale_e;
-        double most_dn;   ///< 2^d - 1
+        double max_dn;    ///< 2^d - 1
         double to_round;  ///< added before the fraction is cut off
 
         [[nodiscard]] double clamped(double level) const noexcept {
             const double above = level > 0 ? level : 0;
-            return above < most_dn ? above : most_dn;
+            return above < max_dn ? above : max_dn;
         }
         [[nodiscard]] std::uint16_t convert(float electrons) const noexcept {
-            const double level = static_cast<double>(electrons) * most_dn / full_scale_e;
+            const double level = static_cast<double>(electrons) * max_dn / full_scale_e;
             return static_cast<std::uint16_t>(static_cast<std::int32_t>(clamped(level) + to_round));
         }
     };
 
     [[nodiscard]] std::uint16_t convert_physical(float electrons) const noexcept;
 
-    Law law_;
+    TransferFunction transfer_;
     bool plain_;  ///< Eq. 1 only
     double black_level_dn_;
     double inl_dn_;

@@ -18,7 +18,7 @@ namespace stipple {
 namespace {
 
 /// Longer lists of keys are those of schedules that are written out, which the stream holds anyway.
-constexpr std::size_t kMostScheduleKeys = 16384;
+constexpr std::size_t kMaxScheduleKeys = 16384;
 
 toml::array toml_array(const std::vector<double>& values) {
     toml::array array;
@@ -87,7 +87,7 @@ toml::table options_table(const SensorChoice& choice) {
 
 toml::table schedule_table(const SensorSetup& setup) {
     const std::string keys = schedule_keys(setup.choice);
-    toml::table table = keys.size() > kMostScheduleKeys ? toml::table() : toml::parse(keys);
+    toml::table table = keys.size() > kMaxScheduleKeys ? toml::table() : toml::parse(keys);
     table.insert_or_assign("name", setup.schedule.name);
     return table;
 }

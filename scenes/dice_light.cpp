@@ -58,7 +58,7 @@ Rgb DiceScene::die_albedo(const Die& die, const Hit& hit) const noexcept {
     const float edge = std::max(std::abs(face.x), std::abs(face.y));
     const Vec2 p = die.half * face + Vec2{die.start, 0.3F * static_cast<float>(hit.axis)};
     const float veins = textures_->smooth.at(1.5F * p.x, 1.5F * p.y);
-    const float grain = textures_->rough.at(2 * p.x, 2 * p.y);
+    const float grain = textures_->coarse.at(2 * p.x, 2 * p.y);
     const float line = std::abs(edge - 0.80F) < 0.018F ? 0.55F : 1.0F;  // an engraved frame
     return line * (pip < 0.22F ? 0.6F : 1.0F) * (1 + 0.10F * veins + 0.13F * grain) * die.colour;
 }
@@ -89,7 +89,7 @@ Rgb DiceScene::Instant::die_light(const Ray& ray, const Hit& hit, Vec3 lamp) con
 Rgb DiceScene::board_albedo(Vec2 point) const noexcept {
     const Vec2 inside = kBoard - Vec2{std::abs(point.x), std::abs(point.y)};
     const float rim = std::min(inside.x, inside.y);
-    const float grain = textures_->rough.at(point.x, point.y);
+    const float grain = textures_->coarse.at(point.x, point.y);
     if (rim < kRail)  // the rail, mitred: its grain runs along it
         return 0.55F * wood(*textures_, inside.x < inside.y ? point : Vec2{point.y, point.x});
     if (rim < kRail + 0.008F) return {0.55F, 0.40F, 0.15F};

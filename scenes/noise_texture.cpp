@@ -116,7 +116,7 @@ float NoiseTexture::at(float u, float v) const noexcept {
 
 SceneTextures::SceneTextures(int rows, std::uint64_t seed)
     : random(seed),
-      rough(texels_for(rows), 0.85F, random, 0),
+      coarse(texels_for(rows), 0.85F, random, 0),
       smooth(texels_for(rows), 0.55F, random, 1) {}
 
 }  // namespace stipple

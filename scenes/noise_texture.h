@@ -50,7 +50,7 @@ struct SceneTextures {
     SceneTextures(int rows, std::uint64_t seed);
 
     SceneRandom random;
-    NoiseTexture rough;   ///< plaster, stone, bark: detail at every scale
+    NoiseTexture coarse;  ///< plaster, stone, bark: detail at every scale
     NoiseTexture smooth;  ///< clouds, stains, outlines
 };
 

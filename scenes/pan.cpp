@@ -51,7 +51,7 @@ Rgb PanScene::Instant::sky(Vec2 point) const noexcept {
     const Vec2 cloud = world(point, kCloudScale);
     const NoiseTexture& noise = scene->textures_->smooth;
     const float density = noise.at(0.125F * cloud.x, 0.5F * cloud.y) +
-                          0.4F * scene->textures_->rough.at(0.25F * cloud.x, 0.6F * cloud.y);
+                          0.4F * scene->textures_->coarse.at(0.25F * cloud.x, 0.6F * cloud.y);
     const Rgb lit = mix(Rgb{1.05F, 0.60F, 0.38F}, {0.40F, 0.33F, 0.40F}, height);
     const Rgb air = mix(clear, lit, 0.75F * smooth_step(0.1F, 1.8F, density));
     const Vec2 away = point - kSun;
@@ -64,9 +64,9 @@ std::optional<Rgb> PanScene::hills(Vec2 world) const noexcept {
     const float far_top = 0.28F + 0.05F * textures_->smooth.at(0.25F * world.x, 0.3F);
     if (world.y > far_top) return {};
     const float near_top = 0.21F + 0.035F * textures_->smooth.at(0.5F * world.x, 0.7F) +
-                           0.006F * textures_->rough.at(world.x, 0.1F);
+                           0.006F * textures_->coarse.at(world.x, 0.1F);
     const bool near = world.y < near_top;
-    const float forest = 1 + 0.35F * textures_->rough.at(world.x, 1.5F * world.y);
+    const float forest = 1 + 0.35F * textures_->coarse.at(world.x, 1.5F * world.y);
     const Rgb albedo = forest * (near ? Rgb{0.10F, 0.13F, 0.06F} : Rgb{0.14F, 0.14F, 0.13F});
     return mix(albedo, kHaze, near ? 0.25F : 0.6F);
 }

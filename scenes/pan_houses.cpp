@@ -72,7 +72,7 @@ Rgb PanScene::roof(const House& house, Vec2 local) const noexcept {
     const float row = (local.y - house.eaves) / 0.013F;
     const float tile = local.x / 0.014F + 0.5F * static_cast<float>(floor_int(row) & 1);
     const float shade = mix(0.55F, 1.15F, fraction(row)) * (fraction(tile) < 0.12F ? 0.65F : 1.0F) *
-                        (1 + 0.22F * textures_->rough.at(local.x + house.stain.x, local.y));
+                        (1 + 0.22F * textures_->coarse.at(local.x + house.stain.x, local.y));
     const float gutter = local.y - house.eaves < 0.008F ? 0.35F : 1.0F;
     return gutter * shade * (house.roof * Rgb{1.0F, 0.92F, 0.98F});
 }
@@ -113,7 +113,7 @@ Rgb PanScene::facade(const House& house, Vec2 local) const noexcept {
     if (dot(bulb, bulb) < square(0.0065F)) return {7.0F, 4.6F, 2.4F};
     const Vec2 round{door.x, std::max(0.0F, door.y - 0.085F)};
     const float arch = std::sqrt(dot(round, round));
-    const float grain = textures_->rough.at(local.x + house.stain.x, local.y + house.stain.y);
+    const float grain = textures_->coarse.at(local.x + house.stain.x, local.y + house.stain.y);
     if (arch < 0.034F)  // an open archway: the deepest shadow of the picture
         return (3e-4F * (1 + 0.3F * grain)) * Rgb{1, 0.85F, 0.75F} +
                0.004F * square(clamp01(1 - door.y / 0.03F)) * Rgb{1, 0.8F, 0.6F};

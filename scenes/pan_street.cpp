@@ -23,7 +23,7 @@ std::optional<Rgb> PanScene::railing(Vec2 world) const noexcept {
     if (world.y > 0.11F) return {};
     const float pillar = std::abs(nearest(world.x, 0.8F, 0.1F));
     if (pillar < 0.027F || (pillar < 0.033F && world.y > 0.095F)) {
-        const float grain = textures_->rough.at(world.x * 1.5F, world.y * 1.5F);
+        const float grain = textures_->coarse.at(world.x * 1.5F, world.y * 1.5F);
         const float lit = mix(1.25F, 0.35F, clamp01((pillar + 0.027F) / 0.054F));
         return (lit * (1 + 0.25F * grain)) * Rgb{0.26F, 0.23F, 0.22F};
     }
@@ -67,10 +67,10 @@ std::optional<Rgb> PanScene::tree(Vec2 world) const noexcept {
     const Vec2 p{world.x - cell - lean, world.y};
     if (std::abs(p.x) > 0.2F || p.y < 0) return {};
     const Vec2 crown{p.x, (p.y - 0.33F) / 1.05F};
-    const float outline = 0.118F + 0.013F * textures_->rough.at(world.x, world.y) +
+    const float outline = 0.118F + 0.013F * textures_->coarse.at(world.x, world.y) +
                           0.012F * textures_->smooth.at(1.5F * world.x, 1.5F * world.y);
     const float radius2 = dot(crown, crown);
-    const float leaf = textures_->rough.at(2 * world.x, 2 * world.y + 0.37F);
+    const float leaf = textures_->coarse.at(2 * world.x, 2 * world.y + 0.37F);
     if (radius2 < square(outline) && leaf > -1.7F) {
         const float side = 0.55F - 2.6F * crown.x + 2.6F * crown.y;
         const float light = std::max(0.06F, side) * (1 + 0.42F * leaf);
@@ -78,7 +78,7 @@ std::optional<Rgb> PanScene::tree(Vec2 world) const noexcept {
     }
     const float trunk = 0.011F + 0.004F * square(clamp01(1 - p.y / 0.05F));
     if (std::abs(p.x) > trunk || p.y > 0.32F) return {};
-    const float bark = textures_->rough.at(3 * world.x, 0.6F * world.y);
+    const float bark = textures_->coarse.at(3 * world.x, 0.6F * world.y);
     return (mix(1.3F, 0.3F, clamp01((p.x + trunk) / (2 * trunk))) * (1 + 0.3F * bark)) *
            Rgb{0.15F, 0.11F, 0.085F};
 }
@@ -90,7 +90,7 @@ Rgb PanScene::ground(Vec2 world, float scale) const noexcept {
     const float pool = 1 / square(1 + dot(away, away) / square(0.11F));
     const Rgb light = Rgb{0.50F, 0.46F, 0.52F} + pool * Rgb{1.9F, 1.2F, 0.6F};
     const Vec2 p{world.x, 1.25F * depth};
-    const float grain = textures_->rough.at(p.x, p.y);
+    const float grain = textures_->coarse.at(p.x, p.y);
     if (depth > 0.93F || depth < 0.50F) {  // pavement of large slabs
         const bool joint = fraction(p.x / 0.125F) < 0.025F || std::abs(depth - 0.93F) < 0.006F;
         return (joint ? 0.5F : 1.0F) * (1 + 0.13F * grain) * (Rgb{0.42F, 0.39F, 0.36F} * light);

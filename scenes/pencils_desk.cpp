@@ -14,7 +14,7 @@ constexpr float kBoreRadius = 0.113F;
 Rgb PencilsScene::pencil_light(const Pencil& pencil, const Posed& posed,
                                Vec2 local) const noexcept {
     const float across = local.y / pencil.half_width;
-    const float grain = textures_->rough.at(2 * local.x, 2 * local.y + pencil.start.x);
+    const float grain = textures_->coarse.at(2 * local.x, 2 * local.y + pencil.start.x);
     if (pencil.plain) {  // a round, lacquered stick
         const float round = 1 - square(across + 0.35F);
         return (0.35F + 0.65F * clamp01(round)) * (1 + 0.08F * grain) * pencil.colour +
@@ -58,7 +58,7 @@ Rgb PencilsScene::cup(Vec2 from_centre) const noexcept {
     const float rim = (radius - kBoreRadius) / (kCupRadius - kBoreRadius);
     if (rim > 0) {  // polished rim: two highlights across from each other
         const float shine = power64(std::abs(towards_sun)) * clamp01(4 * rim * (1 - rim));
-        const float grain = textures_->rough.at(from_centre.x * 2, from_centre.y * 2);
+        const float grain = textures_->coarse.at(from_centre.x * 2, from_centre.y * 2);
         return (0.16F + 0.30F * clamp01(towards_sun + 0.4F)) * (1 + 0.06F * grain) *
                    Rgb{0.80F, 0.84F, 0.90F} +
                (towards_sun > 0 ? 12.0F : 3.0F) * shine * square(shine) * Rgb{1, 0.96F, 0.88F};
@@ -66,12 +66,12 @@ Rgb PencilsScene::cup(Vec2 from_centre) const noexcept {
     // The inside: only its wall across from the sun is lit, the bottom is the deepest shadow.
     const float wall = clamp01(1 + rim * (kCupRadius - kBoreRadius) / 0.026F);
     const float lit = square(wall) * clamp01(-towards_sun + 0.15F);
-    const float grain = textures_->rough.at(3 * from_centre.x, 3 * from_centre.y);
+    const float grain = textures_->coarse.at(3 * from_centre.x, 3 * from_centre.y);
     return (2.2e-4F * (1 + 0.3F * grain) + 0.20F * lit) * Rgb{1, 0.98F, 0.95F};
 }
 
 Rgb PencilsScene::desk(Vec2 point) const noexcept {
-    const float grain = textures_->rough.at(point.x, point.y);
+    const float grain = textures_->coarse.at(point.x, point.y);
     // A sheet of squared paper, lying askew.
     const Vec2 sheet{0.966F * (point.x - 0.20F) + 0.259F * (point.y - 0.02F),
                      0.966F * (point.y - 0.02F) - 0.259F * (point.x - 0.20F)};

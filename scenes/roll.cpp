@@ -91,7 +91,7 @@ Rgb RollScene::tread(const Disc& disc, Vec2 from_centre) const noexcept {
 
 Rgb RollScene::inlay(const Disc& disc, Vec2 local, float rho) const noexcept {
     const float turns = turns_of(local) + 1;
-    const float grain = textures_->rough.at(1.6F * local.x, 1.6F * local.y);
+    const float grain = textures_->coarse.at(1.6F * local.x, 1.6F * local.y);
     const float veins = textures_->smooth.at(2 * local.x, 2 * local.y + 0.4F);
     const auto is_odd = [](float x) { return (floor_int(x) & 1) != 0; };
     Rgb albedo;

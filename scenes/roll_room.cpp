@@ -34,7 +34,7 @@ Rgb RollScene::ground(Vec2 point, float shadow) const noexcept {
 }
 
 Rgb RollScene::wall(Vec2 point, float shadow) const noexcept {
-    const float grain = textures_->rough.at(point.x, point.y);
+    const float grain = textures_->coarse.at(point.x, point.y);
     const Vec2 bulb = point - kBulb;
     if (dot(bulb, bulb) < square(0.015F)) return {13, 9.5F, 5.5F};
     const Rgb halo = 0.9F * light_pool(dot(bulb, bulb), 0.035F) * kBulbLight;

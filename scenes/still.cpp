@@ -56,13 +56,13 @@ Rgb StillScene::Instant::radiance(Vec2 point, Vec2 /*stratum*/) const noexcept {
 
 Rgb StillScene::Instant::outside(Vec2 point) const noexcept {
     const NoiseTexture& smooth = scene->textures_->smooth;
-    const NoiseTexture& rough = scene->textures_->rough;
+    const NoiseTexture& coarse = scene->textures_->coarse;
     const Vec2 from_sun = point - kSun;
     const float sun2 = dot(from_sun, from_sun);
     // Leaves of a tree in the wind, in front of hills and sky.
     const Vec2 blown =
         point + 0.012F * breeze * Vec2{1, 0.3F * wave(2 * static_cast<double>(point.x))};
-    const float leaf = rough.at(1.2F * blown.x, 1.2F * blown.y);
+    const float leaf = coarse.at(1.2F * blown.x, 1.2F * blown.y);
     const float crown = (blown.x + 0.36F) * 2.2F + 0.5F * smooth.at(blown.x, blown.y) -
                         2.2F * std::abs(blown.y + 0.18F);
     if (crown + 0.55F * leaf > 0.3F)
@@ -71,7 +71,7 @@ Rgb StillScene::Instant::outside(Vec2 point) const noexcept {
                    clamp01(0.35F + 0.4F * smooth.at(2 * blown.x, 2 * blown.y)));
     const float ridge = 0.03F + 0.02F * smooth.at(0.5F * point.x, 0.2F);
     if (point.y > ridge) {
-        const float field = rough.at(0.8F * point.x, 2 * point.y);
+        const float field = coarse.at(0.8F * point.x, 2 * point.y);
         return (1 + 0.2F * field) * mix(Rgb{0.50F, 0.56F, 0.42F}, {0.34F, 0.46F, 0.12F},
                                         smooth_step(ridge, 0.13F, point.y));
     }
@@ -95,7 +95,7 @@ std::optional<Rgb> StillScene::Instant::curtain(Vec2 point) const noexcept {
     if (across < 0 || across > 1) return {};
     const float fold =
         0.5F + 0.5F * wave(static_cast<double>(across * 3.5F + 0.12F * breeze * down));
-    const float weave = scene->textures_->rough.at(2 * point.x, 2 * point.y);
+    const float weave = scene->textures_->coarse.at(2 * point.x, 2 * point.y);
     const bool stripe = fraction(across * 6) < 0.14F;
     // Daylight shines through where the curtain hangs before the panes.
     const float through = smooth_step(0.5F, 0.8F, across) * smooth_step(0.17F, 0.12F, point.y) *
@@ -133,7 +133,7 @@ Rgb StillScene::Instant::room_light(Vec2 point) const noexcept {
 }
 
 Rgb StillScene::Instant::wall(Vec2 point) const noexcept {
-    const float grain = scene->textures_->rough.at(point.x, point.y);
+    const float grain = scene->textures_->coarse.at(point.x, point.y);
     const float stain = scene->textures_->smooth.at(point.x, point.y + 0.5F);
     const Vec2 from_lamp = point - lamp;
     const Rgb halo = 0.35F * light_pool(dot(from_lamp, from_lamp), 0.05F) * kLampLight;

@@ -28,7 +28,7 @@ constexpr std::array<Rgb, 8> kCloth{{{0.42F, 0.07F, 0.05F},
 std::optional<Rgb> StillScene::shelf(Vec2 point) const noexcept {
     const Vec2 p = point - kShelfCorner;
     if (p.x < -kBoard || p.y < -kBoard) return {};
-    const float grain = textures_->rough.at(0.2F * point.x, 1.5F * point.y);
+    const float grain = textures_->coarse.at(0.2F * point.x, 1.5F * point.y);
     const float row = p.y / kShelfPitch;
     const float up = (1 - fraction(row)) * kShelfPitch;  // above the board below
     if (p.x < 0 || p.y < 0 || up < kBoard)
@@ -44,7 +44,7 @@ Rgb StillScene::books(int row, Vec2 in_row) const noexcept {
         return textures_->random.between(low, high, item, 0x50000U + field);
     };
     const float under_board = smooth_step(0.0F, 0.06F, kShelfPitch - kBoard - in_row.y);
-    const float grain = textures_->rough.at(in_row.x + 0.3F * static_cast<float>(row), in_row.y);
+    const float grain = textures_->coarse.at(in_row.x + 0.3F * static_cast<float>(row), in_row.y);
     const Rgb back = (0.004F * (1 + 0.3F * grain)) * Rgb{1, 0.8F, 0.65F};
     const float across = fraction(in_row.x / kBookCell) - 0.5F;
     const float half = draw(0.36F, 0.5F, 1);
@@ -84,7 +84,7 @@ Rgb StillScene::Instant::table(Vec2 point) const noexcept {
 
 std::optional<Rgb> StillScene::Instant::plant(Vec2 point) const noexcept {
     const Vec2 p = point - kPot;
-    const float grain = scene->textures_->rough.at(2 * point.x, 2 * point.y);
+    const float grain = scene->textures_->coarse.at(2 * point.x, 2 * point.y);
     // A glazed pot, lit by the window on its left.
     const float half = 0.062F - 0.18F * std::max(0.0F, p.y - 0.01F);
     if (p.y > -0.012F && p.y < 0.085F && std::abs(p.x) < half + (p.y < 0.008F ? 0.006F : 0.0F)) {

@@ -12,7 +12,7 @@ float brick(Vec2 p, float width, float height) noexcept {
 
 Rgb wood(const SceneTextures& textures, Vec2 p) noexcept {
     const float bend = textures.smooth.at(0.5F * p.x, 0.22F * p.y);
-    const float fibre = textures.rough.at(1.3F * p.x, 0.11F * p.y);
+    const float fibre = textures.coarse.at(1.3F * p.x, 0.11F * p.y);
     const float ring = std::abs(2 * fraction(9 * p.x + 0.9F * bend) - 1);
     const float tone = clamp01(0.45F + 0.3F * ring + 0.16F * fibre);
     return mix(Rgb{0.25F, 0.125F, 0.055F}, {0.62F, 0.40F, 0.20F}, tone);

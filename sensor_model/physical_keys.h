@@ -32,8 +32,8 @@ inline constexpr std::array kPhysicalKeys{
     PhysicalKey{"dead_pixel_fraction", &PhysicalTerms::dead_pixel_fraction, {0, 0.5}}};
 
 /// Most values of `row_noise_e`, and most rows and columns of the tile of the maps.
-inline constexpr int kMostTaps = 64;
-inline constexpr int kMostMapSide = 64;
+inline constexpr int kMaxTaps = 64;
+inline constexpr int kMaxMapSide = 64;
 
 inline constexpr ParameterRange kRowNoiseE{0, 1e5};
 inline constexpr ParameterRange kTransmittance{1e-3, 1};

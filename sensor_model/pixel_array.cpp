@@ -22,13 +22,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-void expose(const PixelLaw& law, const SampleAddress& address, std::span<const float> light,
+void expose(const PixelModel& model, const SampleAddress& address, std::span<const float> light,
             const std::uint32_t* pixel, const Charges& charges) {
     for (std::size_t i = 0; i < light.size(); ++i) {
         const PhiloxCounter block = philox4x32(
             random_address(pixel[i], address.slot, RandomPurpose::kSample, address.plane),
             address.seed);
-        const Charge charge = expose_one(law, light[i], block[0], block[1]);
+        const Charge charge = expose_one(model, light[i], block[0], block[1]);
         charges.electrons[i] = charge.electrons;
         if (!charges.clipped.empty()) charges.clipped[i] = charge.clipped ? 1 : 0;
     }
@@ -45,16 +45,16 @@ struct ChargeVector {
 
 /// `expose_one` of a vector of samples.
 template <class D, class V = hn::Vec<D>, class VU>
-HWY_INLINE ChargeVector<D> expose_vector(D d, const PixelLaw& law, const SampleAddress& address,
+HWY_INLINE ChargeVector<D> expose_vector(D d, const PixelModel& model, const SampleAddress& address,
                                          V light, VU pixel) {
     const hn::RebindToUnsigned<D> du;
     VU shot_word, read_word;
     sample_words(du, pixel, address, shot_word, read_word);
-    V charge = hn::Mul(hn::Set(d, law.electrons_per_unit), light);
-    if (law.shot_noise) charge = hn::ConvertTo(d, poisson(d, charge, shot_word));
-    const V full_well = hn::Set(d, law.full_well_e);
+    V charge = hn::Mul(hn::Set(d, model.electrons_per_unit), light);
+    if (model.shot_noise) charge = hn::ConvertTo(d, poisson(d, charge, shot_word));
+    const V full_well = hn::Set(d, model.full_well_e);
     const V kept = hn::Min(charge, full_well);
-    return {mul_then_add(normal(d, read_word), hn::Set(d, law.read_noise_e), kept),
+    return {mul_then_add(normal(d, read_word), hn::Set(d, model.read_noise_e), kept),
             hn::Gt(charge, full_well)};
 }
 
@@ -68,14 +68,15 @@ HWY_INLINE void store(D d, const ChargeVector<D>& from, float* electrons, std::u
     hn::StoreU(hn::DemoteTo(bytes, ones), bytes, clipped);
 }
 
-void expose(const PixelLaw& law, const SampleAddress& address, std::span<const float> light,
+void expose(const PixelModel& model, const SampleAddress& address, std::span<const float> light,
             const std::uint32_t* pixel, const Charges& charges) {
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     std::size_t i = 0;
     std::uint8_t* const clipped = charges.clipped.empty() ? nullptr : charges.clipped.data();
     for (; i + hn::Lanes(d) <= light.size(); i += hn::Lanes(d))
-        store(d, expose_vector(d, law, address, hn::LoadU(d, &light[i]), hn::LoadU(du, pixel + i)),
+        store(d,
+              expose_vector(d, model, address, hn::LoadU(d, &light[i]), hn::LoadU(du, pixel + i)),
               &charges.electrons[i], clipped == nullptr ? nullptr : clipped + i);
     if (i == light.size()) return;
     HWY_ALIGN float last_light[hn::MaxLanes(d)] = {};
@@ -83,7 +84,7 @@ void expose(const PixelLaw& law, const SampleAddress& address, std::span<const f
     std::uint8_t last_clipped[hn::MaxLanes(d)];
     std::copy(light.begin() + static_cast<std::ptrdiff_t>(i), light.end(), last_light);
     std::copy(pixel + i, pixel + light.size(), last_pixel);
-    store(d, expose_vector(d, law, address, hn::Load(d, last_light), hn::Load(du, last_pixel)),
+    store(d, expose_vector(d, model, address, hn::Load(d, last_light), hn::Load(du, last_pixel)),
           last_light, last_clipped);
     const std::size_t rest = light.size() - i;
     std::copy_n(last_light, rest, &charges.electrons[i]);
@@ -99,7 +100,7 @@ HWY_AFTER_NAMESPACE();
 namespace stipple {
 namespace {
 
-PixelLaw checked_law(const SensorParams& params) {
+PixelModel checked_law(const SensorParams& params) {
     validate(params);
     return {.electrons_per_unit = static_cast<float>(params.photons_per_unit),
             .full_well_e = static_cast<float>(params.full_well_e),
@@ -111,12 +112,12 @@ PixelLaw checked_law(const SensorParams& params) {
 
 HWY_EXPORT(expose);
 
-Charge expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
+Charge expose_one(const PixelModel& model, float light, std::uint32_t shot_word,
                   std::uint32_t read_word) noexcept {
-    float charge = law.electrons_per_unit * light;
-    if (law.shot_noise) charge = static_cast<float>(poisson_one(charge, shot_word));
-    return {normal_one(read_word) * law.read_noise_e + std::min(charge, law.full_well_e),
-            charge > law.full_well_e};
+    float charge = model.electrons_per_unit * light;
+    if (model.shot_noise) charge = static_cast<float>(poisson_one(charge, shot_word));
+    return {normal_one(read_word) * model.read_noise_e + std::min(charge, model.full_well_e),
+            charge > model.full_well_e};
 }
 
 PixelArray::PixelArray(const SensorParams& params, std::uint64_t seed)

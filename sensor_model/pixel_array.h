@@ -10,7 +10,7 @@
 namespace stipple {
 
 /// Eq. 1 from light to charge in the numbers of the kernel.
-struct PixelLaw {
+struct PixelModel {
     float electrons_per_unit;  ///< r
     float full_well_e;         ///< w
     float read_noise_e;        ///< sigma
@@ -19,7 +19,7 @@ struct PixelLaw {
 
 /// Charge of one sample with the given random words: the slow, obvious form.
 /// Precondition: light >= 0, not NaN.
-[[nodiscard]] Charge expose_one(const PixelLaw& law, float light, std::uint32_t shot_word,
+[[nodiscard]] Charge expose_one(const PixelModel& model, float light, std::uint32_t shot_word,
                                 std::uint32_t read_word) noexcept;
 
 /// Light to charge, the inside of the paper's Eq. 1 for a list of samples:
@@ -43,7 +43,7 @@ class PixelArray {
                 std::uint32_t slot, std::uint32_t plane, const Charges& charges) const noexcept;
 
   private:
-    PixelLaw law_;
+    PixelModel law_;
     std::uint64_t seed_;
 };
 

@@ -118,7 +118,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson_middle(D d, V mean, VW word, V
     const V inverse_root = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(mean));
     const V inverse = hn::Mul(inverse_root, inverse_root);
     const V s = hn::Mul(w, inverse_root);
-    const V t = hn::Max(hn::Min(s, hn::Set(d, kMostS)), hn::Set(d, kLeastS));
+    const V t = hn::Max(hn::Min(s, hn::Set(d, kMaxS)), hn::Set(d, kMinS));
     const V c12 = mul_then_add(polynomial(d, kC2, t), inverse, polynomial(d, kC1, t));
     const V c = mul_then_add(c12, inverse, polynomial(d, kC0, t));
     const V rest = quantile_rest(mean, w, polynomial(d, kG, t), c);

@@ -50,7 +50,7 @@ std::uint32_t poisson_middle(float mean, std::uint32_t word) noexcept {
     const float inverse_root = 1.0F / std::sqrt(mean);
     const float inverse = inverse_root * inverse_root;
     const float s = w * inverse_root;
-    const float t = std::max(std::min(s, kMostS), kLeastS);
+    const float t = std::max(std::min(s, kMaxS), kMinS);
     const float c = (horner(kC2, t) * inverse + horner(kC1, t)) * inverse + horner(kC0, t);
     const Quantile x(mean, w, horner(kG, t), c);
     const float off_middle = std::abs((x.rest - std::floor(x.rest)) - 0.5F);

@@ -19,12 +19,12 @@ namespace stipple::poisson_table {
 inline constexpr float kSumBelow = 4;       ///< means that are summed term by term
 inline constexpr float kRecheckBelow = 32;  ///< means whose doubtful quantiles are summed
 inline constexpr float kShortFrom = 100;    ///< means that the short fit serves
-inline constexpr float kLeastS = -1.27F;    ///< interval of s of the full fit
-inline constexpr float kMostS = 2.05F;
+inline constexpr float kMinS = -1.27F;      ///< interval of s of the full fit
+inline constexpr float kMaxS = 2.05F;
 inline constexpr float kDoubtfulW = 4;        ///< |w| beyond which the fit is not trusted
 inline constexpr float kDoubtfulX = 0.0012F;  ///< distance of x to an integer, likewise
 
-// Full fit: 4 <= mean, kLeastS <= s <= kMostS; c1, c2 fitted at means 4 to 60.
+// Full fit: 4 <= mean, kMinS <= s <= kMaxS; c1, c2 fitted at means 4 to 60.
 /// g(s)
 inline constexpr float kG[] = {
     0.166666716F,     -0.0138862357F,   0.0037007893F,    -0.00136692869F,  0.000591619231F,

@@ -48,8 +48,8 @@ PhysicalTerms read_terms(Config& config) {
     const std::vector<std::string> names(kColourFilterNames.begin(), kColourFilterNames.end());
     const auto filter = std::ranges::find(names, config.choice("cfa", names.front(), names));
     terms.cfa = static_cast<ColourFilter>(filter - names.begin());
-    terms.map_rows = read_integer(config, "map_rows", terms.map_rows, {1, kMostMapSide});
-    terms.map_cols = read_integer(config, "map_cols", terms.map_cols, {1, kMostMapSide});
+    terms.map_rows = read_integer(config, "map_rows", terms.map_rows, {1, kMaxMapSide});
+    terms.map_cols = read_integer(config, "map_cols", terms.map_cols, {1, kMaxMapSide});
     terms.transmittance = read_list(config, "transmittance", kTransmittance);
     terms.gain_map = read_list(config, "gain_map", kRelativeGain);
     return terms;

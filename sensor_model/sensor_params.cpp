@@ -37,18 +37,18 @@ void check_map(const SensorParams& params, std::string_view key, const std::vect
 /// What must hold between the terms of the physical mode.
 void check_together(const SensorParams& params) {
     const PhysicalTerms& terms = params.physical;
-    const int most_dn = (1 << params.bit_depth) - 1;
-    if (terms.black_level_dn >= most_dn)
+    const int max_dn = (1 << params.bit_depth) - 1;
+    if (terms.black_level_dn >= max_dn)
         fail(params, "black_level_dn",
              fmt::format("{} leaves nothing of the converter's {} DN for light; take more bits or "
                          "a larger full_scale_e",
-                         terms.black_level_dn, most_dn));
-    if (4 * std::abs(terms.inl_dn) >= most_dn)
+                         terms.black_level_dn, max_dn));
+    if (4 * std::abs(terms.inl_dn) >= max_dn)
         fail(
             params, "inl_dn",
             fmt::format("{} makes the converter's curve fall; it has {} DN, so less than a quarter "
                         "of them",
-                        terms.inl_dn, most_dn));
+                        terms.inl_dn, max_dn));
     if (!(params.dark_e_per_slot() <= 1e9))
         fail(params, "dark_current_e_per_s",
              fmt::format("{:.3g} electrons in a slot at {} degrees; more than 1e9",
@@ -61,11 +61,11 @@ void check_physical(const SensorParams& params) {
     const PhysicalTerms& terms = params.physical;
     for (const PhysicalKey& key : kPhysicalKeys)
         check(params, key.name, terms.*key.term, key.range);
-    if (terms.row_noise_e.size() > std::size_t{kMostTaps})
-        fail(params, "row_noise_e", fmt::format("has more than {} values", kMostTaps));
+    if (terms.row_noise_e.size() > std::size_t{kMaxTaps})
+        fail(params, "row_noise_e", fmt::format("has more than {} values", kMaxTaps));
     for (const double noise : terms.row_noise_e) check(params, "row_noise_e", noise, kRowNoiseE);
-    check(params, "map_rows", terms.map_rows, {1, kMostMapSide});
-    check(params, "map_cols", terms.map_cols, {1, kMostMapSide});
+    check(params, "map_rows", terms.map_rows, {1, kMaxMapSide});
+    check(params, "map_cols", terms.map_cols, {1, kMaxMapSide});
     check_map(params, "transmittance", terms.transmittance, kTransmittance);
     check_map(params, "gain_map", terms.gain_map, kRelativeGain);
     check_together(params);

@@ -8,22 +8,22 @@
 namespace stipple {
 namespace {
 
-constexpr double kMostDark = 1e12;
-constexpr double kLeastRelative = 1e-6;
-constexpr double kMostRelative = 1e6;
+constexpr double kMaxDark = 1e12;
+constexpr double kMinRelative = 1e-6;
+constexpr double kMaxRelative = 1e6;
 
 /// The first thing that is wrong with the calibration, or nothing.
 std::string problem_of(double dark_e_per_slot) {
-    if (dark_e_per_slot >= 0 && dark_e_per_slot <= kMostDark) return {};
+    if (dark_e_per_slot >= 0 && dark_e_per_slot <= kMaxDark) return {};
     return fmt::format("dark electrons per slot {:.12g} are outside 0..{:.12g}", dark_e_per_slot,
-                       kMostDark);
+                       kMaxDark);
 }
 
 std::string problem_of(const CalibrationPixel& pixel) {
     for (const double value : {pixel.responsivity, pixel.conversion_gain})
-        if (!(value >= kLeastRelative && value <= kMostRelative))
+        if (!(value >= kMinRelative && value <= kMaxRelative))
             return fmt::format("relative responsivity or gain {:.12g} is outside {:.12g}..{:.12g}",
-                               value, kLeastRelative, kMostRelative);
+                               value, kMinRelative, kMaxRelative);
     return {};
 }
 

@@ -108,7 +108,7 @@ struct StreamReader::Impl {
     /// Strict: throws. Tolerant: reports it.
     void note(std::uint64_t bytes, std::string_view cause);
     void begin_search(std::string_view cause);
-    void limit_vain_work(std::size_t payload_bytes);
+    void limit_rescans(std::size_t payload_bytes);
     void extend_damage(std::uint64_t begin, std::uint64_t end);
     void skip_to(StreamPosition position);
 
@@ -146,7 +146,7 @@ void StreamReader::Impl::begin_search(std::string_view cause) {
 
 // Damaged packets may overlap, each header in the payload of the one before. What is left of an
 // honest file does so now and then; a crafted one could make the work quadratic.
-void StreamReader::Impl::limit_vain_work(std::size_t payload_bytes) {
+void StreamReader::Impl::limit_rescans(std::size_t payload_bytes) {
     vain_bytes += payload_bytes;
     if (vain_bytes / 16 > kMaxVainBytes / 16 + window.offset())
         throw InputError(fmt::format("{}: byte {}", place, window.offset()),
@@ -224,7 +224,7 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
     const Bytes payload = bytes.subspan(kPacketHeaderBytes);
     if (crc32c(payload) != found.payload_crc) {
         begin_search("the payload of a packet is damaged (CRC mismatch)");
-        limit_vain_work(payload.size());
+        limit_rescans(payload.size());
         return Step::kGoOn;
     }
     checksum = add_to_checksum(checksum, bytes);

@@ -1,4 +1,4 @@
-// The tables of docs/hardware_schedules.md: what schedules gain in frame rate on each sensor with a
+// The tables of docs/hardware_schedules.md: the speed-up by schedules on each sensor with a
 // section [timing], what they cost in quality, and the same for groups of growing size. Many
 // minutes long, so the tests do not run it. `bench_hardware_table groups FILE.svg` also draws the
 // chart of groups.
@@ -125,7 +125,8 @@ void print_sensor(const std::string& name, ColumnAddressing::Kind kind, Trials& 
                                                      timing.addressing.group_rows)
                                        : fmt::format("skip_channel {}", timing.addressing.channels);
         fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.0f} % | {} |\n", name, addressing,
-                   maker.name, rate.gain, rate.even_gain, 100 * rate.gain / rate.even_gain,
+                   maker.name, rate.speedup, rate.balanced_speedup,
+                   100 * rate.speedup / rate.balanced_speedup,
                    (trials.quality_of(maker) - random).text());
         std::fflush(stdout);
     }
@@ -134,7 +135,7 @@ void print_sensor(const std::string& name, ColumnAddressing::Kind kind, Trials& 
 void print_sensors() {
     Trials trials(1);
     fmt::print(
-        "| sensor | addressing | schedule | gain | bound | of bound | dB to `random` |\n"
+        "| sensor | addressing | schedule | speed-up | bound | of bound | dB to `random` |\n"
         "|---|---|---|---|---|---|---|\n");
     for (const char* name :
          {"lux1310", "lux2100", "imx273", "sp5000", "imx296", "vita", "plc720", "cmv4000"})
@@ -143,9 +144,9 @@ void print_sensors() {
             print_sensor(name, kind, trials);
 }
 
-/// Points of the chart: gain, and dB of random and of arranged groups.
+/// Points of the chart: speed-up, and dB of random and of arranged groups.
 struct Point {
-    double gain;
+    double speedup;
     double random_db;
     double arranged_db;
     std::string size;
@@ -155,7 +156,7 @@ struct Point {
 std::vector<Point> print_groups() {
     Trials trials(2);
     fmt::print(
-        "\n| group | gain, random groups | gain, hardware_tiled | random groups dB | "
+        "\n| group | speed-up, random groups | speed-up, hardware_tiled | random groups dB | "
         "hardware_tiled dB | difference |\n|---|---|---|---|---|---|\n");
     std::vector<Point> points;
     ReadoutTiming timing = sensor_timing("lux1310");
@@ -170,14 +171,14 @@ std::vector<Point> print_groups() {
         const Maker random = random_groups(arranged.tile);
         const Quality random_quality = trials.quality_of(random);
         const Quality quality = trials.quality_of(arranged);
-        const double random_gain = rate_of(timing, random.make(shape, 1), shape).gain;
-        const double gain = rate_of(timing, arranged.make(shape, 1), shape).gain;
-        fmt::print("| {}x{} | {:.2f} | {:.2f} | {} | {} | {} |\n", cols, rows, random_gain, gain,
-                   (random_quality - reference).text(), (quality - reference).text(),
+        const double random_speedup = rate_of(timing, random.make(shape, 1), shape).speedup;
+        const double speedup = rate_of(timing, arranged.make(shape, 1), shape).speedup;
+        fmt::print("| {}x{} | {:.2f} | {:.2f} | {} | {} | {} |\n", cols, rows, random_speedup,
+                   speedup, (random_quality - reference).text(), (quality - reference).text(),
                    (quality - random_quality).text());
         std::fflush(stdout);
-        points.push_back({gain, (random_quality - reference).linear, (quality - reference).linear,
-                          fmt::format("{}x{}", cols, rows)});
+        points.push_back({speedup, (random_quality - reference).linear,
+                          (quality - reference).linear, fmt::format("{}x{}", cols, rows)});
     }
     return points;
 }

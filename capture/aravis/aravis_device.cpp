@@ -19,12 +19,12 @@ namespace stipple {
 namespace {
 
 /// Takes what a GLib function has to complain of.
-class Complaint {
+class GlibError {
   public:
-    ~Complaint() { g_clear_error(&error_); }
-    Complaint() = default;
-    Complaint(const Complaint&) = delete;
-    Complaint& operator=(const Complaint&) = delete;
+    ~GlibError() { g_clear_error(&error_); }
+    GlibError() = default;
+    GlibError(const GlibError&) = delete;
+    GlibError& operator=(const GlibError&) = delete;
     GError** slot() { return &error_; }
     [[nodiscard]] bool any() const { return error_ != nullptr; }
     [[nodiscard]] std::string text() const {
@@ -40,7 +40,7 @@ ArvDevice* open_gige(const std::string& address, const std::string& ip) {
         throw InputError(address,
                          "is no IPv4 address: write gige:192.168.0.5 (\"stipple capture "
                          "list\" shows the cameras that answer)");
-    Complaint complaint;
+    GlibError complaint;
     ArvDevice* device =
         arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), complaint.slot());
     if (device == nullptr)
@@ -55,7 +55,7 @@ ArvDevice* open_gige(const std::string& address, const std::string& ip) {
 ArvDevice* open_usb(const std::string& address, const std::string& serial) {
     ArvInterface* usb = arv_uv_interface_get_instance();
     arv_interface_update_device_list(usb);
-    Complaint complaint;
+    GlibError complaint;
     for (unsigned i = 0; i < arv_interface_get_n_devices(usb); ++i) {
         const char* found = arv_interface_get_device_serial_nbr(usb, i);
         if (found == nullptr || serial != found) continue;
@@ -117,7 +117,7 @@ constexpr std::array<NumberFeature, 4> kNumbers{{
 
 /// The values that an integer feature takes.
 std::string range_of(ArvDevice* device, const char* feature) {
-    Complaint complaint;
+    GlibError complaint;
     gint64 least = 0, most = 0;
     arv_device_get_integer_feature_bounds(device, feature, &least, &most, complaint.slot());
     if (complaint.any()) return {};
@@ -127,7 +127,7 @@ std::string range_of(ArvDevice* device, const char* feature) {
 }
 
 /// Of a camera; large ones have some thousand.
-constexpr std::size_t kMostFeatures = 20'000;
+constexpr std::size_t kMaxFeatures = 20'000;
 
 constexpr std::uint64_t kPrimaryApplicationPort = 0x0A10;  // GigE Vision 2.0, 27.38
 constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
@@ -153,7 +153,7 @@ AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
     const std::unique_ptr<void, void (*)(void*)> opened(device, g_object_unref);
     check_genicam(device, address_);
-    Complaint complaint;
+    GlibError complaint;
     impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), complaint.slot());
     if (impl_->camera == nullptr)
         throw DeviceError(address_, fmt::format("is no usable camera: {}", complaint.text()));
@@ -199,7 +199,7 @@ std::optional<std::string> AravisDevice::read(const std::string& feature) const 
     auto* named = ARV_GC_FEATURE_NODE(node);
     if (arv_gc_feature_node_get_actual_access_mode(named) == ARV_GC_ACCESS_MODE_WO)
         return std::nullopt;
-    Complaint complaint;
+    GlibError complaint;
     const char* value = arv_gc_feature_node_get_value_as_string(named, complaint.slot());
     if (complaint.any() || value == nullptr) return std::nullopt;
     return std::string(value);
@@ -216,13 +216,13 @@ void AravisDevice::Impl::set_number(const std::string& place, const NumberFeatur
     if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
     // Aravis sets some to the nearest value that can be.
     double least = 0, most = 0;
-    Complaint no_bounds;
+    GlibError no_bounds;
     feature.bounds(camera, &least, &most, no_bounds.slot());
     const double rounding = 1e-6 * std::abs(most);
     if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
         throw InputError(place,
                          fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
-    Complaint complaint;
+    GlibError complaint;
     feature.set(camera, *number, complaint.slot());
     if (complaint.any())
         throw InputError(place, fmt::format("{} cannot be set ({})", value, complaint.text()));
@@ -230,7 +230,7 @@ void AravisDevice::Impl::set_number(const std::string& place, const NumberFeatur
 
 void AravisDevice::Impl::set_choice(const std::string& place, const char* feature,
                                     const std::string& value) const {
-    Complaint complaint;
+    GlibError complaint;
     arv_device_set_string_feature_value(device, feature, value.c_str(), complaint.slot());
     if (complaint.any())
         throw InputError(place, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
@@ -245,7 +245,7 @@ void AravisDevice::Impl::set_integer(const std::string& place, const char* featu
                                      const std::string& value) const {
     const auto number = parsed<gint64>(value);
     if (!number) throw InputError(place, fmt::format("needs an integer, but is \"{}\"", value));
-    Complaint complaint;
+    GlibError complaint;
     arv_device_set_integer_feature_value(device, feature, *number, complaint.slot());
     if (complaint.any())
         throw InputError(place, fmt::format("{} cannot be set ({}){}", value, complaint.text(),
@@ -259,7 +259,7 @@ void AravisDevice::Impl::set_integer(const std::string& place, const char* featu
 
 void AravisDevice::Impl::set_other(const std::string& place, const char* feature,
                                    const std::string& value) const {
-    Complaint complaint;
+    GlibError complaint;
     ArvGcNode* node = arv_device_get_feature(device, feature);
     if (ARV_IS_GC_BOOLEAN(node)) {
         const bool on = value == "true" || value == "1";
@@ -312,7 +312,7 @@ std::map<std::string, std::string> AravisDevice::features() const {
         const GSList* names = arv_gc_category_get_features(ARV_GC_CATEGORY(category));
         for (; names != nullptr; names = names->next) {
             const std::string name(static_cast<const char*>(names->data));
-            if (seen.size() == kMostFeatures) return found;
+            if (seen.size() == kMaxFeatures) return found;
             if (!seen.insert(name).second) continue;
             ArvGcNode* node = arv_device_get_feature(impl_->device, name.c_str());
             if (node != nullptr && ARV_IS_GC_CATEGORY(node)) categories.push_back(name);

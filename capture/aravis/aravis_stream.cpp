@@ -18,7 +18,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30U;
+constexpr std::size_t kMaxPayloadBytes = std::size_t{1} << 30U;
 
 /// Memory of a buffer.
 struct Slot {
@@ -137,7 +137,7 @@ std::size_t AravisStream::Impl::wanted_bytes() const {
 /// Whether buffers of so many bytes can be had.
 bool AravisStream::Impl::has_room_for(std::size_t bytes) const {
     return bytes <=
-           std::min(kMostPayloadBytes, most_memory() / static_cast<std::size_t>(buffers.frames));
+           std::min(kMaxPayloadBytes, max_memory() / static_cast<std::size_t>(buffers.frames));
 }
 
 void AravisStream::Impl::check_buffers() const {
@@ -148,7 +148,7 @@ void AravisStream::Impl::check_buffers() const {
         fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes "
                     "(--max-memory), and each {}; set fewer --buffers, or a smaller Width and "
                     "Height",
-                    buffers.frames, bytes, most_memory(), kMostPayloadBytes));
+                    buffers.frames, bytes, max_memory(), kMaxPayloadBytes));
 }
 
 /// A leader may be forged: it is believed as far as bytes came, or the camera itself says so.

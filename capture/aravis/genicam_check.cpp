@@ -73,10 +73,10 @@ class ValueCosts {
     };
 
     double cost(const std::string& name, int depth) {
-        constexpr int kMostDeep = 64;
+        constexpr int kMaxDeep = 64;
         const auto found = features_.find(name);
         if (found == features_.end()) return 1;
-        if (depth == kMostDeep) return std::numeric_limits<double>::infinity();
+        if (depth == kMaxDeep) return std::numeric_limits<double>::infinity();
         Feature& feature = found->second;
         if (feature.cost > 0) return feature.cost;
         double sum = 1;
@@ -90,15 +90,15 @@ class ValueCosts {
 }  // namespace
 
 void check_genicam(void* device, const std::string& address) {
-    constexpr double kMostValues = 1000;
+    constexpr double kMaxValues = 1000;
     ArvGc* const description = arv_device_get_genicam(static_cast<ArvDevice*>(device));
     if (description == nullptr) return;
-    const std::string costly = ValueCosts(ARV_DOM_NODE(description)).costly_feature(kMostValues);
+    const std::string costly = ValueCosts(ARV_DOM_NODE(description)).costly_feature(kMaxValues);
     if (!costly.empty())
         throw DeviceError(address, fmt::format("describes itself in a circle: the value of its "
                                                "feature {} depends on itself, or on others in "
                                                "more than {} ways",
-                                               costly, kMostValues));
+                                               costly, kMaxValues));
 }
 
 }  // namespace stipple

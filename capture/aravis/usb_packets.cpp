@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> kMagic{'U', '3', 'V'};  // then L or T
 constexpr std::size_t kHeaderBytes = 16;
-constexpr std::size_t kMostPacketBytes = 1024;
+constexpr std::size_t kMaxPacketBytes = 1024;
 
 /// The size of the packet that begins with `bytes`; 0 if none does.
 std::size_t packet_bytes(std::span<const std::uint8_t> bytes, std::uint64_t frame_id) {
@@ -21,7 +21,7 @@ std::size_t packet_bytes(std::span<const std::uint8_t> bytes, std::uint64_t fram
     const bool is_ours = bytes[3] == 'T' && id == frame_id;
     const bool is_later = bytes[3] == 'L' && id > frame_id;
     const std::size_t size = load<std::uint16_t>(&bytes[6]);
-    return (is_ours || is_later) && size >= kHeaderBytes && size <= kMostPacketBytes ? size : 0;
+    return (is_ours || is_later) && size >= kHeaderBytes && size <= kMaxPacketBytes ? size : 0;
 }
 
 }  // namespace

@@ -17,16 +17,16 @@ constexpr int kJumboMtu = 9000;
 
 }  // namespace
 
-DoctorFinding judge_receive_buffer(std::int64_t most_bytes, bool packet_sockets) {
-    const double mib = static_cast<double>(most_bytes) / (1 << 20U);
+DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool packet_sockets) {
+    const double mib = static_cast<double>(max_bytes) / (1 << 20U);
     DoctorFinding finding{Level::kGood, "receive buffer",
                           fmt::format("net.core.rmem_max is {:.1f} MiB", mib), ""};
-    if (most_bytes == 0) finding.fact = "net.core.rmem_max cannot be read";
+    if (max_bytes == 0) finding.fact = "net.core.rmem_max cannot be read";
     if (packet_sockets) {
         finding.fact += "; not needed, packet sockets are used";
         return finding;
     }
-    if (most_bytes >= kComfortableBufferBytes) return finding;
+    if (max_bytes >= kComfortableBufferBytes) return finding;
     finding.level = Level::kWarning;
     finding.fix = fmt::format("sysctl -w net.core.rmem_max={} (to stay: a file in sysctl.d)",
                               kComfortableBufferBytes);

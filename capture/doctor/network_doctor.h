@@ -12,9 +12,9 @@ namespace stipple {
 /// buffer, whether packet sockets may be opened.
 [[nodiscard]] std::vector<DoctorFinding> examine_network();
 
-/// The receive buffer of a machine whose net.core.rmem_max is `most_bytes` (0: unknown) and that
+/// The receive buffer of a machine whose net.core.rmem_max is `max_bytes` (0: unknown) and that
 /// may or may not open packet sockets.
-[[nodiscard]] DoctorFinding judge_receive_buffer(std::int64_t most_bytes, bool packet_sockets);
+[[nodiscard]] DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool packet_sockets);
 
 /// The packets that a path of this MTU carries.
 [[nodiscard]] DoctorFinding judge_mtu(const std::string& interface, int mtu);

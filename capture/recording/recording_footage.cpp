@@ -65,7 +65,7 @@ bool RecordingFootage::advance() {
 void RecordingFootage::check_proportion(const FrameRecord& record) {
     ++usable_;
     holding_ += static_cast<std::int64_t>(to_hold_);
-    if (options_.fill_gaps || holding_ <= most_missing_slots(usable_, shape_of(record.layout)))
+    if (options_.fill_gaps || holding_ <= max_missing_slots(usable_, shape_of(record.layout)))
         return;
     throw InputError(file_.string(),
                      fmt::format("{} frames are missing or incomplete before frame {}, which makes "
@@ -78,7 +78,7 @@ void RecordingFootage::check_proportion(const FrameRecord& record) {
 void RecordingFootage::note(std::uint64_t frames) {
     if (!gaps_.empty() && gaps_.back().slot == slots_)
         gaps_.back().frames += frames;
-    else if (gaps_.size() < kMostListedGaps)
+    else if (gaps_.size() < kMaxListedGaps)
         gaps_.push_back({slots_, frames});
 }
 

@@ -43,7 +43,7 @@ class RecordingFootage {
     [[nodiscard]] ColourFilter filter() const { return light_.filter(); }
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError for a frame of another layout, and where more
-    /// frames are to be held than most_missing_slots.
+    /// frames are to be held than max_missing_slots.
     bool read(std::span<float> frame);
 
     /// Slots that repeat the frame before.
@@ -52,7 +52,7 @@ class RecordingFootage {
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
     /// The camera's, by the frames so far.
     [[nodiscard]] const FrameRate& rate() const { return rate_; }
-    static constexpr std::size_t kMostListedGaps = 1000;
+    static constexpr std::size_t kMaxListedGaps = 1000;
     /// The first of the places where they are, so far.
     [[nodiscard]] const std::vector<RecordingGap>& gaps() const { return gaps_; }
     /// Whether all frames were read, so that the reader's report is complete.

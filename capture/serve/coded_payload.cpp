@@ -38,7 +38,7 @@ int digit_value(char digit) {
 }
 
 /// Samples of the slot that has most. Later periods are like the second.
-std::size_t most_samples(const StreamHeader& header) {
+std::size_t max_samples(const StreamHeader& header) {
     std::size_t most = 0;
     const std::int64_t period = header.schedule.period_slots();
     for (std::int64_t slot = period; slot < 2 * period; ++slot)
@@ -62,7 +62,7 @@ ServedImage coded_image(const StreamHeader& header) {
                                      "registers; choose a schedule with a smaller tile",
                                      encoded.size(), kMaxHeaderBytes));
     const std::size_t bytes = kMaxPackets * kPacketHeaderBytes +
-                              packed_bytes(most_samples(header), header.calibration.bit_depth);
+                              packed_bytes(max_samples(header), header.calibration.bit_depth);
     ServedImage image;
     image.width = kCodedImageWidth;
     image.height = static_cast<int>((bytes + kCodedImageWidth - 1) / kCodedImageWidth);

@@ -32,7 +32,7 @@ constexpr std::uint32_t kLimitedBroadcast = 0xFFFFFFFF;
 /// Begin of a MAC address that is given out locally, not by a maker; the IPv4 address follows.
 constexpr std::uint64_t kLocalMac = 0x0253;
 /// A stream that is late by more is not hurried: its due times move on.
-constexpr int kMostPeriodsBehind = 8;
+constexpr int kMaxPeriodsBehind = 8;
 
 std::uint32_t address_of(const GigeServerOptions& options) {
     const auto address = parse_ipv4(options.address);
@@ -209,7 +209,7 @@ void GigeServer::Impl::stream(const GigeStreamSettings& settings) {
         if (!frame || !wait_until(due, settings.starts)) return;
         const auto behind = Clock::now() - due;
         if (behind > period) ++late_frames;
-        if (behind > kMostPeriodsBehind * period) due += behind;
+        if (behind > kMaxPeriodsBehind * period) due += behind;
         due += period;
         if (options.faults.freeze_at && sent >= *options.faults.freeze_at) continue;
         const std::uint64_t number = number_with_gap(options.faults, frame->number);

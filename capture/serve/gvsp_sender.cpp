@@ -45,7 +45,7 @@ void GvspSender::resend(const GvcpPacketResend& wanted, UdpEndpoint to) {
         return;
     }
     const std::uint32_t end =
-        std::min({block->block.packets(), wanted.last + 1, wanted.first + kMostResent});
+        std::min({block->block.packets(), wanted.last + 1, wanted.first + kMaxResent});
     for (std::uint32_t index = wanted.first; index < end; ++index) {
         if (is_lost(faults_, block->number, index)) continue;
         const GvspPacket packet = gvsp_packet(block->block, index, GvspStatus::kResent);

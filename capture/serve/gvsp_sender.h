@@ -36,7 +36,7 @@ class GvspSender {
     static constexpr std::size_t kHistoryBytes = std::size_t{64} << 20U;
 
     /// Of one request, so that 20 bytes do not make us flood the network; clients ask again.
-    static constexpr std::uint32_t kMostResent = 512;
+    static constexpr std::uint32_t kMaxResent = 512;
 
     GvspSender(const UdpSocket& socket, const GvspFaults& faults)
         : socket_(socket), faults_(faults) {}
@@ -44,7 +44,7 @@ class GvspSender {
     /// Sends packet by packet. Returns whether all packets were: not if the wait was ended.
     bool send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
               const PacketPace& pace);
-    /// Sends packets of the block again, up to kMostResent of those that are asked for.
+    /// Sends packets of the block again, up to kMaxResent of those that are asked for.
     void resend(const GvcpPacketResend& wanted, UdpEndpoint to);
     void forget();
 

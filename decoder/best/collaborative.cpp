@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "decoder/best/collaborative_filter.h"
-#include "decoder/best/stabilised_light.h"
+#include "decoder/best/variance_stabilisation.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
 #include "decoder/measurements.h"
@@ -35,7 +35,7 @@ class CollaborativeSolver {
           options_(options),
           scale_(scale_for(noise, options)),
           last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
-                                 options.least_sigma, kMaxSigma)),
+                                 options.min_sigma, kMaxSigma)),
           first_sigma_(std::max(options.first_sigma, last_sigma_)),
           x_(x),
           censored_(measurements, noise),
@@ -62,8 +62,8 @@ class CollaborativeSolver {
         refresh_variances(measurements_, noise_, x_.data());
         if (last) return;
         censored_.expect(x_.data(), sampled_);
-        feed_back();
-        draw_to_samples(sigma);
+        add_residuals();
+        enforce_data_consistency(sigma);
     }
     void restore_samples() { measurements_.sum = sampled_; }
 
@@ -74,7 +74,7 @@ class CollaborativeSolver {
         const float offset =
             std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
                        options.light_offset, kMaxOffset);
-        return {.offset = offset, .least = std::max(options.least_light, -offset)};
+        return {.offset = offset, .least = std::max(options.min_light, -offset)};
     }
 
     template <typename Body>
@@ -95,21 +95,22 @@ class CollaborativeSolver {
             std::min(shape().rows, shape().cols) >= kMinMotionSide)
             motion_ = estimate_motion(x_, {});
         for_each_slot([&](int slot) {
-            stabilise(std::as_const(x_).frame(slot), shape().planes, scale_, noisy_.frame(slot));
+            stabilise_variance(std::as_const(x_).frame(slot), shape().planes, scale_,
+                               noisy_.frame(slot));
         });
         if (iteration == 0) pilot_ = noisy_;
         if (iteration % options_.match_every != 0) return;
-        // The grid moves, so that the seams between blocks do not stay in one place.
-        const int step = options_.block_step;
+        // The grid moves, so that the seams between patches do not stay in one place.
+        const int step = options_.patch_stride;
         const int offset = iteration / options_.match_every * (step / 2 + 1) % step;
         const bool near = measurements_.mosaic && iteration < options_.mosaic.near_iterations;
-        groups_ = match_blocks(pilot_, {shape(), step, offset}, motion_,
-                               near ? options_.mosaic.near : options_.matching);
+        groups_ = match_patches(pilot_, {shape(), step, offset}, motion_,
+                                near ? options_.mosaic.near : options_.matching);
     }
 
-    /// Replaces the filtered estimate before the last one: the last is led on by a share of what
-    /// separates the two (heavy ball; Polyak, USSR Comput. Math. Math. Phys. 4(5), 1964), as
-    /// voxels without samples follow slowly.
+    /// Momentum (heavy ball; Polyak, USSR Comput. Math. Math. Phys. 4(5), 1964): the last filtered
+    /// estimate x_k becomes x_k + beta (x_k - x_(k-1)). Voxels without samples converge slowly
+    /// without it.
     void extrapolate() {
         for_each_slot([&](int slot) {
             const auto now = std::as_const(pilot_).frame(slot);
@@ -119,10 +120,10 @@ class CollaborativeSolver {
         });
     }
 
-    /// What the filter has taken from the samples is added to them, as in generalised alternating
-    /// projection (Liao et al., SIAM J. Imaging Sci. 7(2), 2014), but fades, so that noise does
-    /// not come back with it.
-    void feed_back() {
+    /// Residual feedback: a share of (samples - forward model of the estimate) is added to the
+    /// samples, as in generalised alternating projection (Liao et al., SIAM J. Imaging Sci. 7(2),
+    /// 2014). What was added decays, so that the noise does not return.
+    void add_residuals() {
         FluxVideo& explained = noisy_;  // which is not needed until the next iteration
         sample(measurements_, x_.data(), explained.data());
         for_each_slot([&](int slot) {
@@ -132,13 +133,13 @@ class CollaborativeSolver {
                 float residual = sampled_[i] - explained.data()[i];
                 if (saturated) residual = std::max(residual, 0.0F);
                 float& sum = measurements_.sum[i];
-                sum = sampled_[i] + options_.feedback_kept * (sum - sampled_[i]) +
-                      options_.feedback * residual;
+                sum = sampled_[i] + options_.residual_decay * (sum - sampled_[i]) +
+                      options_.residual_gain * residual;
             }
         });
     }
 
-    void draw_to_samples(float sigma) {
+    void enforce_data_consistency(float sigma) {
         for_each_slot([&](int slot) {
             const std::size_t pixels = shape().pixels();
             const float share = sigma * sigma / static_cast<float>(shape().planes);
@@ -161,14 +162,14 @@ class CollaborativeSolver {
     float first_sigma_;
     FluxVideo& x_;
     CensoredSamples censored_;
-    std::vector<float> sampled_;  ///< sums of the samples, without feedback
+    std::vector<float> sampled_;  ///< sums of the samples, without their residuals
     FluxVideo noisy_;
     FluxVideo filtered_;
     FluxVideo pilot_;  ///< the last filtered estimate
     std::vector<SiteRun> runs_;
     std::vector<float> step_;
     std::vector<MotionField> motion_;
-    BlockGroups groups_;
+    PatchGroups groups_;
 };
 
 CollaborativeOptions options_for(const Measurements& measurements, CollaborativeOptions options) {
@@ -184,17 +185,17 @@ void read_options(Config& config, CollaborativeOptions& options) {
     read_integer(config, "iterations", 0, 10000, options.iterations);
     read_integer(config, "motion_every", 1, 10000, options.motion_every);
     read_integer(config, "match_every", 1, 10000, options.match_every);
-    read_integer(config, "block_step", 1, kBlockSide, options.block_step);
+    read_integer(config, "patch_stride", 1, kPatchSide, options.patch_stride);
     read_integer(config, "matching.slots", 0, 32, options.matching.slots);
     read_integer(config, "matching.own_radius", 0, 32, options.matching.own_radius);
     read_integer(config, "matching.path_radius", 0, 32, options.matching.path_radius);
     read_number(config, "first_sigma", 1e-3, 10, options.first_sigma);
     read_number(config, "last_noise", 0, 100, options.last_noise);
-    read_number(config, "least_sigma", 1e-3, 10, options.least_sigma);
+    read_number(config, "min_sigma", 1e-3, 10, options.min_sigma);
     read_number(config, "light_offset", 1e-4, 1e3, options.light_offset);
-    read_number(config, "least_light", -10, 0, options.least_light);
-    read_number(config, "feedback", 0, 2, options.feedback);
-    read_number(config, "feedback_kept", 0, 1, options.feedback_kept);
+    read_number(config, "min_light", -10, 0, options.min_light);
+    read_number(config, "residual_gain", 0, 2, options.residual_gain);
+    read_number(config, "residual_decay", 0, 1, options.residual_decay);
     read_number(config, "momentum", 0, 1, options.momentum);
     read_integer(config, "mosaic.iterations", 0, 10000, options.mosaic.iterations);
     read_number(config, "mosaic.first_sigma", 1e-3, 10, options.mosaic.first_sigma);
@@ -206,16 +207,16 @@ void read_options(Config& config, CollaborativeOptions& options) {
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
                                               const CollaborativeOptions& all_options,
-                                              const Checkpoint& checkpoint) {
+                                              const ProgressCallback& progress) {
     const CollaborativeOptions options = options_for(measurements, all_options);
     auto x = decode_motion_tv(measurements, noise, options.start,
-                              [&](double fraction) { return checkpoint(kStartShare * fraction); });
-    if (!x || std::min(x->shape().rows, x->shape().cols) < kBlockSide) return x;
+                              [&](double fraction) { return progress(kStartShare * fraction); });
+    if (!x || std::min(x->shape().rows, x->shape().cols) < kPatchSide) return x;
     CollaborativeSolver solver(measurements, noise, options, *x);
     bool stopped = false;
     for (int i = 0; i < options.iterations && !stopped; ++i) {
         solver.iterate(i);
-        stopped = !checkpoint(kStartShare + (1 - kStartShare) * (i + 1) / options.iterations);
+        stopped = !progress(kStartShare + (1 - kStartShare) * (i + 1) / options.iterations);
     }
     solver.restore_samples();
     if (stopped) return {};

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "decoder/best/block_kernels.h"
+#include "decoder/best/patch_kernels.h"
 
 namespace stipple {
 namespace {
@@ -28,11 +28,11 @@ class Bands {
     int bands_;
 };
 
-int farthest_slots(const BlockGroups& groups) {
+int farthest_slots(const PatchGroups& groups) {
     int farthest = 0;
-    for (const BlockGroup& group : groups.groups)
-        for (const BlockOffset& block : group)
-            farthest = std::max(farthest, std::abs(static_cast<int>(block.slots)));
+    for (const PatchGroup& group : groups.groups)
+        for (const PatchOffset& patch : group)
+            farthest = std::max(farthest, std::abs(static_cast<int>(patch.slots)));
     return farthest;
 }
 
@@ -40,7 +40,7 @@ int farthest_slots(const BlockGroups& groups) {
 /// the bands of rows and of slots every other one can be worked on at the same time, in any order.
 class Aggregation {
   public:
-    Aggregation(const FluxVideo& noisy, const FluxVideo& pilot, const BlockGroups& groups,
+    Aggregation(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
                 float sigma, FluxVideo& sum)
         : noisy_(noisy),
           pilot_(pilot),
@@ -50,8 +50,8 @@ class Aggregation {
           weight_(noisy.slots(), noisy.shape()) {}
 
     void run() {
-        const BlockGrid& grid = groups_.grid;
-        const Bands rows(grid.rows(), (2 * kMaxBlockRows + kBlockSide) / grid.step + 2);
+        const ReferenceGrid& grid = groups_.grid;
+        const Bands rows(grid.rows(), (2 * kMaxPatchRows + kPatchSide) / grid.step + 2);
         const Bands slots(noisy_.slots(), std::max(1, 2 * farthest_slots(groups_)));
         for (const int first_slots : {0, 1})
             for (const int first_rows : {0, 1}) {
@@ -79,12 +79,12 @@ class Aggregation {
 
   private:
     void filter_row(int slot, int row) {
-        const BlockGrid& grid = groups_.grid;
+        const ReferenceGrid& grid = groups_.grid;
         const FrameShape shape = noisy_.shape();
         for (int col = 0; col < grid.cols(); ++col) {
             std::size_t voxel = index(slot) * shape.sites() +
                                 index(grid.row(row)) * index(shape.cols) + index(grid.col(col));
-            const BlockGroup& group = groups_.group(slot, row, col);
+            const PatchGroup& group = groups_.group(slot, row, col);
             if (shape.planes == 3) {
                 filter_group({frames_at(voxel, group), frames_at(voxel + shape.pixels(), group),
                               frames_at(voxel + 2 * shape.pixels(), group)},
@@ -96,8 +96,8 @@ class Aggregation {
         }
     }
 
-    /// `voxel` is the first of the reference block in a plane.
-    GroupFrames frames_at(std::size_t voxel, const BlockGroup& group) {
+    /// `voxel` is the first of the reference patch in a plane.
+    GroupFrames frames_at(std::size_t voxel, const PatchGroup& group) {
         const FrameShape shape = noisy_.shape();
         GroupFrames frames{.noisy = &noisy_.data()[voxel],
                            .pilot = &pilot_.data()[voxel],
@@ -105,14 +105,14 @@ class Aggregation {
                            .weight = &weight_.data()[voxel],
                            .cols = shape.cols};
         for (std::size_t k = 0; k < group.size(); ++k)
-            frames.block[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
+            frames.patch[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
                               frames.cols * group[k].rows + group[k].cols;
         return frames;
     }
 
     const FluxVideo& noisy_;
     const FluxVideo& pilot_;
-    const BlockGroups& groups_;
+    const PatchGroups& groups_;
     float sigma_;
     FluxVideo& sum_;
     FluxVideo weight_;
@@ -120,7 +120,7 @@ class Aggregation {
 
 }  // namespace
 
-void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const BlockGroups& groups,
+void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
                    float sigma, FluxVideo& filtered) {
     assert(pilot.voxels() == noisy.voxels() && filtered.voxels() == noisy.voxels());
     std::ranges::fill(filtered.data(), 0.0F);

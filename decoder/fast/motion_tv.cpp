@@ -77,19 +77,19 @@ void cut_links_to_larger_steps(MotionField& field, FrameShape shape, std::span<c
 /// The first estimate shows no details, and is the least certain; details are worth a close look
 /// in the last round only.
 MotionOptions motion_options(int round, bool last) {
-    if (round == 0) return {.rough = true, .search = {.alike_px = 0.09F}};
+    if (round == 0) return {.coarse = true, .search = {.range_sigma_px = 0.09F}};
     return last ? MotionOptions{.search = {.patch_stride_px = 5}}
-                : MotionOptions{.search = {.patch_stride_px = 6, .alike_px = 0.3F}};
+                : MotionOptions{.search = {.patch_stride_px = 6, .range_sigma_px = 0.3F}};
 }
 
 /// Counts iterations for a checkpoint. Finding the motion takes about as long as 8 of them.
 class WorkCount {
   public:
-    WorkCount(const MotionTvOptions& options, const Checkpoint& checkpoint)
-        : total_(options.at_rest.iterations +
+    WorkCount(const MotionTvOptions& options, const ProgressCallback& progress)
+        : total_(options.static_tv.iterations +
                  (options.rounds - 1) * (options.along_motion.iterations + kMotion) +
                  options.last_iterations + kMotion),
-          checkpoint_(checkpoint) {}
+          checkpoint_(progress) {}
     void add_motion() { done_ += kMotion; }
     bool add_iteration() {
         ++done_;
@@ -103,12 +103,12 @@ class WorkCount {
     int total_;
     int done_ = 0;
     bool stopped_ = false;
-    const Checkpoint& checkpoint_;
+    const ProgressCallback& checkpoint_;
 };
 
 MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions options) {
     if (!measurements.mosaic) return options;
-    options.at_rest.chroma_weight = options.mosaic.chroma_weight;
+    options.static_tv.chroma_weight = options.mosaic.chroma_weight;
     options.along_motion.chroma_weight = options.mosaic.chroma_weight;
     options.along_motion.spatial_weight = options.mosaic.spatial_weight;
     options.last_iterations = options.mosaic.last_iterations;
@@ -118,9 +118,9 @@ MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions op
 }  // namespace
 
 void read_options(Config& config, MotionTvOptions& options) {
-    read_integer(config, "at_rest.iterations", 0, 10000, options.at_rest.iterations);
-    read_number(config, "at_rest.spatial_weight", 0, 1e4, options.at_rest.spatial_weight);
-    read_number(config, "at_rest.temporal_weight", 0, 1e4, options.at_rest.temporal_weight);
+    read_integer(config, "static_tv.iterations", 0, 10000, options.static_tv.iterations);
+    read_number(config, "static_tv.spatial_weight", 0, 1e4, options.static_tv.spatial_weight);
+    read_number(config, "static_tv.temporal_weight", 0, 1e4, options.static_tv.temporal_weight);
     read_integer(config, "along_motion.iterations", 0, 10000, options.along_motion.iterations);
     read_number(config, "along_motion.spatial_weight", 0, 1e4, options.along_motion.spatial_weight);
     read_number(config, "along_motion.temporal_weight", 0, 1e4,
@@ -137,9 +137,9 @@ void read_options(Config& config, MotionTvOptions& options) {
 
 std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const SampleNoise& noise,
                                           const MotionTvOptions& all_options,
-                                          const Checkpoint& checkpoint) {
+                                          const ProgressCallback& progress) {
     const MotionTvOptions options = options_for(measurements, all_options);
-    WorkCount work(options, checkpoint);
+    WorkCount work(options, progress);
     FluxVideo x = nearest_samples(measurements);
     const PresumedSamples presumed(measurements, x, noise);
     CensoredSamples censored(measurements, noise);
@@ -150,7 +150,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
         tv.after_iteration = [&] { return work.add_iteration(); };
         solver.minimise(motion, step, tv, x);
     };
-    minimise({}, primal_steps(x, options), options.at_rest);
+    minimise({}, primal_steps(x, options), options.static_tv);
     const FrameShape shape = x.shape();
     const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
     for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {

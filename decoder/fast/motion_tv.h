@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/checkpoint.h"
 #include "decoder/fast/total_variation.h"
 #include "decoder/motion/motion.h"
+#include "decoder/progress_callback.h"
 
 namespace stipple {
 
@@ -24,8 +24,8 @@ struct MosaicTvOptions {
 /// The method `fast`; the values were found on natural and high-speed footage
 /// (docs/decoder_experiments.md).
 struct MotionTvOptions {
-    /// The estimate that the first motion is found in: total variation at rest.
-    TotalVariationOptions at_rest{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
+    /// The estimate in which motion is first searched: static total variation, without motion.
+    TotalVariationOptions static_tv{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
     /// Along motion, once a round.
     TotalVariationOptions along_motion{.iterations = 8};
     int rounds = 3;
@@ -37,12 +37,12 @@ struct MotionTvOptions {
 };
 
 /// Decodes one block: what the nearest samples say of light that no sample knows is presumed
-/// (presumed_samples.h); then total variation at rest, then rounds of (variances, motion, total
+/// (presumed_samples.h); then static total variation, then rounds of (variances, motion, total
 /// variation along it), each from the estimate of the last. The result may be slightly negative.
-/// Nothing if `checkpoint` has stopped it.
+/// Nothing if `progress` has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_motion_tv(
     Measurements& measurements, const SampleNoise& noise, const MotionTvOptions& options,
-    const Checkpoint& checkpoint = [](double) { return true; });
+    const ProgressCallback& progress = [](double) { return true; });
 
 /// The keys of docs/decoder_options.md. \throws InputError as Config.
 void read_options(Config& config, MotionTvOptions& options);

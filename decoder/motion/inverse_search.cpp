@@ -173,7 +173,7 @@ class PatchGrid {
     [[nodiscard]] DenseFlow dense() const;
     /// Each shift becomes the mean of those around it, which count the less the more they differ:
     /// noise goes, borders of motion stay.
-    void smooth(float alike_px);
+    void smooth(float range_sigma_px);
 
   private:
     [[nodiscard]] int row_of(int i) const { return std::min(i * stride_, from_.rows - kSide); }
@@ -231,8 +231,8 @@ void PatchGrid::improve(int i, int k, int side) {
     shift_[index(i, k)] = best;
 }
 
-void PatchGrid::smooth(float alike_px) {
-    const float decline = 1 / (alike_px * alike_px);
+void PatchGrid::smooth(float range_sigma_px) {
+    const float decline = 1 / (range_sigma_px * range_sigma_px);
     const std::vector<Shift> old = shift_;
     const auto mean_around = [&](int i, int k) {
         const Shift& own = old[index(i, k)];
@@ -320,7 +320,7 @@ DenseFlow search_images(const FlowImage& from, const FlowImage& to, const DenseF
     if (coarser != nullptr) grid.start_from(*coarser);
     grid.search();
     constexpr int kSmoothings = 6;
-    for (int i = 0; i < kSmoothings; ++i) grid.smooth(options.alike_px);
+    for (int i = 0; i < kSmoothings; ++i) grid.smooth(options.range_sigma_px);
     return grid.dense();
 }
 

@@ -31,8 +31,8 @@ struct DenseFlow {
 inline constexpr int kFlowShiftsPerPixel = 64;
 
 struct InverseSearchOptions {
-    int patch_stride_px = 4;  ///< between patches
-    float alike_px = 0.03F;   ///< shifts that differ by this count half when they are averaged
+    int patch_stride_px = 4;       ///< between patches
+    float range_sigma_px = 0.03F;  ///< shifts that differ by this count half when they are averaged
 };
 
 /// Follows patches from one image to another of the same shape by dense inverse search (Kroeger et

@@ -63,7 +63,7 @@ DenseFlow doubled(const DenseFlow& flow, const FlowImage& image) {
 }
 
 DenseFlow flow(const Pyramid& from, const Pyramid& to, const MotionOptions& options) {
-    const std::size_t finest = options.rough && from.size() > 1 ? 1 : 0;
+    const std::size_t finest = options.coarse && from.size() > 1 ? 1 : 0;
     DenseFlow result;
     for (std::size_t level = from.size(); level-- > finest;)
         result = inverse_search(flow_image_of(from[level]), flow_image_of(to[level]),
@@ -105,8 +105,8 @@ DenseFlow averaged_over_time(const std::vector<DenseFlow>& flows, std::size_t pa
     return result;
 }
 
-/// What `rough` is about.
-void roughen(std::vector<DenseFlow>& flows, const FlowImage& image) {
+/// What `coarse` is about.
+void coarsen(std::vector<DenseFlow>& flows, const FlowImage& image) {
     std::vector<DenseFlow> averaged(flows.size());
     parallel_for(0, static_cast<int>(flows.size()), [&](int pair) {
         const auto i = static_cast<std::size_t>(pair);
@@ -192,9 +192,9 @@ std::vector<MotionField> estimate_motion(const FluxVideo& video, const MotionOpt
         flows.forth[count(slot)] = flow(now, next, options);
         flows.back[count(slot)] = flow(next, now, options);
     });
-    if (options.rough)
+    if (options.coarse)
         for (auto* direction : {&flows.forth, &flows.back})
-            roughen(*direction, flow_image_of(pyramid[0][0]));
+            coarsen(*direction, flow_image_of(pyramid[0][0]));
     parallel_for(0, video.slots() - 1, [&](int slot) {
         const DenseFlow& forth = flows.forth[count(slot)];
         const DenseFlow& back = flows.back[count(slot)];

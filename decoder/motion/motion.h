@@ -23,7 +23,7 @@ struct MotionField {
 struct MotionOptions {
     /// At half resolution, and averaged with the motion of the slots before and after: for first
     /// estimates, where things stand still for some slots and then jump.
-    bool rough = false;
+    bool coarse = false;
     InverseSearchOptions search = {};
 };
 

@@ -52,7 +52,7 @@ void tv_l1_flow(cv::Mat from, cv::Mat to, cv::Mat& flow) {
     late_opencv().tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
 }
 
-Flows tv_l1_flows(const FluxVideo& video, const KeepGoing& keep_going) {
+Flows tv_l1_flows(const FluxVideo& video, const ProgressCallback& progress) {
     constexpr int kBatch = 8;
     Flows flows{std::vector<cv::Mat>(count(video.slots())),
                 std::vector<cv::Mat>(count(video.slots()))};
@@ -66,7 +66,7 @@ Flows tv_l1_flows(const FluxVideo& video, const KeepGoing& keep_going) {
                        flow_image(video, forth ? slot + 1 : slot),
                        forth ? flows.forth[count(slot)] : flows.back[count(slot + 1)]);
         });
-        if (!keep_going(static_cast<double>(end) / pairs)) break;
+        if (!progress(static_cast<double>(end) / pairs)) break;
     }
     malloc_trim(0);  // the flow's own images, which glibc would keep
     return flows;
@@ -169,13 +169,13 @@ class Follower {
 }  // namespace
 
 MatchList find_flow_matches(const FluxVideo& video, const FlowMatchOptions& options,
-                            const KeepGoing& keep_going) {
+                            const ProgressCallback& progress) {
     FlowMatchOptions used = options;
     Flows flows;
     if (std::min(video.shape().rows, video.shape().cols) < kMinMotionSide) used.radius_slots = 0;
-    if (used.radius_slots > 0) flows = tv_l1_flows(video, keep_going);
+    if (used.radius_slots > 0) flows = tv_l1_flows(video, progress);
     MatchList result;
-    if (!keep_going(1)) return result;
+    if (!progress(1)) return result;
     const Follower follower(video, flows, used);
     result.size = follower.size();
     std::vector<MatchList> slots(count(video.slots()));

@@ -17,8 +17,8 @@ struct FlowMatchOptions {
 /// concatenated, and end where the way back does not lead back or the block would leave the frame.
 /// Each place on the way, to the nearest pixel, is a match; the block itself is the first. Frames
 /// with less than `kMinMotionSide` rows or columns have no flow. The same bits for any number of
-/// threads. Not complete if `keep_going` has stopped it.
+/// threads. Not complete if `progress` has stopped it.
 [[nodiscard]] MatchList find_flow_matches(const FluxVideo& video, const FlowMatchOptions& options,
-                                          const KeepGoing& keep_going);
+                                          const ProgressCallback& progress);
 
 }  // namespace stipple

@@ -53,14 +53,14 @@ class ConjugateGradients {
           image_(problem.voxels()) {}
 
     void solve(std::span<const float> d, const MatchAdmmOptions& options,
-               const std::function<bool()>& keep_going, std::span<float> x) {
+               const std::function<bool()>& progress, std::span<float> x) {
         problem_.normal(x, image_);
         combine(d, -1, image_, residual_);
         direction_ = residual_;
         double size = dot(residual_, residual_);
         const double tolerance = static_cast<double>(options.cg_tolerance);
         const double small_enough = tolerance * tolerance * dot(d, d);
-        for (int i = 0; i < options.cg_iterations && size > small_enough && keep_going(); ++i) {
+        for (int i = 0; i < options.cg_iterations && size > small_enough && progress(); ++i) {
             problem_.normal(direction_, image_);
             const double curvature = dot(direction_, image_);
             if (!(curvature > 0)) return;
@@ -83,7 +83,7 @@ class ConjugateGradients {
 
 void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
                       const AfterAdmmIteration& after_iteration,
-                      const std::function<bool()>& keep_going, std::span<float> x) {
+                      const std::function<bool()>& progress, std::span<float> x) {
     const float threshold = 1 / options.rho;
     std::vector<float> v(problem.rows());
     std::vector<float> d(problem.voxels());
@@ -91,8 +91,8 @@ void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
     problem.start_duals(x, v);
     for (int i = 0; i < options.iterations; ++i) {
         problem.right_side(v, threshold, d);
-        inverse.solve(d, options, keep_going, x);
-        if (!keep_going()) return;
+        inverse.solve(d, options, progress, x);
+        if (!progress()) return;
         if (!after_iteration(i, problem.update_duals(x, threshold, v))) return;
     }
 }

@@ -19,10 +19,10 @@ using AfterAdmmIteration = std::function<bool(int iteration, double objective)>;
 
 /// Minimises ||A x - b||_1* + gamma ||F x||_1 from the start x by Algorithm 1 of Portz et al. 2013:
 /// M^-1 by conjugate gradients from the last x, with M = K^T K applied and never formed. x has the
-/// order of `problem`. `keep_going` is asked more often, between steps of conjugate gradients. The
+/// order of `problem`. `progress` is asked more often, between steps of conjugate gradients. The
 /// same bits for any number of threads. Memory: 4 bytes a row of K, 16 a voxel.
 void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
                       const AfterAdmmIteration& after_iteration,
-                      const std::function<bool()>& keep_going, std::span<float> x);
+                      const std::function<bool()>& progress, std::span<float> x);
 
 }  // namespace stipple

@@ -79,9 +79,10 @@ MatchOperator::MatchOperator(const ExposureTable& table, std::span<const MatchLi
       lists_(lists),
       gamma_(gamma),
       voxels_(table.shape().sites() * count(table.slots())) {
-    for (std::size_t n = 1; n < urgency_.size(); ++n)
-        urgency_[n] = static_cast<float>(table.longest_open_count()) / static_cast<float>(n);
-    deal_groups();
+    for (std::size_t n = 1; n < exposure_weight_.size(); ++n)
+        exposure_weight_[n] =
+            static_cast<float>(table.longest_open_count()) / static_cast<float>(n);
+    partition_groups();
 }
 
 struct MatchOperator::Match {
@@ -124,8 +125,8 @@ std::size_t MatchOperator::visit_match(const Match& match, std::size_t row,
                 const int first = sample->first_slot + later;
                 if (first < 0 || first + sample->span_slots > table_.slots()) continue;
                 sampled(Sampled{row, voxel(site_i, first), sample->open_slots,
-                                j.weight * urgency_[count(sample->open_count)], sample->light,
-                                sample->saturated});
+                                j.weight * exposure_weight_[count(sample->open_count)],
+                                sample->light, sample->saturated});
                 ++row;
             }
             if (site_i == site_j && later == 0) continue;
@@ -137,7 +138,7 @@ std::size_t MatchOperator::visit_match(const Match& match, std::size_t row,
     return row;
 }
 
-void MatchOperator::deal_groups() {
+void MatchOperator::partition_groups() {
     std::size_t groups = 0, patches = 0;
     for (const MatchList& list : lists_) {
         groups += list.groups.size();

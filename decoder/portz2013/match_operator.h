@@ -74,12 +74,12 @@ class MatchOperator {
     void accumulate(const Scatter& scatter, std::span<float> out);
     template <typename OnPart>
     void for_each_part(const OnPart& on_part);
-    void deal_groups();
+    void partition_groups();
 
     const ExposureTable& table_;
     std::span<const MatchList> lists_;
     float gamma_;
-    std::array<float, 65> urgency_{};  ///< tau_max / tau of samples of so many open slots
+    std::array<float, 65> exposure_weight_{};  ///< tau_max / tau of samples of so many open slots
     std::size_t voxels_ = 0;
     std::size_t rows_ = 0;
     std::vector<Part> parts_;

@@ -103,7 +103,7 @@ float patch_distance(const ExposureTable& table, const PatchSize& size,
     };
     const int voxels = shape.planes * size.rows * size.cols * size.slots;
     // The targets of either pixel are disjoint, so no weight can exceed twice the patch.
-    const float hopeless = bound * 2 * static_cast<float>(voxels);
+    const float exceeds_bound = bound * 2 * static_cast<float>(voxels);
     SampleDifference sum;
     for (int plane = 0; plane < shape.planes; ++plane)
         for (int row = 0; row < size.rows; ++row) {
@@ -117,7 +117,7 @@ float patch_distance(const ExposureTable& table, const PatchSize& size,
                 sum.weight += pixel.weight;
                 sum.cover += pixel.cover;
             }
-            if (sum.error > hopeless) return std::numeric_limits<float>::infinity();
+            if (sum.error > exceeds_bound) return std::numeric_limits<float>::infinity();
         }
     if (8 * sum.cover < voxels) return std::numeric_limits<float>::infinity();
     return sum.error / sum.weight;

@@ -114,7 +114,7 @@ class Searcher {
 
 MatchList find_matches(const VideoSize& video, const MatchSearch& search,
                        const PatchMeasure& measure, const MatchCount& most,
-                       const KeepGoing& keep_going) {
+                       const ProgressCallback& progress) {
     constexpr std::size_t kBatch = 512;  // reference patches between two questions
     const Searcher searcher(video.slots, video.shape, search, measure, most);
     const std::vector<PatchPosition> references = searcher.references();
@@ -130,8 +130,7 @@ MatchList find_matches(const VideoSize& video, const MatchSearch& search,
             result.matches.insert(result.matches.end(), found[i].begin(), found[i].end());
             result.groups.push_back({references[begin + i], result.matches.size()});
         }
-        if (!keep_going(static_cast<double>(begin + count) /
-                        static_cast<double>(references.size())))
+        if (!progress(static_cast<double>(begin + count) / static_cast<double>(references.size())))
             break;
     }
     return result;

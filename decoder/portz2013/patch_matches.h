@@ -7,6 +7,7 @@
 
 #include "core/flux_video.h"
 #include "decoder/portz2013/patch_distance.h"
+#include "decoder/progress_callback.h"
 
 namespace stipple {
 
@@ -58,9 +59,6 @@ using PatchMeasure = std::function<float(const PatchSize& size, const PatchPosit
 /// How many matches a reference patch may have.
 using MatchCount = std::function<int(const PatchSize& size, const PatchPosition& reference)>;
 
-/// Told now and then, by the thread that called, which fraction is done; false stops.
-using KeepGoing = std::function<bool(double fraction)>;
-
 struct VideoSize {
     int slots = 0;
     FrameShape shape;
@@ -68,10 +66,10 @@ struct VideoSize {
 
 /// The nearest patches of each reference patch, by exhaustive search of its space-time window; of
 /// equally near ones the earlier, higher, further left. The same for any number of threads. Not
-/// complete if `keep_going` has stopped it.
+/// complete if `progress` has stopped it.
 [[nodiscard]] MatchList find_matches(const VideoSize& video, const MatchSearch& search,
                                      const PatchMeasure& measure, const MatchCount& most,
-                                     const KeepGoing& keep_going);
+                                     const ProgressCallback& progress);
 
 /// Mean square difference of two patches of a video, all planes together; more than `bound` stands
 /// for anything above it.

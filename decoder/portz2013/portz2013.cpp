@@ -45,10 +45,10 @@ void to_video(std::span<const float> x, FluxVideo& video) {
 class Decoder {
   public:
     Decoder(const Measurements& measurements, const Portz2013Options& options,
-            const StageObserver& observer, const Checkpoint& checkpoint)
+            const StageObserver& observer, const ProgressCallback& progress)
         : options_(options),
           observer_(observer),
-          checkpoint_(checkpoint),
+          checkpoint_(progress),
           table_(measurements),
           x_(nearest_samples(measurements)) {}
 
@@ -83,7 +83,7 @@ class Decoder {
             {table_.slots(), table_.shape()}, stage.search,
             [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b,
                 float bound) { return patch_distance(table_, size, a, b, bound); },
-            [&](const PatchSize&, const PatchPosition&) { return stage.most_matches; },
+            [&](const PatchSize&, const PatchPosition&) { return stage.max_matches; },
             [&](double fraction) { return reach(kSearch1, fraction); })};
         solve("stage1", lists, stage.gamma, stage.admm, kSolve1);
     }
@@ -94,7 +94,7 @@ class Decoder {
                                            [&](double fraction) { return reach(kFlow, fraction); });
         if (stopped_) return;
         const auto room = [&](const PatchSize& size, const PatchPosition& at) {
-            return stage.most_matches - flow_matches_at(flow, size, at);
+            return stage.max_matches - flow_matches_at(flow, size, at);
         };
         MatchList search = find_matches(
             {table_.slots(), table_.shape()}, stage.search,
@@ -140,7 +140,7 @@ class Decoder {
 
     const Portz2013Options& options_;
     const StageObserver& observer_;
-    const Checkpoint& checkpoint_;
+    const ProgressCallback& checkpoint_;
     ExposureTable table_;
     FluxVideo x_;
     bool stopped_ = false;
@@ -183,13 +183,13 @@ void read_options(Config& config, Portz2013Options& options) {
     read_number(config, "values_per_flux", 1e-3, 1e6, options.values_per_flux);
     StageKeys first(config, "stage1.");
     first.search(options.stage1.search);
-    first.integer("most_matches", 0, 1000, options.stage1.most_matches);
+    first.integer("max_matches", 0, 1000, options.stage1.max_matches);
     first.number("gamma", 0, 1e4, options.stage1.gamma);
     first.admm(options.stage1.admm);
     StageKeys second(config, "stage2.");
     second.search(options.stage2.search);
     second.number("search_weight", 0, 1e3, options.stage2.search.weight);
-    second.integer("most_matches", 0, 1000, options.stage2.most_matches);
+    second.integer("max_matches", 0, 1000, options.stage2.max_matches);
     second.number("gamma", 0, 1e4, options.stage2.gamma);
     second.integer("flow_block_px", 1, 64, options.stage2.flow.block_px);
     second.integer("flow_radius_slots", 0, 64, options.stage2.flow.radius_slots);
@@ -201,8 +201,8 @@ void read_options(Config& config, Portz2013Options& options) {
 std::optional<FluxVideo> decode_portz2013(const Measurements& measurements,
                                           const Portz2013Options& options,
                                           const StageObserver& observer,
-                                          const Checkpoint& checkpoint) {
-    return Decoder(measurements, options, observer, checkpoint).decode();
+                                          const ProgressCallback& progress) {
+    return Decoder(measurements, options, observer, progress).decode();
 }
 
 }  // namespace stipple

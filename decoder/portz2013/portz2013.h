@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/checkpoint.h"
 #include "decoder/portz2013/flow_matches.h"
 #include "decoder/portz2013/match_admm.h"
 #include "decoder/portz2013/patch_matches.h"
+#include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
@@ -21,7 +21,7 @@ struct Measurements;
 struct Portz2013Options {
     struct Stage1 {
         MatchSearch search{.size = {6, 6, 4}, .step_px = 3, .sigma = 0.15F};
-        int most_matches = 12;
+        int max_matches = 12;
         float gamma = 0.5F;  ///< not published, as are sigma, the window and conjugate gradients
         MatchAdmmOptions admm{.iterations = 10, .rho = 2};
     };
@@ -29,7 +29,7 @@ struct Portz2013Options {
         FlowMatchOptions flow{.sigma = 0.1F};  ///< block_px: 4 or 2, by clip
         MatchSearch search{
             .size = {6, 6, 3}, .step_px = 3, .sigma = 0.1F, .weight = 0.5F, .with_itself = false};
-        int most_matches = 20;  ///< of both kinds together
+        int max_matches = 20;  ///< of both kinds together
         float gamma = 0.5F;
         MatchAdmmOptions admm{.iterations = 50, .rho = 10};
     };
@@ -46,11 +46,12 @@ inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
 /// of the samples that look alike, each explained by the samples of the others; then the same
 /// again, with patches found along the motion in the estimate and by search in it. Observed stages:
 /// `start` (nearest samples), `stage1`, `stage2`. Memory: 4 bytes for each row of the problem, some
-/// 450 bytes a voxel. Nothing if `checkpoint` has stopped it. The same bits for any number of
+/// 450 bytes a voxel. Nothing if `progress` has stopped it. The same bits for any number of
 /// threads.
 [[nodiscard]] std::optional<FluxVideo> decode_portz2013(
     const Measurements& measurements, const Portz2013Options& options,
-    const StageObserver& observer = {}, const Checkpoint& checkpoint = [](double) { return true; });
+    const StageObserver& observer = {},
+    const ProgressCallback& progress = [](double) { return true; });
 
 /// The keys of docs/decoder_options.md. \throws InputError as Config.
 void read_options(Config& config, Portz2013Options& options);

@@ -11,11 +11,11 @@
 namespace stipple::emva1288 {
 namespace {
 
-constexpr std::size_t kLeastPairs = 10;
-constexpr std::size_t kLeastLinearPairs = 5;
+constexpr std::size_t kMinPairs = 10;
+constexpr std::size_t kMinLinearPairs = 5;
 constexpr double kLinearPart = 0.7;             ///< of saturation, for K and eta
 constexpr double kRoundingVariance = 1.0 / 12;  ///< of a converter, DN^2
-constexpr double kLeastTellingVariance = 0.24;  ///< DN^2; below, rounding hides the dark noise
+constexpr double kMinTellingVariance = 0.24;    ///< DN^2; below, rounding hides the dark noise
 
 using Statistics = std::vector<GroupStatistics>;
 
@@ -55,9 +55,9 @@ std::vector<TransferPoint> transfer_curve(const Series& series, const Statistics
                           bright.temporal_variance_dn2 - dark->temporal_variance_dn2});
     }
     std::ranges::stable_sort(points, {}, &TransferPoint::photons);
-    if (points.size() < kLeastPairs)
+    if (points.size() < kMinPairs)
         throw InputError(place, fmt::format("has {} pairs of bright images; an evaluation takes {}",
-                                            points.size(), kLeastPairs));
+                                            points.size(), kMinPairs));
     return points;
 }
 
@@ -100,19 +100,19 @@ std::span<const TransferPoint> linear_part(const Evaluation& evaluation, const s
     const auto& points = evaluation.transfer;
     if (points[evaluation.saturation].variance_dn2 <= 0)
         throw InputError(place, "more light does not give more noise, so it cannot tell electrons");
-    const double most_dn = kLinearPart * points[evaluation.saturation].mean_dn;
+    const double max_dn = kLinearPart * points[evaluation.saturation].mean_dn;
     std::size_t count = 0;
-    while (count < evaluation.saturation && points[count].mean_dn <= most_dn) ++count;
-    if (count < kLeastLinearPairs)
+    while (count < evaluation.saturation && points[count].mean_dn <= max_dn) ++count;
+    if (count < kMinLinearPairs)
         throw InputError(place,
                          fmt::format("{} pairs of bright images are below 70 % of saturation (mean "
                                      "{:.4g} DN); an evaluation takes {}",
-                                     count, most_dn / kLinearPart, kLeastLinearPairs));
+                                     count, max_dn / kLinearPart, kMinLinearPairs));
     return std::span(points).first(count);
 }
 
 double dark_noise_e(double dark_variance_dn2, double gain_dn_per_e) {
-    const double telling = std::max(dark_variance_dn2, kLeastTellingVariance);
+    const double telling = std::max(dark_variance_dn2, kMinTellingVariance);
     return std::sqrt(telling - kRoundingVariance) / gain_dn_per_e;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kTitle = "stipple sequencer program, version 1";
 constexpr std::string_view kHexDigits = "0123456789abcdef";
-constexpr std::size_t kMostPixelSlots = std::size_t{1} << 28U;
+constexpr std::size_t kMaxPixelSlots = std::size_t{1} << 28U;
 constexpr std::size_t kLongestName = 64;  ///< bytes in a stream header
 
 std::size_t index(int value) {
@@ -127,7 +127,7 @@ class Parser {
                 fail(fmt::format("there is no line \"// {} = ...\" before the words",
                                  kRules[i].key));
         const std::size_t words = index(value(kPeriod)) * index(value(kRows));
-        if (words > kMostPixelSlots / index(value(kCols)))
+        if (words > kMaxPixelSlots / index(value(kCols)))
             fail("the tile and its period are larger than 2^28 pixels x slots");
         if (words > text_bytes_ / digits_per_word(program_with({})))
             fail(fmt::format("the file is too short for {} words", words));

@@ -14,7 +14,7 @@ namespace stipple {
 namespace {
 
 constexpr std::int64_t kLongestPeriod = 65535;
-constexpr std::int64_t kMostExposures = std::int64_t{1} << 24;  ///< of a stream's tile
+constexpr std::int64_t kMaxExposures = std::int64_t{1} << 24;  ///< of a stream's tile
 
 std::int64_t period_of(const Cell& cell) {
     std::int64_t period = 1;
@@ -37,7 +37,7 @@ ExposureSchedule cell_schedule(const Cell& cell) {
     const std::int64_t period = period_of(cell);
     std::int64_t exposures = 0;
     for (const int every : cell.every_slots) exposures += period / every;
-    if (exposures > kMostExposures)
+    if (exposures > kMaxExposures)
         throw InputError("cell", fmt::format("the period of {} slots has {} exposures; 2^24 fit a "
                                              "stream",
                                              period, exposures));

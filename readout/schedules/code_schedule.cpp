@@ -152,7 +152,7 @@ std::string code_text(const ExposureSchedule& schedule, const std::string& name)
     const int cols = schedule.tile_cols();
     const auto slots =
         static_cast<std::size_t>(periods) * static_cast<std::size_t>(schedule.period_slots());
-    if (static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols) * slots > kMostCodeSlots)
+    if (static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols) * slots > kMaxCodeSlots)
         throw InputError("exposure schedule",
                          fmt::format("a tile of {} x {} pixels and {} slots is more than the 2^24 "
                                      "characters that a code file may have; use a smaller tile",

@@ -16,7 +16,7 @@ struct TileSize {
 };
 
 /// The most characters, pixels x slots, that a code may have: what reads and writes in a second.
-inline constexpr std::size_t kMostCodeSlots = std::size_t{1} << 24U;
+inline constexpr std::size_t kMaxCodeSlots = std::size_t{1} << 24U;
 
 /// The schedule that is written out: one string per tile pixel, row by row, one character per slot.
 /// '.' is closed; 'A' begins an exposure in the first charge store and 'a' goes on with it, 'B' and
@@ -30,7 +30,7 @@ inline constexpr std::size_t kMostCodeSlots = std::size_t{1} << 24U;
 /// A file of kind "code" that holds `schedule`. Where stores change sides from one period to the
 /// next it holds two periods. `name` is its key of the same name.
 /// \throws InputError if the schedule needs more than two charge stores or has more than
-/// kMostCodeSlots pixels x slots.
+/// kMaxCodeSlots pixels x slots.
 [[nodiscard]] std::string code_text(const ExposureSchedule& schedule, const std::string& name);
 
 }  // namespace stipple

@@ -21,17 +21,17 @@ void fail(const std::string& problem) {
 }
 
 void check_lengths(std::span<const int> lengths) {
-    if (lengths.empty() || lengths.size() > kMostHardwareLengths)
+    if (lengths.empty() || lengths.size() > kMaxHardwareLengths)
         fail(fmt::format("exposure_slots holds {} lengths; give 1 to {}", lengths.size(),
-                         kMostHardwareLengths));
+                         kMaxHardwareLengths));
     for (const int length : lengths)
         if (length < 1 || length > kLongestExposure)
             fail(fmt::format("exposure_slots: {} slots are outside 1..{}", length,
                              kLongestExposure));
     const int period = std::accumulate(lengths.begin(), lengths.end(), 0);
-    if (period > kMostHardwarePeriod)
+    if (period > kMaxHardwarePeriod)
         fail(fmt::format("exposure_slots are {} slots together; at most {} are designed for",
-                         period, kMostHardwarePeriod));
+                         period, kMaxHardwarePeriod));
 }
 
 /// Groups along a side of `pixels`, 0 if it is to be chosen.
@@ -57,12 +57,12 @@ void check_size(const GroupGrid& grid, int rows, int cols, std::size_t lengths) 
     const std::int64_t pixel_cols = std::int64_t{cols} * grid.group_cols;
     const std::int64_t exposures = pixel_rows * pixel_cols * static_cast<std::int64_t>(lengths);
     if (pixel_rows > kLongestHardwareSide || pixel_cols > kLongestHardwareSide ||
-        exposures > static_cast<std::int64_t>(kMostHardwareExposures))
+        exposures > static_cast<std::int64_t>(kMaxHardwareExposures))
         fail(fmt::format(
             "a tile of {} x {} pixels (tile_rows x tile_cols) with {} exposures; at "
             "most {} along a side and {} exposures can be designed: make groups or "
             "the tile smaller",
-            pixel_rows, pixel_cols, exposures, kLongestHardwareSide, kMostHardwareExposures));
+            pixel_rows, pixel_cols, exposures, kLongestHardwareSide, kMaxHardwareExposures));
 }
 
 /// The sizes are in groups, 0: to be chosen.

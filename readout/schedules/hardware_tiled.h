@@ -28,10 +28,10 @@ struct HardwareTile {
 };
 
 /// Exposure lengths that a tile made for the hardware can have, and slots of them together.
-inline constexpr int kMostHardwareLengths = 16;
-inline constexpr int kMostHardwarePeriod = 512;
+inline constexpr int kMaxHardwareLengths = 16;
+inline constexpr int kMaxHardwarePeriod = 512;
 /// Exposures in such a tile, and pixels along its sides.
-inline constexpr std::size_t kMostHardwareExposures = std::size_t{1} << 22U;
+inline constexpr std::size_t kMaxHardwareExposures = std::size_t{1} << 22U;
 inline constexpr int kLongestHardwareSide = 16384;
 
 /// A tile in which every group of pixels (kSkipChannel: every pixel) repeats a permutation of
@@ -39,7 +39,7 @@ inline constexpr int kLongestHardwareSide = 16384;
 /// channel as well, and that neighbours have different light behind them: their exposures overlap
 /// little. The same bits for the same arguments on any machine.
 /// \throws InputError, naming the argument by its key in a schedule file, if there are no lengths
-/// or more than kMostHardwareLengths, one is outside 1..64, all are more than kMostHardwarePeriod,
+/// or more than kMaxHardwareLengths, one is outside 1..64, all are more than kMaxHardwarePeriod,
 /// channels or a group is outside 1..65535, or a tile is not made of whole groups, too large, or
 /// not of whole periods for kLattice.
 [[nodiscard]] ExposureSchedule hardware_tiled_schedule(const HardwareTile& tile,

@@ -6,7 +6,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMostListed = 6;     ///< lengths whose (n - 1)! cyclic orders are all listed
+constexpr std::size_t kMaxListed = 6;      ///< lengths whose (n - 1)! cyclic orders are all listed
 constexpr std::size_t kDrawnOrders = 120;  ///< of more lengths
 
 /// Small where long and short exposures alternate.
@@ -20,7 +20,7 @@ int sum_of_products(const std::vector<int>& order) {
 std::vector<std::vector<int>> list_orders(std::vector<int> lengths, Draws& draws) {
     std::ranges::sort(lengths);
     std::vector<std::vector<int>> orders;
-    if (lengths.size() <= kMostListed) {
+    if (lengths.size() <= kMaxListed) {
         do {
             orders.push_back(lengths);
         } while (std::next_permutation(lengths.begin() + 1, lengths.end()));
@@ -45,7 +45,7 @@ int overlap(int length, int shift, int other, int period) {
     return shared;
 }
 
-/// `likeness` of a code that begins in slot 0 and one that begins in slot `shift`.
+/// `overlap` of a code that begins in slot 0 and one that begins in slot `shift`.
 double likeness_of(const std::vector<int>& a, const std::vector<int>& b, int shift, int period) {
     double sum = 0;
     int begin_a = 0;
@@ -75,7 +75,7 @@ CodeSet::CodeSet(std::span<const int> exposure_slots, Draws& draws)
 void CodeSet::choose_orders(std::span<const int> exposure_slots, Draws& draws) {
     orders_ = list_orders({exposure_slots.begin(), exposure_slots.end()}, draws);
     std::ranges::stable_sort(orders_, {}, sum_of_products);
-    if (orders_.size() > kMostOrders) orders_.resize(kMostOrders);
+    if (orders_.size() > kMaxOrders) orders_.resize(kMaxOrders);
     best_orders_ = static_cast<int>(
         std::ranges::count(orders_, sum_of_products(orders_.front()), sum_of_products));
 }
@@ -94,8 +94,8 @@ void CodeSet::tabulate_likeness() {
     for (const auto& a : orders_)
         for (const auto& b : orders_)
             for (int shift = 0; shift < period_; ++shift) {
-                const double likeness = likeness_of(a, b, shift, period_);
-                likeness_.push_back(static_cast<std::int32_t>(likeness * kUnit + 0.5));
+                const double overlap = likeness_of(a, b, shift, period_);
+                likeness_.push_back(static_cast<std::int32_t>(overlap * kUnit + 0.5));
             }
 }
 

@@ -39,13 +39,13 @@ struct GroupTile {
     }
 };
 
-/// The codes that lengths allow: up to kMostOrders cyclic orders of them, each from every slot of
+/// The codes that lengths allow: up to kMaxOrders cyclic orders of them, each from every slot of
 /// the period. Orders are sorted so that those in which long and short exposures alternate come
 /// first (least sum of products of neighbours): then no time is far from a short exposure.
 class CodeSet {
   public:
-    static constexpr std::size_t kMostOrders = 6;  ///< all there are of four different lengths
-    /// `likeness` of equal codes without repeated lengths is this times the number of lengths.
+    static constexpr std::size_t kMaxOrders = 6;  ///< all there are of four different lengths
+    /// `overlap` of equal codes without repeated lengths is this times the number of lengths.
     static constexpr std::int32_t kUnit = 1024;
 
     /// Precondition: 1..16 lengths of 1..64 slots. `draws` choose orders where there are very many.
@@ -67,7 +67,7 @@ class CodeSet {
     /// potential of their exposures (J. J. Benedetto, M. Fickus, "Finite normalized tight frames",
     /// Advances in Computational Mathematics 18, 2003): least where the exposures tell most of the
     /// light.
-    [[nodiscard]] std::int32_t likeness(GroupCode a, GroupCode b) const {
+    [[nodiscard]] std::int32_t overlap(GroupCode a, GroupCode b) const {
         const int shift = b.first_slot - a.first_slot;
         const std::size_t pair = a.order * orders_.size() + b.order;
         return likeness_[pair * static_cast<std::size_t>(period_) +

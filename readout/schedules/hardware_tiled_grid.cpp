@@ -11,8 +11,8 @@
 namespace stipple {
 namespace {
 
-constexpr int kMostSide = 65535;
-constexpr int kMostChannels = 4096;
+constexpr int kMaxSide = 65535;
+constexpr int kMaxChannels = 4096;
 constexpr double kSigma = 0.8;  ///< groups; of square groups (docs/hardware_schedules.md)
 constexpr std::int32_t kFullWeight = 256;
 
@@ -32,11 +32,11 @@ void check(const char* key, int value, int most) {
 
 GroupGrid grid_of(const HardwareTile& tile) {
     const ColumnAddressing& addressing = tile.addressing;
-    check("channels", addressing.channels, kMostChannels);
+    check("channels", addressing.channels, kMaxChannels);
     GroupGrid grid;
     if (addressing.kind == ColumnAddressing::Kind::kGroup) {
-        check("group_cols", addressing.group_cols, kMostSide);
-        check("group_rows", addressing.group_rows, kMostSide);
+        check("group_cols", addressing.group_cols, kMaxSide);
+        check("group_rows", addressing.group_rows, kMaxSide);
         grid.group_cols = addressing.group_cols;
         grid.group_rows = addressing.group_rows;
     }
@@ -45,7 +45,7 @@ GroupGrid grid_of(const HardwareTile& tile) {
     return grid;
 }
 
-std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int most_rows, int most_cols) {
+std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int max_rows, int max_cols) {
     // The longer side of a group counts as less than it measures: motion bridges both sides alike.
     const double aspect = std::sqrt(std::sqrt(1.0 * grid.group_cols / grid.group_rows));
     const double sigma_rows = kSigma * aspect;
@@ -53,8 +53,8 @@ std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int most_rows, int m
     const auto reach = [](double sigma, int most) {
         return std::min(most, static_cast<int>(3 * sigma) + 1);
     };
-    const int rows = reach(sigma_rows, most_rows);
-    const int cols = reach(sigma_cols, most_cols);
+    const int rows = reach(sigma_rows, max_rows);
+    const int cols = reach(sigma_cols, max_cols);
     std::vector<Neighbour> neighbours;
     for (int row = -rows; row <= rows; ++row)
         for (int col = -cols; col <= cols; ++col) {

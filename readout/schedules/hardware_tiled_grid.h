@@ -28,10 +28,10 @@ struct Neighbour {
     std::int32_t weight = 0;  ///< up to 256
 };
 
-/// Neighbours of a group by a Gaussian of the distance, all directions, no further than `most_rows`
-/// and `most_cols`.
-[[nodiscard]] std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int most_rows,
-                                                   int most_cols);
+/// Neighbours of a group by a Gaussian of the distance, all directions, no further than `max_rows`
+/// and `max_cols`.
+[[nodiscard]] std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int max_rows,
+                                                   int max_cols);
 
 /// What a row of the array loads its channels with, in groups.
 class RowLoadCount {

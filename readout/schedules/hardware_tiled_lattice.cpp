@@ -8,9 +8,9 @@
 namespace stipple {
 namespace {
 
-constexpr std::int64_t kMostCounted = std::int64_t{1} << 27U;  ///< well under a second
-constexpr int kMostPerPeriod = 16;  ///< values of per_period that are tried
-constexpr int kSpare = 20;          ///< a load is even up to 1 / 20
+constexpr std::int64_t kMaxCounted = std::int64_t{1} << 27U;  ///< well under a second
+constexpr int kMaxPerPeriod = 16;  ///< values of per_period that are tried
+constexpr int kSpare = 20;         ///< a load is even up to 1 / 20
 
 struct Lattice {
     int per_row = 0;
@@ -43,7 +43,7 @@ std::vector<Lattice> list_lattices(const GroupGrid& grid, const CodeSet& codes, 
             for (const auto& [row, col, weight] : neighbours) {
                 const int slot = wrapped(per_row * row + per_col * col, period);
                 potential += std::int64_t{weight} *
-                             codes.likeness(here, {here.order, static_cast<std::uint16_t>(slot)});
+                             codes.overlap(here, {here.order, static_cast<std::uint16_t>(slot)});
             }
             lattices.push_back({per_row, per_col, 0, potential});
         }
@@ -56,10 +56,10 @@ std::vector<Lattice> list_lattices(const GroupGrid& grid, const CodeSet& codes, 
 /// Chooses lattices by how they load channels.
 class EvenLattice {
   public:
-    EvenLattice(const GroupGrid& grid, const CodeSet& codes, int order, int most_per_period)
+    EvenLattice(const GroupGrid& grid, const CodeSet& codes, int order, int max_per_period)
         : codes_(codes),
           order_(order),
-          most_per_period_(most_per_period),
+          max_per_period_(max_per_period),
           load_(grid, codes),
           best_of_(static_cast<std::size_t>(codes.period())) {}
 
@@ -76,7 +76,7 @@ class EvenLattice {
                 least = load;
                 best = lattice;
             }
-            if (least <= load_.even() + load_.even() / kSpare || counted_ > kMostCounted) break;
+            if (least <= load_.even() + load_.even() / kSpare || counted_ > kMaxCounted) break;
         }
         return best;
     }
@@ -85,19 +85,19 @@ class EvenLattice {
     /// The least load with one of the values of per_period, and the value.
     std::pair<int, int> best_for(Lattice lattice) {
         std::pair<int, int> best{-1, 0};
-        for (lattice.per_period = 0; lattice.per_period <= most_per_period_; ++lattice.per_period) {
+        for (lattice.per_period = 0; lattice.per_period <= max_per_period_; ++lattice.per_period) {
             const int load = load_.busiest(
                 [&](int group) { return code_at(lattice, order_, 0, group, codes_.period()); });
             if (best.first < 0 || load < best.first) best = {load, lattice.per_period};
             counted_ += load_.counted();
-            if (counted_ > kMostCounted) break;
+            if (counted_ > kMaxCounted) break;
         }
         return best;
     }
 
     const CodeSet& codes_;
     int order_;
-    int most_per_period_;
+    int max_per_period_;
     RowLoadCount load_;
     std::int64_t counted_ = 0;
     std::vector<std::pair<int, int>> best_of_;  ///< load and per_period, by per_col
@@ -110,10 +110,9 @@ std::optional<GroupTile> lattice_tile(const GroupGrid& grid, const CodeSet& code
     const int period = codes.period();
     if (rows % period != 0 || cols % period != 0) return {};
     const bool shared_factor = std::gcd(grid.channel_classes, period) > 1;
-    const int most_per_period =
-        cols == 0 && shared_factor ? std::min(kMostPerPeriod, period) - 1 : 0;
+    const int max_per_period = cols == 0 && shared_factor ? std::min(kMaxPerPeriod, period) - 1 : 0;
     const auto order = static_cast<int>(draws.below(static_cast<std::size_t>(codes.best_orders())));
-    const Lattice lattice = EvenLattice(grid, codes, order, most_per_period)
+    const Lattice lattice = EvenLattice(grid, codes, order, max_per_period)
                                 .choose(list_lattices(grid, codes, order, draws));
     if (rows == 0) rows = period;
     if (cols == 0) cols = period * (period / std::gcd(lattice.per_period, period));

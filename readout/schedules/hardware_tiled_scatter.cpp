@@ -8,8 +8,8 @@
 namespace stipple {
 namespace {
 
-constexpr int kMostRests = 24;        ///< ways to fill a rest that are kept
-constexpr int kMostRestSteps = 4000;  ///< changes tried for each
+constexpr int kMaxRests = 24;        ///< ways to fill a rest that are kept
+constexpr int kMaxRestSteps = 4000;  ///< changes tried for each
 constexpr int kFewRests = 6;  ///< with fewer, rows would be in phase: each channel is even alone
 
 using Codes = std::vector<GroupCode>;
@@ -58,7 +58,7 @@ Codes search(const CodeSet& codes, std::size_t size, const DueCounts& target, Dr
         counts.add(code, 1);
     }
     std::int64_t distance2 = counts.distance2(target);
-    for (int step = 0; step < kMostRestSteps && distance2 > 0; ++step) {
+    for (int step = 0; step < kMaxRestSteps && distance2 > 0; ++step) {
         GroupCode& code = found[draws.below(size)];
         const GroupCode other = draw_code(codes, draws);
         counts.add(code, -1);
@@ -88,15 +88,15 @@ class Rests {
         if (size == 0) return;
         const DueCounts none(codes);
         std::vector<Codes> even;  // distance to none: sum of squares, least where most even
-        even.reserve(kMostRests);
-        for (int i = 0; i < kMostRests; ++i) even.push_back(search(codes, size, none, draws));
+        even.reserve(kMaxRests);
+        for (int i = 0; i < kMaxRests; ++i) even.push_back(search(codes, size, none, draws));
         const auto roughness = [&](const Codes& list) {
             return count(codes, list).distance2(none);
         };
         std::ranges::stable_sort(even, {}, roughness);
         const DueCounts target = count(codes, even.front());
         rests_.push_back(even.front());
-        for (int i = 1; i < kMostRests; ++i) {
+        for (int i = 1; i < kMaxRests; ++i) {
             Codes rest = search(codes, size, target, draws);
             if (count(codes, rest).distance2(target) == 0) rests_.push_back(std::move(rest));
         }
@@ -160,7 +160,7 @@ GroupTile scatter_tile(const GroupGrid& grid, const CodeSet& codes, int rows, in
     GroupTile tile(rows, cols);
     const int classes = std::gcd(cols, grid.channel_classes);
     fill_rows(tile, classes, codes, draws);
-    set_neighbours_apart(tile, grid, codes, draws);
+    anneal_frame_potential(tile, grid, codes, draws);
     return tile;
 }
 

@@ -7,9 +7,9 @@
 namespace stipple {
 namespace {
 
-constexpr std::int64_t kMostSwaps = 4'000'000;
+constexpr std::int64_t kMaxSwaps = 4'000'000;
 constexpr std::int64_t kSwapsPerGroup = 200;
-// Of likeness x weight (1024 x 256): rises by this much are often accepted first, and last.
+// Of overlap x weight (1024 x 256): rises by this much are often accepted first, and last.
 constexpr double kFirstHeat = 130'000;
 constexpr double kLastHeat = 2'600;
 /// What a step of the sum of squares of a channel's loads counts.
@@ -95,8 +95,8 @@ class Annealing {
           loads_(tile, grid, codes) {}
 
     /// Exchanges two groups if that lowers the cost, or raises it by no more than a random number
-    /// of mean `heat`.
-    void step(const Pair& pair, double heat, std::uint32_t random) {
+    /// of mean `temperature`.
+    void step(const Pair& pair, double temperature, std::uint32_t random) {
         GroupCode& a = tile_.at(pair.row, pair.col);
         GroupCode& b = tile_.at(pair.row, pair.other);
         if (a == b) return;
@@ -104,7 +104,7 @@ class Annealing {
             cost(pair.row, pair.col, b, pair.other) - cost(pair.row, pair.col, a, pair.other) +
             cost(pair.row, pair.other, a, pair.col) - cost(pair.row, pair.other, b, pair.col);
         change = 2 * change + kLoadCost * move_loads(pair, a, b);
-        if (static_cast<double>(change) <= heat * exponential(random))
+        if (static_cast<double>(change) <= temperature * exponential(random))
             std::swap(a, b);
         else
             move_loads(pair, b, a);
@@ -119,7 +119,7 @@ class Annealing {
             const int near_col = wrapped(col + neighbour.col, tile_.cols);
             if (neighbour.row == 0 && near_col == without) continue;
             const GroupCode near = tile_.at(wrapped(row + neighbour.row, tile_.rows), near_col);
-            sum += std::int64_t{neighbour.weight} * codes_.likeness(code, near);
+            sum += std::int64_t{neighbour.weight} * codes_.overlap(code, near);
         }
         return sum;
     }
@@ -151,22 +151,22 @@ class Annealing {
 
 }  // namespace
 
-void set_neighbours_apart(GroupTile& tile, const GroupGrid& grid, const CodeSet& codes,
-                          Draws& draws) {
+void anneal_frame_potential(GroupTile& tile, const GroupGrid& grid, const CodeSet& codes,
+                            Draws& draws) {
     const int classes = std::gcd(tile.cols, grid.channel_classes);
     const int places = tile.cols / classes;
     if (places < 2) return;
     Annealing annealing(tile, grid, codes);
     const auto groups = static_cast<std::int64_t>(tile.codes.size());
-    const std::int64_t swaps = std::min(kMostSwaps, groups * kSwapsPerGroup);
+    const std::int64_t swaps = std::min(kMaxSwaps, groups * kSwapsPerGroup);
     for (std::int64_t rest = swaps; rest > 0; --rest) {
         const double part = static_cast<double>(rest) / static_cast<double>(swaps);
-        const double heat = kLastHeat + (kFirstHeat - kLastHeat) * part * part * part;
+        const double temperature = kLastHeat + (kFirstHeat - kLastHeat) * part * part * part;
         const auto row = static_cast<int>(draws.below(static_cast<std::size_t>(tile.rows)));
         const auto col = static_cast<int>(draws.below(static_cast<std::size_t>(tile.cols)));
         const auto step = 1 + static_cast<int>(draws.below(static_cast<std::size_t>(places - 1)));
         const int other = (col + step * classes) % tile.cols;
-        annealing.step({row, col, other}, heat, draws.below(std::size_t{1} << 32U));
+        annealing.step({row, col, other}, temperature, draws.below(std::size_t{1} << 32U));
     }
 }
 

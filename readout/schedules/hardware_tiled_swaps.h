@@ -7,7 +7,7 @@ namespace stipple {
 /// Exchanges codes of groups of one row and class of channels so that neighbours differ, on a tile
 /// that repeats in both directions; no load of whole tiles changes. At most 4 million exchanges are
 /// tried, a second or two.
-void set_neighbours_apart(GroupTile& tile, const GroupGrid& grid, const CodeSet& codes,
-                          Draws& draws);
+void anneal_frame_potential(GroupTile& tile, const GroupGrid& grid, const CodeSet& codes,
+                            Draws& draws);
 
 }  // namespace stipple

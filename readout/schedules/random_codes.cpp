@@ -87,16 +87,16 @@ ExposureSchedule scattered_schedule(const Scatter& scatter, std::span<const int>
 
 ExposureSchedule flutter_schedule(const Flutter& flutter, std::uint64_t seed) {
     check_tile(flutter.tile_rows, flutter.tile_cols);
-    const int most_open = flutter.code_slots - (flutter.complement ? 1 : 0);
+    const int max_open = flutter.code_slots - (flutter.complement ? 1 : 0);
     if (flutter.code_slots < 1 || flutter.code_slots > kLongestExposure || flutter.open_slots < 1 ||
-        flutter.open_slots > most_open || flutter.codes < 1 ||
+        flutter.open_slots > max_open || flutter.codes < 1 ||
         flutter.codes > kLongestPeriod / flutter.code_slots)
         throw InputError(
             "flutter", fmt::format("{} codes of {} slots with {} open{}: needs 1 to {} slots, 1 "
                                    "to {} of them open, and at most {} slots in all",
                                    flutter.codes, flutter.code_slots, flutter.open_slots,
                                    flutter.complement ? " and a complement" : "", kLongestExposure,
-                                   most_open, kLongestPeriod));
+                                   max_open, kLongestPeriod));
     TileList list(flutter.tile_rows, flutter.tile_cols, flutter.codes * flutter.code_slots);
     Draws draws(seed, kFlutterPlane);
     const std::uint64_t all = open_without_gap(flutter.code_slots);

@@ -20,20 +20,20 @@ namespace {
 
 constexpr int kLongestExposure = 64;  ///< slots: the bits of `Exposure::open_slots`
 constexpr int kLongestPeriod = 65535;
-constexpr std::size_t kMostLengths = 255;
-constexpr std::size_t kLongestName = 64;                 ///< bytes in a stream header
-constexpr std::size_t kMostRandomExposures = 1U << 25U;  ///< of a stream (docs/stream_format.md)
-constexpr std::size_t kMostTileExposures = 1U << 24U;    ///< the same
+constexpr std::size_t kMaxLengths = 255;
+constexpr std::size_t kLongestName = 64;                ///< bytes in a stream header
+constexpr std::size_t kMaxRandomExposures = 1U << 25U;  ///< of a stream (docs/stream_format.md)
+constexpr std::size_t kMaxTileExposures = 1U << 24U;    ///< the same
 constexpr int kLargestTileSide = 256;
-constexpr int kMostChannels = 4096;  ///< of a sensor
+constexpr int kMaxChannels = 4096;  ///< of a sensor
 
 std::vector<int> read_exposure_slots(Config& config) {
     constexpr char kKey[] = "exposure_slots";
     const std::vector<int> paper(std::begin(kPaperExposureSlots), std::end(kPaperExposureSlots));
     std::vector<int> lengths = config.integers(kKey, paper, 1, kLongestExposure);
-    if (lengths.empty() || lengths.size() > kMostLengths)
+    if (lengths.empty() || lengths.size() > kMaxLengths)
         throw InputError(config.place(kKey), fmt::format("holds {} lengths; give 1 to {}",
-                                                         lengths.size(), kMostLengths));
+                                                         lengths.size(), kMaxLengths));
     return lengths;
 }
 
@@ -43,7 +43,7 @@ int read_int(Config& config, const char* key, int fallback, int most) {
 
 NamedSchedule read_random(Config& config, FrameShape shape, std::uint64_t seed) {
     std::vector<int> lengths = read_exposure_slots(config);
-    if (shape.pixels() * lengths.size() > kMostRandomExposures)
+    if (shape.pixels() * lengths.size() > kMaxRandomExposures)
         throw InputError(config.place("kind"),
                          fmt::format("random exposures of {} x {} pixels are too many for a "
                                      "stream; use the schedule \"tiled\"",
@@ -91,7 +91,7 @@ std::vector<int> read_per_pixel(Config& config, const char* key, int fallback, L
 }
 
 void check_exposures(const Config& config, const char* key, std::uint64_t exposures) {
-    if (exposures > kMostTileExposures)
+    if (exposures > kMaxTileExposures)
         throw InputError(config.place(key),
                          fmt::format("the tile has {} exposures; 2^24 fit a stream", exposures));
 }
@@ -164,7 +164,7 @@ NamedSchedule read_code(Config& config) {
                         .cols = read_int(config, "tile_cols", 1, kLongestPeriod),
                         .period_slots = read_int(config, "period_slots", 1, kLongestPeriod)};
     const std::vector<std::string> code = config.texts("code");
-    if (code.size() * static_cast<std::size_t>(size.period_slots) > kMostCodeSlots)
+    if (code.size() * static_cast<std::size_t>(size.period_slots) > kMaxCodeSlots)
         throw InputError(config.place("code"),
                          fmt::format("{} pixels of {} slots are more than the 2^24 characters that "
                                      "a code may have; use a smaller tile",
@@ -185,7 +185,7 @@ ColumnAddressing read_addressing(Config& config, ColumnAddressing addressing) {
         config.choice("addressing", addressing.kind == kGroup ? "group" : "skip_channel",
                       {"skip_channel", "group"});
     addressing.kind = kind == "group" ? kGroup : kSkipChannel;
-    addressing.channels = read_int(config, "channels", addressing.channels, kMostChannels);
+    addressing.channels = read_int(config, "channels", addressing.channels, kMaxChannels);
     addressing.group_cols = read_int(config, "group_cols", addressing.group_cols, kLongestPeriod);
     addressing.group_rows = read_int(config, "group_rows", addressing.group_rows, kLongestPeriod);
     return addressing;

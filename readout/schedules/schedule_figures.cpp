@@ -9,12 +9,12 @@ namespace stipple {
 namespace {
 
 void count_exposures(const ExposureSchedule& schedule, ScheduleFigures& figures) {
-    figures.least_exposures = std::numeric_limits<int>::max();
+    figures.min_exposures = std::numeric_limits<int>::max();
     for (int row = 0; row < schedule.tile_rows(); ++row)
         for (int col = 0; col < schedule.tile_cols(); ++col) {
             const auto count = static_cast<int>(schedule.exposures(row, col).size());
-            figures.least_exposures = std::min(figures.least_exposures, count);
-            figures.most_exposures = std::max(figures.most_exposures, count);
+            figures.min_exposures = std::min(figures.min_exposures, count);
+            figures.max_exposures = std::max(figures.max_exposures, count);
         }
 }
 
@@ -24,11 +24,11 @@ void count_due_pixels(const ExposureSchedule& schedule, FrameShape shape,
     const std::int64_t period = schedule.period_slots();
     const std::int64_t first = (kLongestExposure + period - 1) / period * period;
     std::uint64_t total = 0;
-    figures.least_due = std::numeric_limits<std::uint64_t>::max();
+    figures.min_due = std::numeric_limits<std::uint64_t>::max();
     for (std::int64_t slot = first; slot < first + period; ++slot) {
         const std::uint64_t due = count_due(schedule, slot, 0, shape.rows, shape.cols);
-        figures.least_due = std::min(figures.least_due, due);
-        figures.most_due = std::max(figures.most_due, due);
+        figures.min_due = std::min(figures.min_due, due);
+        figures.max_due = std::max(figures.max_due, due);
         total += due;
     }
     figures.mean_due = static_cast<double>(total) / static_cast<double>(period);

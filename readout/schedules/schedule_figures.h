@@ -14,10 +14,10 @@ struct ScheduleFigures {
     int period_slots = 0;
     double compression_ratio = 0;  ///< slots of a pixel per sample; infinite if nothing is read
     double light_throughput = 0;   ///< part of all pixels and slots that collects light
-    int least_exposures = 0;       ///< of a pixel in a period
-    int most_exposures = 0;
-    std::uint64_t least_due = 0;  ///< pixels of the array that are read in a slot
-    std::uint64_t most_due = 0;
+    int min_exposures = 0;         ///< of a pixel in a period
+    int max_exposures = 0;
+    std::uint64_t min_due = 0;  ///< pixels of the array that are read in a slot
+    std::uint64_t max_due = 0;
     double mean_due = 0;
     int charge_stores = 0;               ///< that a pixel needs
     std::uint64_t code_memory_bits = 0;  ///< on chip, as docs/sequencer_program.md packs the tile

@@ -13,9 +13,9 @@ namespace {
 
 constexpr char kPlace[] = "tiled schedule";
 constexpr int kLargestTileSide = 256;  ///< with 255 lengths within 2^24 exposures, a stream's most
-constexpr std::size_t kMostLengths = 255;
-constexpr std::size_t kMostDrawn = 1U << 23U;  ///< well under a second
-constexpr std::uint32_t kTilePlane = 1;        ///< apart from the draws of `random_schedule`
+constexpr std::size_t kMaxLengths = 255;
+constexpr std::size_t kMaxDrawn = 1U << 23U;  ///< well under a second
+constexpr std::uint32_t kTilePlane = 1;       ///< apart from the draws of `random_schedule`
 
 int period_of(std::span<const int> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), 0);
@@ -75,9 +75,9 @@ void check(int tile_rows, int tile_cols, std::span<const int> lengths) {
         tile_cols > kLargestTileSide)
         throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..{} rows and columns",
                                              tile_rows, tile_cols, kLargestTileSide));
-    if (lengths.empty() || lengths.size() > kMostLengths)
+    if (lengths.empty() || lengths.size() > kMaxLengths)
         throw InputError(kPlace,
-                         fmt::format("{} lengths; give 1 to {}", lengths.size(), kMostLengths));
+                         fmt::format("{} lengths; give 1 to {}", lengths.size(), kMaxLengths));
     for (const int length : lengths)
         if (length < 1 || length > 64)
             throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
@@ -95,11 +95,11 @@ struct Tile {
 };
 
 /// Changes pixels at random, now a little, now altogether, and keeps what is not less even, until
-/// no two slots differ by more than one or `kMostDrawn` exposures have been tried.
+/// no two slots differ by more than one or `kMaxDrawn` exposures have been tried.
 void even_out(Tile& tile, SlotCounts& counts, std::span<const int> lengths, Draws& draws) {
     const std::int64_t least = counts.least_sum_of_squares();
     std::vector<Exposure> other(tile.each);
-    for (std::size_t drawn = 0; drawn < kMostDrawn && counts.sum_of_squares() > least;
+    for (std::size_t drawn = 0; drawn < kMaxDrawn && counts.sum_of_squares() > least;
          drawn += tile.each) {
         const auto current = tile.pixel(draws.below(tile.pixels()));
         if (tile.each > 1 && draws.below(2) == 0) {

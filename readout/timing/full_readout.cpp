@@ -13,7 +13,7 @@ namespace {
 std::int64_t lead_clocks(const ReadoutTiming& timing, std::int64_t full_row,
                          std::int64_t first_convert) {
     const std::int64_t overhead = timing.overhead_clocks + timing.overhead_rows * full_row;
-    if (timing.overhead_rows > 0 || timing.law == RowTimeLaw::kSequential) return overhead;
+    if (timing.overhead_rows > 0 || timing.row_timing == RowTiming::kSequential) return overhead;
     return overhead + first_convert + timing.blanking_clocks;
 }
 
@@ -56,7 +56,7 @@ UniformReadout full_readout(const ReadoutTiming& timing, FrameShape shape) {
     return readout;
 }
 
-EvenReadout even_readout(const ReadoutTiming& timing, FrameShape shape, double share) {
+BalancedReadout balanced_readout(const ReadoutTiming& timing, FrameShape shape, double share) {
     const UniformReadout full = full_readout(timing, shape);
     const double columns = std::max(1.0, share * shape.cols);
     // A quotient that rounding leaves just below a whole number is that number.
@@ -74,15 +74,15 @@ EvenReadout even_readout(const ReadoutTiming& timing, FrameShape shape, double s
     }
     const double converting = convex_bound(conversion, columns);
     const double transferring = convex_bound(transfer, columns);
-    const bool turns = timing.law == RowTimeLaw::kSequential;
-    EvenReadout readout;
+    const bool turns = timing.row_timing == RowTiming::kSequential;
+    BalancedReadout readout;
     readout.row = timing.blanking_clocks +
                   (turns ? converting + transferring : std::max(converting, transferring));
-    const auto least_convert = static_cast<std::int64_t>(conversion.front().y);
-    const std::int64_t lead = lead_clocks(timing, full.row, least_convert);
+    const auto min_convert = static_cast<std::int64_t>(conversion.front().y);
+    const std::int64_t lead = lead_clocks(timing, full.row, min_convert);
     // Conversions may begin with the last overhead row, and so be ahead of transfers.
     const bool ahead = timing.overhead_rows > 0 && !turns;
-    const auto head_start = static_cast<double>(ahead ? full.row - least_convert : 0);
+    const auto head_start = static_cast<double>(ahead ? full.row - min_convert : 0);
     readout.total = static_cast<double>(lead + timing.dark_rows * full.row) +
                     std::max(shape.rows * readout.row - head_start,
                              shape.rows * (transferring + timing.blanking_clocks));

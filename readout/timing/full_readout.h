@@ -20,12 +20,12 @@ struct UniformReadout {
 };
 
 /// The readout of a whole window of `shape` (its planes are read side by side):
-///     overhead + [convert +] rows x row,    row as the sensor's law says.
+///     overhead + [convert +] rows x row,    row as the sensor's row timing says.
 /// \throws InputError if the array is smaller.
 [[nodiscard]] UniformReadout full_readout(const ReadoutTiming& timing, FrameShape shape);
 
 /// A bound of readouts, in clocks, on the average.
-struct EvenReadout {
+struct BalancedReadout {
     double row = 0;    ///< from row to row
     double total = 0;  ///< as of UniformReadout
 };
@@ -36,6 +36,7 @@ struct EvenReadout {
 /// the greatest convex function below the times of 1, 2, ... columns. Dark rows and overhead are as
 /// in full. A sensor with a choice of settling times settles for the mean load, and may be faster
 /// where some row has less. Precondition: 0 < share <= 1.
-[[nodiscard]] EvenReadout even_readout(const ReadoutTiming& timing, FrameShape shape, double share);
+[[nodiscard]] BalancedReadout balanced_readout(const ReadoutTiming& timing, FrameShape shape,
+                                               double share);
 
 }  // namespace stipple

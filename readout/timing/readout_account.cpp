@@ -41,7 +41,7 @@ TimeShares shares_overlapped(const ReadoutTiming& timing, const SlotTimes& times
     const auto add = [&](const RowTimes& row, bool held_up, std::int64_t converted) {
         if (held_up)
             shares.adc += converted;
-        else if (timing.law != RowTimeLaw::kFullWidth)
+        else if (timing.row_timing != RowTiming::kFullWidth)
             shares.link += row.transfer_end - row.transfer;
     };
     for (std::size_t i = 0; i + 1 < times.rows.size(); ++i) {
@@ -58,7 +58,7 @@ TimeShares shares_overlapped(const ReadoutTiming& timing, const SlotTimes& times
 
 ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
     if (times.rows.empty()) return ReadoutLimit::kRowOverhead;
-    const bool in_turns = timing.law == RowTimeLaw::kSequential;
+    const bool in_turns = timing.row_timing == RowTiming::kSequential;
     const auto [adc, link] = in_turns ? shares_in_turns(times) : shares_overlapped(timing, times);
     const std::int64_t overhead = times.end - times.begin - adc - link;
     const std::int64_t most = std::max({adc, link, overhead});
@@ -185,10 +185,10 @@ std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
         throw InputError(kPlace, fmt::format("a slot of {} us is shorter than a clock of {} Hz; "
                                              "raise slot_us",
                                              slot_us, timing.clock_hz));
-    if (clocks > static_cast<double>(kMostReadoutClocks))
+    if (clocks > static_cast<double>(kMaxReadoutClocks))
         throw InputError(kPlace, fmt::format("a slot of {} us has more than {} clocks of {} Hz; "
                                              "lower slot_us",
-                                             slot_us, kMostReadoutClocks, timing.clock_hz));
+                                             slot_us, kMaxReadoutClocks, timing.clock_hz));
     return static_cast<std::int64_t>(clocks);
 }
 

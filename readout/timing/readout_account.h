@@ -110,7 +110,7 @@ class ReadoutAccount {
 };
 
 /// Clocks of a slot of `slot_us`, the last one that has begun left out.
-/// \throws InputError if there is none or more than `kMostReadoutClocks`.
+/// \throws InputError if there is none or more than `kMaxReadoutClocks`.
 [[nodiscard]] std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us);
 
 /// Memory of the sequencer that steps through the schedule, in bits: for each slot of the period

@@ -63,7 +63,7 @@ class ReadoutPipeline {
         std::int64_t transfer_end = 0;
     };
     [[nodiscard]] bool takes_turns() const noexcept {
-        return timing_.law == RowTimeLaw::kSequential;
+        return timing_.row_timing == RowTiming::kSequential;
     }
     [[nodiscard]] std::int64_t earliest_select(int row) const noexcept;
     [[nodiscard]] std::int64_t earliest_transfer(int row) const noexcept;

@@ -42,14 +42,15 @@ ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedul
         throw InputError("exposure schedule", "reads no pixel of the window");
     rate.mean_slot_clocks = clocks / period;
     const double samples_per_slot = static_cast<double>(rate.period.samples) / period;
-    rate.even = even_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
-    const double even_clocks =
+    rate.even =
+        balanced_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
+    const double balanced_clocks =
         std::max(rate.even.total, static_cast<double>(account.timing().code_load_clocks));
     rate.full_hz = per_second(timing, static_cast<double>(rate.full.total));
     rate.coded_hz = per_second(timing, static_cast<double>(rate.slowest.clocks));
     rate.mean_coded_hz = per_second(timing, rate.mean_slot_clocks);
-    rate.gain = rate.coded_hz / rate.full_hz;
-    rate.even_gain = static_cast<double>(rate.full.total) / even_clocks;
+    rate.speedup = rate.coded_hz / rate.full_hz;
+    rate.balanced_speedup = static_cast<double>(rate.full.total) / balanced_clocks;
     return rate;
 }
 

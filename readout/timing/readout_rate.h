@@ -13,16 +13,16 @@ namespace stipple {
 /// How fast a sensor reads a window in full and by a schedule, each readout right after the last.
 struct ReadoutRate {
     UniformReadout full;
-    EvenReadout even;     ///< the bound: every row reads the mean load, spread evenly
-    SlotAccount slowest;  ///< slot of the steady period
+    BalancedReadout even;  ///< the bound: every row reads the mean load, spread evenly
+    SlotAccount slowest;   ///< slot of the steady period
     std::int64_t slowest_phase = 0;
     double mean_slot_clocks = 0;
-    ReadoutCounts period;      ///< of all slots of a steady period
-    double full_hz = 0;        ///< readouts of the whole window per second
-    double coded_hz = 0;       ///< slots per second, as the slowest slot allows
-    double mean_coded_hz = 0;  ///< slots per second, if each lasts as long as it takes
-    double gain = 0;           ///< coded_hz / full_hz
-    double even_gain = 0;      ///< of `even`, which code load too may hold up
+    ReadoutCounts period;         ///< of all slots of a steady period
+    double full_hz = 0;           ///< readouts of the whole window per second
+    double coded_hz = 0;          ///< slots per second, as the slowest slot allows
+    double mean_coded_hz = 0;     ///< slots per second, if each lasts as long as it takes
+    double speedup = 0;           ///< coded_hz / full_hz
+    double balanced_speedup = 0;  ///< of `even`, which code load too may hold up
     double full_energy_pj = 0;
 };
 

@@ -12,7 +12,7 @@
 namespace stipple {
 namespace {
 
-constexpr int kMostSide = 65535;  ///< rows or columns of a stream
+constexpr int kMaxSide = 65535;  ///< rows or columns of a stream
 
 void require(bool holds, std::string_view sensor, const std::string& constraint) {
     if (!holds) throw InputError(fmt::format("sensor \"{}\": timing", sensor), constraint);
@@ -24,11 +24,11 @@ bool rises(const std::vector<int>& values) {
 
 void check_array(const ReadoutTiming& timing, std::string_view sensor) {
     const ColumnAddressing& addressing = timing.addressing;
-    require(timing.rows >= 1 && timing.rows <= kMostSide && timing.cols >= 1 &&
-                timing.cols <= kMostSide,
-            sensor,
-            fmt::format("an array of {} x {} pixels (cols x rows); both are 1..{}", timing.cols,
-                        timing.rows, kMostSide));
+    require(
+        timing.rows >= 1 && timing.rows <= kMaxSide && timing.cols >= 1 && timing.cols <= kMaxSide,
+        sensor,
+        fmt::format("an array of {} x {} pixels (cols x rows); both are 1..{}", timing.cols,
+                    timing.rows, kMaxSide));
     require(addressing.channels >= 1 && timing.cols % addressing.channels == 0, sensor,
             fmt::format("{} channels do not divide {} columns evenly", addressing.channels,
                         timing.cols));
@@ -85,10 +85,10 @@ void check_length(const ReadoutTiming& timing, std::string_view sensor) {
     const std::int64_t rows =
         std::int64_t{timing.rows} + timing.dark_rows + timing.overhead_rows + 1;
     require(static_cast<double>(row) * static_cast<double>(rows) <=
-                static_cast<double>(kMostReadoutClocks),
+                static_cast<double>(kMaxReadoutClocks),
             sensor,
             fmt::format("{} rows of up to {} clocks exceed {} clocks a readout", rows, row,
-                        kMostReadoutClocks));
+                        kMaxReadoutClocks));
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ int settle_clocks(const ReadoutTiming& timing, int channel_columns) noexcept {
 
 std::int64_t transfer_clocks(const ReadoutTiming& timing, int channel_columns) noexcept {
     const int channels = timing.addressing.channels;
-    if (timing.law == RowTimeLaw::kFullWidth) channel_columns = timing.cols / channels;
+    if (timing.row_timing == RowTiming::kFullWidth) channel_columns = timing.cols / channels;
     const std::int64_t columns = std::int64_t{channel_columns} * channels;
     if (!timing.row_table_cols.empty()) {
         const auto width = std::ranges::lower_bound(timing.row_table_cols, columns);
@@ -139,8 +139,9 @@ double conversion_energy_pj(const ReadoutTiming& timing) noexcept {
 
 std::int64_t row_clocks(const ReadoutTiming& timing, std::int64_t convert,
                         std::int64_t transfer) noexcept {
-    const std::int64_t busy =
-        timing.law == RowTimeLaw::kSequential ? convert + transfer : std::max(convert, transfer);
+    const std::int64_t busy = timing.row_timing == RowTiming::kSequential
+                                  ? convert + transfer
+                                  : std::max(convert, transfer);
     return busy + timing.blanking_clocks;
 }
 

@@ -12,13 +12,13 @@
 namespace stipple {
 
 /// Clocks of a readout or a slot are at most that many.
-inline constexpr std::int64_t kMostReadoutClocks = std::int64_t{1} << 40U;
+inline constexpr std::int64_t kMaxReadoutClocks = std::int64_t{1} << 40U;
 
 /// Bits of a conversion whose energy is `conversion_pj`.
 inline constexpr int kConversionBits = 10;
 
 /// How the conversion of a row and the transfer of a row to the link share the time.
-enum class RowTimeLaw : std::uint8_t {
+enum class RowTiming : std::uint8_t {
     kOverlapped,  ///< row i is transferred while row i + 1 is converted
     kSequential,  ///< a row is selected and converted, then transferred, then the next one begins
     kFullWidth    ///< as kOverlapped, but a transfer takes as long as that of all columns
@@ -31,7 +31,7 @@ enum class RowTimeLaw : std::uint8_t {
 /// Not modelled: jitter, clock domains, register writes between frames, power states.
 struct ReadoutTiming {
     std::int64_t clock_hz = 0;
-    RowTimeLaw law = RowTimeLaw::kOverlapped;
+    RowTiming row_timing = RowTiming::kOverlapped;
     int rows = 0;
     int cols = 0;
     ColumnAddressing addressing;

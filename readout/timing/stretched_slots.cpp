@@ -27,13 +27,13 @@ struct StretchedSlots::Readout {
     ReadoutAccount account;
 };
 
-StretchedSlots::StretchedSlots(const StreamHeader& header, std::uint64_t most_bytes)
-    : header_(header), most_bytes_(most_bytes) {}
+StretchedSlots::StretchedSlots(const StreamHeader& header, std::uint64_t max_bytes)
+    : header_(header), max_bytes_(max_bytes) {}
 
 void StretchedSlots::set_up() {
     const auto& [kind, exposure_slots, seed] = header_.schedule_source;
     if (kind == ScheduleSource::Kind::kRandom &&
-        random_schedule_bytes(header_.shape.rows, header_.shape.cols, exposure_slots) > most_bytes_)
+        random_schedule_bytes(header_.shape.rows, header_.shape.cols, exposure_slots) > max_bytes_)
         return;
     try {
         Config config(timing_settings(header_.provenance));

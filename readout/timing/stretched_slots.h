@@ -14,8 +14,8 @@ namespace stipple {
 class StretchedSlots {
   public:
     /// `header` is that of a reader with ReadPolicy::kCounts, and outlives this. To know how long
-    /// slots are, a random schedule is made, if it takes no more than `most_bytes` of memory.
-    StretchedSlots(const StreamHeader& header, std::uint64_t most_bytes);
+    /// slots are, a random schedule is made, if it takes no more than `max_bytes` of memory.
+    StretchedSlots(const StreamHeader& header, std::uint64_t max_bytes);
     ~StretchedSlots();
     StretchedSlots(const StretchedSlots&) = delete;
     StretchedSlots& operator=(const StretchedSlots&) = delete;
@@ -31,7 +31,7 @@ class StretchedSlots {
     void set_up();
 
     const StreamHeader& header_;
-    std::uint64_t most_bytes_;
+    std::uint64_t max_bytes_;
     std::unique_ptr<Readout> readout_;  ///< null if the timing is not known, or not yet
     std::int64_t slots_ = 0;
     double total_us_ = 0;

@@ -21,11 +21,11 @@ class Fault:
     number: int = 0
     error: int = 0
     lasting: bool = False
-    least_bytes: int = 0  # of memory: smaller pieces never fail
+    min_bytes: int = 0  # of memory: smaller pieces never fail
 
     def __str__(self):
         error = {KILL: "kill", SHORT: "short"}.get(self.error) or errno.errorcode.get(self.error, "none")
-        return f"{self.kind} {self.number} {error}{' and on' if self.lasting else ''} >={self.least_bytes}"
+        return f"{self.kind} {self.number} {error}{' and on' if self.lasting else ''} >={self.min_bytes}"
 
 
 @dataclass
@@ -54,7 +54,7 @@ class FaultyProgram:
         os.ftruncate(self.said.fileno(), 0)
         self.said.seek(0)
         os.write(self.orders, struct.pack("5i", KINDS.index(fault.kind), fault.number, fault.error,
-                                          fault.lasting, fault.least_bytes))
+                                          fault.lasting, fault.min_bytes))
         report = struct.unpack(f"{1 + len(KINDS)}i", os.read(self.reports, 4 * (1 + len(KINDS))))
         self.said.seek(0)
         return Outcome(os.waitstatus_to_exitcode(report[0]), self.said.read().decode(),

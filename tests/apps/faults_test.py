@@ -153,7 +153,7 @@ class FaultsTest(FaultyRuns):
             yield Fault("memory", self.calls["memory"] - number, errno.ENOMEM)
         for size in (256, 4096, 65536):
             for number in range(1, 40 if LONG else 3):
-                yield Fault("memory", number, errno.ENOMEM, lasting=number == 1, least_bytes=size)
+                yield Fault("memory", number, errno.ENOMEM, lasting=number == 1, min_bytes=size)
 
     def sweep(self, name):
         self.prepare_one(name)

@@ -53,8 +53,8 @@ struct Order {
     int kind;
     int number;  ///< the call that fails, from 1; 0: none
     int error;
-    int lasting;      ///< all further ones fail too
-    int least_bytes;  ///< of kMemory, smaller ones neither count nor fail
+    int lasting;    ///< all further ones fail too
+    int min_bytes;  ///< of kMemory, smaller ones neither count nor fail
 };
 
 struct Report {
@@ -259,7 +259,7 @@ void* __libc_realloc(void* old, std::size_t bytes);
 void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 static bool memory_fails(std::size_t bytes) {
-    return bytes >= static_cast<std::size_t>(order.least_bytes) && fails(kMemory);
+    return bytes >= static_cast<std::size_t>(order.min_bytes) && fails(kMemory);
 }
 
 void* malloc(std::size_t bytes) noexcept {

@@ -60,7 +60,7 @@ class PipelineTest(ProgramTest):
                       self.succeed("decode", "a.stipple", "-o", "a.npy", "--method", "naive"))
 
     def test_the_saturated_part_of_a_sensor_whose_well_is_at_full_scale(self):
-        mean, well, read_noise, most_dn = 9950, 10000, 10, 4095  # config/sensors/lux1310.toml
+        mean, well, read_noise, max_dn = 9950, 10000, 10, 4095  # config/sensors/lux1310.toml
         self.write_flat("light.npy", slots=32, rows=64, cols=64, light=mean / 4 / 1000)
         emulated = self.figures("emulate", "light.npy", "-o", "a.stipple", "--sensor", "lux1310",
                                 "--schedule", "full4x")
@@ -75,12 +75,12 @@ class PipelineTest(ProgramTest):
                                  else math.erfc(above) / 2)
             return part
 
-        e_per_dn = well / most_dn
-        full_scale = (most_dn - 0.5) * e_per_dn
+        e_per_dn = well / max_dn
+        full_scale = (max_dn - 0.5) * e_per_dn
         expected = part_from(full_scale)
         # What may have been clipped, as docs/decoder.md says: 5 standard deviations below the well.
         below_dn = 5 * math.hypot(read_noise / e_per_dn, math.sqrt(1 / 12))
-        expected_bounds = part_from((math.ceil(most_dn - below_dn) - 0.5) * e_per_dn)
+        expected_bounds = part_from((math.ceil(max_dn - below_dn) - 0.5) * e_per_dn)
         decoded = self.figures("decode", "a.stipple", "-o", "a.npy", "--method", "naive")
         self.assertEqual(emulated["samples"], 8 * 64 * 64)
         for found, part in ((emulated, expected), (decoded, expected_bounds)):

@@ -27,9 +27,9 @@ class MakeTest(ProgramTest):
                                "--set", "code_slots=6", "--set", "open_slots=2", "--size", "30x20")
         self.assertEqual(figures, {
             "name": "pixel_flutter", "tile_rows": 2, "tile_cols": 3, "period_slots": 6,
-            "compression_ratio": 6, "light_throughput": 1 / 3, "least_exposures": 1,
-            "most_exposures": 1, "least_due": figures["least_due"], "mean_due": 100,
-            "most_due": figures["most_due"], "charge_stores": 1, "code_memory_bits": 72})
+            "compression_ratio": 6, "light_throughput": 1 / 3, "min_exposures": 1,
+            "max_exposures": 1, "min_due": figures["min_due"], "mean_due": 100,
+            "max_due": figures["max_due"], "charge_stores": 1, "code_memory_bits": 72})
         self.assertIn('kind = "code"', (self.folder / "mine.toml").read_text())
 
     def test_what_is_too_large_is_refused(self):
@@ -121,7 +121,7 @@ class ImportTest(ProgramTest):
             self.write_array("masks.npy", masks, dtype)
             figures = self.figures("schedule", "import", "masks.npy", "-o", "masks.toml", "--force")
             self.assertEqual(figures["light_throughput"], masks.mean())
-            self.assertEqual((figures["least_exposures"], figures["most_exposures"]), (0, 1))
+            self.assertEqual((figures["min_exposures"], figures["max_exposures"]), (0, 1))
             codes.add((self.folder / "masks.toml").read_text())
         self.assertEqual(len(codes), 1)
 

@@ -21,13 +21,13 @@ class TimingTest(ProgramTest):
             self.assertAlmostEqual(figures["frame_time_s"], clocks / hertz, places=12)
             self.assertAlmostEqual(figures["full_readout_hz"], hertz / clocks, places=6)
             self.assertAlmostEqual(figures["coded_readout_hz"], hertz / clocks, places=6)
-            self.assertEqual(figures["gain"], 1)
+            self.assertEqual(figures["speedup"], 1)
 
     def test_every_sensor_has_figures_that_agree_with_one_another(self):
         for sensor in SENSORS:
             it = self.figures("timing", "--sensor", sensor, *SMALL)
-            self.assertAlmostEqual(it["gain"], it["coded_readout_hz"] / it["full_readout_hz"])
-            self.assertLessEqual(it["gain"], it["even_gain"] * 1.000001)
+            self.assertAlmostEqual(it["speedup"], it["coded_readout_hz"] / it["full_readout_hz"])
+            self.assertLessEqual(it["speedup"], it["balanced_speedup"] * 1.000001)
             self.assertIn(it["limited_by"], ("adc", "link", "row_overhead", "code_load"))
             self.assertLessEqual(it["mean_slot_clocks"], it["slowest_slot_clocks"])
             self.assertEqual(it["fits_slot"], it["slowest_slot_clocks"] <= it["slot_clocks"])

@@ -244,11 +244,12 @@ TEST_F(ConfigTest, RefusesAQuotedKeyThatRepeatsADottedOne) {
 }
 
 TEST_F(ConfigTest, TellsASectionAsLinesThatMakeItAgain) {
-    const std::vector<std::string> given{"timing.law=sequential", "timing.clock_hz=90_000_000",
-                                         "timing.settle=[19, 2]", "gain=1e-3", "name=\"a \\\"b\""};
+    const std::vector<std::string> given{"timing.row_timing=sequential",
+                                         "timing.clock_hz=90_000_000", "timing.settle=[19, 2]",
+                                         "gain=1e-3", "name=\"a \\\"b\""};
     Config config(given);
     const std::string lines = config.as_toml("timing");
-    EXPECT_EQ(lines, "clock_hz = 90000000\nlaw = 'sequential'\nsettle = [ 19, 2 ]\n");
+    EXPECT_EQ(lines, "clock_hz = 90000000\nrow_timing = 'sequential'\nsettle = [ 19, 2 ]\n");
     Config again = parse(config.as_toml(""));
     EXPECT_EQ(again.as_toml(""), config.as_toml(""));
     EXPECT_EQ(again.text("name", ""), "a \"b");

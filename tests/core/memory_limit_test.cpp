@@ -49,16 +49,16 @@ TEST(MemoryLimitTest, TheLowestLimitOfTheControlGroupsIsTheMemory) {
 }
 
 TEST(MemoryLimitTest, SmallInputsHaveALimitOfTheirOwnUnlessOneIsTold) {
-    EXPECT_EQ(most_memory(), machine_memory() / 2);
-    EXPECT_EQ(most_memory(kSmallInput), most_memory());
-    EXPECT_LE(most_memory(kSmallInput - 1), 256 * kMiB);
+    EXPECT_EQ(max_memory(), machine_memory() / 2);
+    EXPECT_EQ(max_memory(kSmallInput), max_memory());
+    EXPECT_LE(max_memory(kSmallInput - 1), 256 * kMiB);
     {
         const MemoryLimit limit(300 * kMiB);
-        EXPECT_EQ(most_memory(1), 300 * kMiB);
+        EXPECT_EQ(max_memory(1), 300 * kMiB);
         EXPECT_NO_THROW(check_memory(300 * kMiB, "a", "b", 1));
         EXPECT_THROW(check_memory(300 * kMiB + 1, "a", "b"), InputError);
     }
-    EXPECT_EQ(most_memory(), machine_memory() / 2);
+    EXPECT_EQ(max_memory(), machine_memory() / 2);
 }
 
 TEST(MemoryLimitTest, AllMessagesNameWhatIsNeededAndAnOptionThatIsEnough) {

@@ -33,8 +33,8 @@ class BadRecordingsTest : public testing::TestWithParam<NamedDecodeMethod> {
         DecodeOptions options{.method = GetParam().method};
         options.portz2013.stage1.admm.iterations = 2;
         options.portz2013.stage2.admm.iterations = 2;
-        options.portz2013.stage1.most_matches = 3;
-        options.portz2013.stage2.most_matches = 3;
+        options.portz2013.stage1.max_matches = 3;
+        options.portz2013.stage2.max_matches = 3;
         return options;
     }
     /// Writes what the sensor made of it, under a header that may say something else.
@@ -197,7 +197,8 @@ TEST(FastTest, WeightsMayBeZero) {
     for (const float spatial : {0.0F, 3.0F})
         for (const float temporal : {0.0F, 3.0F}) {
             DecodeOptions options{.method = DecodeMethod::kFast};
-            for (TotalVariationOptions* tv : {&options.fast.at_rest, &options.fast.along_motion}) {
+            for (TotalVariationOptions* tv :
+                 {&options.fast.static_tv, &options.fast.along_motion}) {
                 tv->spatial_weight = spatial;
                 tv->temporal_weight = temporal;
             }

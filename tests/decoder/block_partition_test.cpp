@@ -13,7 +13,7 @@ TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
     for (std::int64_t slots = 1; slots < 300; ++slots) {
         std::int64_t done = 0;
         while (done < slots) {
-            const Stretch s = slot_stretch(done, slots);
+            const HaloRange s = slot_range(done, slots);
             ASSERT_EQ(s.core_begin, done);
             ASSERT_GT(s.core_end, s.core_begin);
             ASSERT_LE(s.core_end - s.core_begin, kCoreSlots + kRestSlots);
@@ -28,7 +28,7 @@ TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
 TEST(BlockPartitionTest, ABlockIsTheSameWhateverFollowsIt) {
     const std::int64_t known = 96 + kCoreSlots + kRestSlots + 1;
     for (const std::int64_t slots : {known, known + 1, known + 1000}) {
-        const Stretch s = slot_stretch(96, slots);
+        const HaloRange s = slot_range(96, slots);
         EXPECT_EQ(s.core_end, 96 + kCoreSlots);
         EXPECT_EQ(s.end, 96 + kCoreSlots + kHaloSlots);
     }
@@ -40,7 +40,7 @@ TEST(BlockPartitionTest, HalosHoldTheLongestExposureUpToALimit) {
     EXPECT_EQ(halo_slots(10), 9);
     EXPECT_EQ(halo_slots(33), 32);
     EXPECT_EQ(halo_slots(64), 32);
-    const Stretch s = slot_stretch(96, 500, 32);
+    const HaloRange s = slot_range(96, 500, 32);
     EXPECT_EQ(s.begin, 64);
     EXPECT_EQ(s.end, 96 + kCoreSlots + 32);
     // The last block, and one with two halos, fit the run of `data_prox`.

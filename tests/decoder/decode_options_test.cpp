@@ -41,7 +41,7 @@ TEST(DecodeOptionsTest, ChangesWhatIsSet) {
         options_of(DecodeMethod::kFast, {"rounds=5", "along_motion.temporal_weight=60.5"});
     EXPECT_EQ(options.fast.rounds, 5);
     EXPECT_EQ(options.fast.along_motion.temporal_weight, 60.5F);
-    EXPECT_EQ(options.fast.at_rest.temporal_weight, MotionTvOptions{}.at_rest.temporal_weight);
+    EXPECT_EQ(options.fast.static_tv.temporal_weight, MotionTvOptions{}.static_tv.temporal_weight);
 }
 
 TEST(DecodeOptionsTest, RefusesWhatTheMethodDoesNotKnowOrCannotTake) {

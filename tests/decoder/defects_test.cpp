@@ -37,7 +37,7 @@ std::size_t defects(const Recorded& recording, Measurements* cleaned = nullptr) 
     FluxVideo video(static_cast<int>(recording.packets.size()), kShape);
     Measurements measurements =
         collect_measurements(recording.header, recording.packets, whole(video));
-    const std::size_t found = unobserve_defects(measurements);
+    const std::size_t found = mask_defects(measurements);
     if (cleaned != nullptr) *cleaned = measurements;
     return found;
 }

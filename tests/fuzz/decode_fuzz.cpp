@@ -13,9 +13,9 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMostSites = 1024;
-constexpr int kMostPeriod = 32;
-constexpr std::int64_t kMostSlots = 48;
+constexpr std::size_t kMaxSites = 1024;
+constexpr int kMaxPeriod = 32;
+constexpr std::int64_t kMaxSlots = 48;
 
 void require(bool property) {
     if (!property) std::abort();
@@ -23,7 +23,7 @@ void require(bool property) {
 
 DecodeOptions short_options(DecodeMethod method) {
     DecodeOptions options{.method = method};
-    options.fast.at_rest.iterations = 2;
+    options.fast.static_tv.iterations = 2;
     options.fast.along_motion.iterations = 1;
     options.fast.rounds = 1;
     options.fast.last_iterations = 2;
@@ -36,14 +36,13 @@ void decode_by(DecodeMethod method, const std::string& file) {
     try {
         StreamReader reader(file);
         const StreamHeader& header = reader.header();
-        if (header.shape.sites() > kMostSites || header.schedule.period_slots() > kMostPeriod)
-            return;
+        if (header.shape.sites() > kMaxSites || header.schedule.period_slots() > kMaxPeriod) return;
         std::int64_t next = 0;
         decode(reader, short_options(method), [&](std::int64_t slot, std::span<const float> frame) {
             require(slot == next++);
             require(std::ranges::all_of(
                 frame, [](float light) { return std::isfinite(light) && light >= 0; }));
-            return next < kMostSlots;
+            return next < kMaxSlots;
         });
     } catch (const InputError&) {
     }

@@ -9,8 +9,8 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMostPieces = 256;
-constexpr std::size_t kMostGrowth = 256;  ///< of a body in one step
+constexpr std::size_t kMaxPieces = 256;
+constexpr std::size_t kMaxGrowth = 256;  ///< of a body in one step
 
 /// 0 .. below - 1.
 std::size_t roll(Dice& dice, std::size_t below) {
@@ -53,7 +53,7 @@ void change_number(std::span<std::uint8_t> bytes, Dice& dice) {
 
 void change_body(Bytes& body, Dice& dice) {
     const std::size_t size = body.size();
-    body.resize(size + 1 + roll(dice, kMostGrowth));
+    body.resize(size + 1 + roll(dice, kMaxGrowth));
     const bool grows = size == 0 || roll(dice, 2) == 0;
     body.resize(LLVMFuzzerMutate(body.data(), size, grows ? body.size() : size));
 }
@@ -64,7 +64,7 @@ void change_one(std::vector<Piece>& pieces, Dice& dice) {
     const auto here = pieces.begin() + static_cast<std::ptrdiff_t>(at);
     switch (roll(dice, 8)) {
         case 0:
-            if (pieces.size() < kMostPieces) pieces.insert(here, Piece(piece));
+            if (pieces.size() < kMaxPieces) pieces.insert(here, Piece(piece));
             return;
         case 1:
             if (pieces.size() > 1) pieces.erase(here);

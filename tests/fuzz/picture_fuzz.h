@@ -29,11 +29,11 @@ inline void read_picture(std::span<const std::uint8_t> bytes, const char* extens
 
 /// Reads footage to its end, or some frames of it.
 inline void read_footage(const std::filesystem::path& file, const FootageOptions& options) {
-    constexpr int kMostFrames = 8;
+    constexpr int kMaxFrames = 8;
     try {
         FootageReader reader(file, options);
         std::vector<float> frame(reader.shape().sites());
-        for (int i = 0; i < kMostFrames && reader.read(frame); ++i)
+        for (int i = 0; i < kMaxFrames && reader.read(frame); ++i)
             for (const float light : frame)
                 if (!(light >= 0)) std::abort();
         static_cast<void>(reader.take_warnings());

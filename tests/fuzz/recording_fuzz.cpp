@@ -59,13 +59,13 @@ void read(std::span<const std::uint8_t> bytes, const std::string& file) {
 
 /// As `emulate` reads it: what is light is a number and not negative.
 void read_footage(const std::string& file) {
-    constexpr std::size_t kMostSites = 1 << 16;
-    constexpr int kMostSlots = 64;
+    constexpr std::size_t kMaxSites = 1 << 16;
+    constexpr int kMaxSlots = 64;
     try {
         RecordingFootage footage(file);
-        if (footage.shape().sites() > kMostSites) return;
+        if (footage.shape().sites() > kMaxSites) return;
         std::vector<float> light(footage.shape().sites());
-        for (int slot = 0; slot < kMostSlots && footage.read(light); ++slot)
+        for (int slot = 0; slot < kMaxSlots && footage.read(light); ++slot)
             require(std::ranges::all_of(light, [](float value) { return value >= 0; }));
     } catch (const InputError&) {
         return;

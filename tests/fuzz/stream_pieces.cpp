@@ -20,7 +20,7 @@ namespace {
 using View = std::span<const std::uint8_t>;
 
 constexpr std::size_t kCrcBytes = 4;
-constexpr std::size_t kMostPixels = 1 << 14;  ///< of an array whose samples are made up
+constexpr std::size_t kMaxPixels = 1 << 14;  ///< of an array whose samples are made up
 constexpr std::uint32_t kPacketSync = 0x4B5053C5;
 constexpr std::uint32_t kEndSync = 0x444E45C5;
 
@@ -111,7 +111,7 @@ void fill_slots(std::vector<Piece>& pieces) {
         return;
     }
     const auto& [rows, cols, planes] = header->shape;
-    if (header->shape.pixels() > kMostPixels) return;
+    if (header->shape.pixels() > kMaxPixels) return;
     const int depth = header->calibration.bit_depth;
     std::int64_t slot = 0;
     for (Piece& piece : pieces) {
@@ -185,10 +185,10 @@ void mend(std::vector<Piece>& pieces, Dice& dice) {
 }  // namespace
 
 bool asks_for_much(View bytes) {
-    constexpr std::size_t kMostSites = 4096;
+    constexpr std::size_t kMaxSites = 4096;
     return bytes[84] == 1 &&
            std::size_t{load<std::uint16_t>(&bytes[16])} * load<std::uint16_t>(&bytes[18]) >
-               kMostSites;
+               kMaxSites;
 }
 
 const FramedFormat kStreamFormat{cut, mend};

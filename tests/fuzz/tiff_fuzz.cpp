@@ -6,11 +6,11 @@ namespace {
 
 /// A page that passes has all its bytes.
 void read_pages(const std::string& path) {
-    constexpr int kMostPages = 4;
+    constexpr int kMaxPages = 4;
     try {
         TiffFile tiff(path);
         TiffPixels pixels;
-        for (int page = 0; page < tiff.pages() && page < kMostPages; ++page) {
+        for (int page = 0; page < tiff.pages() && page < kMaxPages; ++page) {
             tiff.read(page, pixels);
             if (pixels.bytes.size() != pixels.shape.pixels() * pixels.sample_bytes() *
                                            static_cast<std::size_t>(pixels.channels))

@@ -15,13 +15,13 @@
 namespace stipple {
 namespace {
 
-constexpr int kMostPixels = 1 << 16;
+constexpr int kMaxPixels = 1 << 16;
 
 /// A timing that is accepted reads a full array: by formula and by events alike, without overflow.
 void read_in_full(const ReadoutTiming& timing) {
     const FrameShape shape{timing.rows, timing.cols, 1};
     const std::int64_t formula = full_readout(timing, shape).total;
-    if (shape.pixels() > kMostPixels || timing.dark_rows > kMostPixels) return;
+    if (shape.pixels() > kMaxPixels || timing.dark_rows > kMaxPixels) return;
     const ExposureSchedule every_slot = full_schedule(1, 1);
     std::vector<RowLoad> loads;
     RowLoads(timing, every_slot, shape).list(0, loads);

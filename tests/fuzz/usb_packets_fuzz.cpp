@@ -13,7 +13,7 @@
 namespace {
 
 constexpr std::size_t kHeaderBytes = 16;
-constexpr std::size_t kMostPacketBytes = 1024;
+constexpr std::size_t kMaxPacketBytes = 1024;
 constexpr std::array<std::uint8_t, 3> kMagic{'U', '3', 'V'};
 
 void require(bool property) {
@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::size_t reach = 0;  // end of the longest packet that may have begun
     for (std::size_t i = 0; i < after.size(); ++i) {
         const auto was = before.subspan(i);
-        if (has_magic(was)) reach = i + kMostPacketBytes;
+        if (has_magic(was)) reach = i + kMaxPacketBytes;
         require(after[i] == before[i] || (after[i] == pattern[i] && i < reach));
         require(!is_packet(was, id) || has_magic(std::span(after).subspan(i)) == false);
     }

@@ -62,7 +62,7 @@ class ConventionalFootageTest : public testing::Test {
     /// By how much `best` is better than frames of four slots held, which is what the camera gives:
     /// the mean over the first 32 slots of the middles of the clips, linear and after 1/2.2, where
     /// dark light counts more and blur less.
-    static void expect_gain(int side, double least_db, double least_gamma_db) {
+    static void expect_gain(int side, double min_db, double min_gamma_db) {
         double gain_db = 0;
         double gain_gamma_db = 0;
         constexpr const char* kClips[] = {"mouse250_a",   "mouse250_b", "nat30_blocks",
@@ -77,8 +77,8 @@ class ConventionalFootageTest : public testing::Test {
             gain_db += (best.psnr_db - held.psnr_db) / std::size(kClips);
             gain_gamma_db += (best.psnr_gamma_db - held.psnr_gamma_db) / std::size(kClips);
         }
-        EXPECT_GE(gain_db, least_db);
-        EXPECT_GE(gain_gamma_db, least_gamma_db);
+        EXPECT_GE(gain_db, min_db);
+        EXPECT_GE(gain_gamma_db, min_gamma_db);
     }
 };
 

@@ -37,7 +37,7 @@ std::uint64_t decoding_bytes(const std::filesystem::path& file, DecodeMethod met
     const std::uint64_t before = status_bytes("VmRSS");
     DecodeOptions options{.method = method};
     for (MotionTvOptions* fast : {&options.fast, &options.best.start})  // more take no more
-        fast->at_rest.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
+        fast->static_tv.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
     options.best.iterations = 2;
     decode(reader, options, [](std::int64_t, std::span<const float>) { return true; });
     return status_bytes("VmHWM") - before;

@@ -136,17 +136,17 @@ struct Moments {
 
 /// Of the DN of a normal charge: P(DN >= k) = P(charge >= edge of k), clipped at both ends.
 Moments moments_of_normal(const SensorParams& params, double mean_e) {
-    const int most_dn = (1 << params.bit_depth) - 1;
+    const int max_dn = (1 << params.bit_depth) - 1;
     const double below = params.rounding == AdcRounding::kNearest ? 0.5 : 0;
     const auto at_least = [&](int dn) {
         if (dn <= 0) return 1.0;
-        if (dn > most_dn) return 0.0;
+        if (dn > max_dn) return 0.0;
         const double edge_e = (dn - below) / electrons_to_dn(params);
         return 0.5 * std::erfc((edge_e - mean_e) / (params.read_noise_e * std::sqrt(2.0)));
     };
     const auto expect = [&](auto&& value) {
         double sum = 0;
-        for (int dn = 0; dn <= most_dn; ++dn) sum += value(dn) * (at_least(dn) - at_least(dn + 1));
+        for (int dn = 0; dn <= max_dn; ++dn) sum += value(dn) * (at_least(dn) - at_least(dn + 1));
         return sum;
     };
     Moments m;

@@ -58,7 +58,7 @@ TEST(ColumnAdcTest, ClipsAtFullScaleAndAtZero) {
     EXPECT_EQ(convert(params, 0), 0);
     EXPECT_EQ(convert(params, -0.0F), 0);
     EXPECT_EQ(convert(params, -40), 0);
-    EXPECT_EQ(ColumnAdc(params).most_dn(), 255);
+    EXPECT_EQ(ColumnAdc(params).max_dn(), 255);
 }
 
 TEST(ColumnAdcTest, RoundsHalvesUpAndFloorsBelowTheNextNumber) {

@@ -66,7 +66,7 @@ Moments moments(const std::vector<float>& values) {
 
 TEST(PixelArrayTest, IsEquationOneWordByWordOnEverySimdTarget) {
     const SensorParams params;
-    const PixelLaw law{1000, 20000, 10, true};
+    const PixelModel model{1000, 20000, 10, true};
     for_each_simd_target([&](const std::string& target) {
         for (const std::size_t count : {0U, 1U, 3U, 15U, 16U, 17U, 40U, 5001U}) {
             const auto pixels = first_pixels(count);
@@ -78,7 +78,7 @@ TEST(PixelArrayTest, IsEquationOneWordByWordOnEverySimdTarget) {
             for (std::size_t i = 0; i < count; ++i) {
                 const auto block =
                     philox4x32(random_address(pixels[i], 5, RandomPurpose::kSample, 1), kSeed);
-                const Charge charge = expose_one(law, light[i], block[0], block[1]);
+                const Charge charge = expose_one(model, light[i], block[0], block[1]);
                 ASSERT_EQ(electrons[i], charge.electrons)
                     << target << " sample " << i << " of " << count;
                 ASSERT_EQ(clipped[i] != 0, charge.clipped)

@@ -194,8 +194,7 @@ Usb3VisionDevice::Block Usb3VisionDevice::next_block() {
 
     block.payload.resize(frame_bytes());
     fill_fake_frame(block.payload, id);
-    const std::size_t most =
-        std::min(transfer_bytes(), std::exchange(most_bytes_, ~std::size_t{0}));
+    const std::size_t most = std::min(transfer_bytes(), std::exchange(max_bytes_, ~std::size_t{0}));
     block.payload.resize(std::min(block.payload.size(), most));
 
     if (std::exchange(loses_trailer_, false)) return block;
@@ -221,7 +220,7 @@ void Usb3VisionDevice::skip(std::uint64_t frames) {
 
 void Usb3VisionDevice::cut(std::size_t bytes) {
     const std::scoped_lock lock(mutex_);
-    most_bytes_ = bytes;
+    max_bytes_ = bytes;
 }
 
 void Usb3VisionDevice::lose_trailer() {

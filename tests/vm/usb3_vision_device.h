@@ -52,7 +52,7 @@ class Usb3VisionDevice {
     bool acquiring_ = false;
     std::uint64_t next_id_ = 0;
     std::uint64_t skipped_ = 0;
-    std::size_t most_bytes_ = ~std::size_t{0};
+    std::size_t max_bytes_ = ~std::size_t{0};
     bool loses_trailer_ = false;
 };
 

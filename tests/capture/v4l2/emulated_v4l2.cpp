@@ -39,7 +39,7 @@ EmulatedV4l2::EmulatedV4l2(EmulatedDriver driver)
     const std::string node = std::string(root) + "/dev/video0";
     g_free(root);
     const int file = ::open(node.c_str(), O_RDWR);
-    const std::size_t bytes = std::size_t{buffer_span()} * driver_.most_buffers;
+    const std::size_t bytes = std::size_t{buffer_span()} * driver_.max_buffers;
     if (file < 0 || ::ftruncate(file, static_cast<off_t>(bytes)) != 0)
         throw std::runtime_error("cannot make " + node);
     void* const start = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -250,7 +250,7 @@ int EmulatedV4l2::region(v4l2_selection& region, bool set) {
 int EmulatedV4l2::request_buffers(v4l2_requestbuffers& request) {
     if (request.memory == V4L2_MEMORY_USERPTR && !driver_.user_memory) return EINVAL;
     memory_ = request.memory;
-    buffers_ = request.count = std::min(request.count, driver_.most_buffers);
+    buffers_ = request.count = std::min(request.count, driver_.max_buffers);
     return 0;
 }
 

@@ -50,7 +50,7 @@ struct EmulatedDriver {
     std::uint32_t field = V4L2_FIELD_NONE;
     bool any_size = false;  ///< else it answers with width and height, whatever it is asked
     double highest_rate = 60;
-    std::uint32_t most_buffers = 8;
+    std::uint32_t max_buffers = 8;
     v4l2_rect region{};
     std::vector<EmulatedControl> controls;
 };

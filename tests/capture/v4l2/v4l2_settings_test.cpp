@@ -239,7 +239,7 @@ TEST(V4l2SettingsTest, RefusesNodesThatAreNoCamera) {
 TEST(V4l2SettingsTest, RefusesBuffersThatCannotBe) {
     EmulatedDriver driver;
     driver.user_memory = false;
-    driver.most_buffers = 1;
+    driver.max_buffers = 1;
     EmulatedV4l2 emulated(driver);
     EXPECT_THAT(error_of<InputError>({}, 1), HasSubstr("take 2 to 1024"));
     EXPECT_THAT(error_of<InputError>({{"BufferMemory", "mine"}}), HasSubstr("neither driver nor"));

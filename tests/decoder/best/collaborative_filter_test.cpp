@@ -38,7 +38,7 @@ FluxVideo noisy(const FluxVideo& video, float sigma) {
 
 TEST(CollaborativeFilterTest, WithoutNoiseNothingChanges) {
     const FluxVideo video = random_video(4, {40, 31, 3}, 1);
-    const BlockGroups groups = match_blocks(video, {video.shape(), 5, 2}, {}, {});
+    const PatchGroups groups = match_patches(video, {video.shape(), 5, 2}, {}, {});
     FluxVideo filtered(4, video.shape());
     filter_groups(video, video, groups, 0, filtered);
     for (std::size_t i = 0; i < video.voxels(); ++i)
@@ -49,7 +49,7 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
     constexpr float kSigma = 0.1F;
     const FluxVideo video = stripes(6, kShape);
     const FluxVideo seen = noisy(video, kSigma);
-    const BlockGroups groups = match_blocks(video, {kShape, 5, 0}, {}, {});
+    const PatchGroups groups = match_patches(video, {kShape, 5, 0}, {}, {});
     FluxVideo filtered(6, kShape);
     filter_groups(seen, video, groups, kSigma, filtered);
     // Stripes have some ten coefficients of 576 that are not 0, and every voxel is in many groups.
@@ -58,8 +58,8 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
 
 TEST(CollaborativeFilterTest, TheSameBitsForAnyNumberOfThreads) {
     const FluxVideo video = random_video(30, kShape, 3);  // several bands of slots too
-    const BlockGroups groups =
-        match_blocks(video, {kShape, 5, 3}, {}, {.slots = 2, .own_radius = 3, .path_radius = 2});
+    const PatchGroups groups =
+        match_patches(video, {kShape, 5, 3}, {}, {.slots = 2, .own_radius = 3, .path_radius = 2});
     const auto filter = [&](int threads) {
         const ThreadLimit limit(threads);
         FluxVideo filtered(video.slots(), kShape);

@@ -71,7 +71,7 @@ TEST_P(CollaborativeTest, TheSameBitsForOneAndTwoThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Planes, CollaborativeTest, testing::Values(1, 3));
 
-TEST(CollaborativeSmallTest, AFrameTooSmallForBlocksStaysAsItsStart) {
+TEST(CollaborativeSmallTest, AFrameTooSmallForPatchesStaysAsItsStart) {
     for (const FrameShape shape :
          {FrameShape{1, 40, 1}, FrameShape{40, 1, 1}, FrameShape{5, 9, 3}}) {
         const Measurements m = measure(drifting(shape), schedule(shape));

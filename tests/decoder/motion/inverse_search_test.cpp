@@ -120,7 +120,7 @@ TEST(InverseSearchTest, FollowsItsNeighbours) {
     EXPECT_LT(largest_error(flow, 4, 72, 0, 3.5), 0.1);
 }
 
-// Shifts that differ by much more than `alike_px` are not averaged.
+// Shifts that differ by much more than `range_sigma_px` are not averaged.
 TEST(InverseSearchTest, AveragesWhatIsAlike) {
     constexpr int kSide = 64;
     constexpr int kStride = kSide + 2 * kFlowBorder;
@@ -134,10 +134,10 @@ TEST(InverseSearchTest, AveragesWhatIsAlike) {
     };
     const Picture from = noisy(0, 1);
     const Picture to = noisy(0.5, 2);
-    const auto error = [&](float alike_px) {
+    const auto error = [&](float range_sigma_px) {
         return largest_error(
-            inverse_search(from.image(), to.image(), nullptr, {.alike_px = alike_px}), 4, 60, 0.5,
-            0);
+            inverse_search(from.image(), to.image(), nullptr, {.range_sigma_px = range_sigma_px}),
+            4, 60, 0.5, 0);
     };
     EXPECT_LT(error(1), 0.5 * error(1e-4F));
 }

@@ -71,8 +71,8 @@ TEST(MotionTest, RoughMotionIsThatOfSeveralSlots) {
     };
     EXPECT_NEAR(shift_of({}, 3), 1, 0.1);
     EXPECT_NEAR(shift_of({}, 4), 0, 0.1);
-    EXPECT_NEAR(shift_of({.rough = true}, 3), 0.5, 0.15);
-    EXPECT_NEAR(shift_of({.rough = true}, 4), 0.5, 0.15);
+    EXPECT_NEAR(shift_of({.coarse = true}, 3), 0.5, 0.15);
+    EXPECT_NEAR(shift_of({.coarse = true}, 4), 0.5, 0.15);
 }
 
 TEST(MotionTest, HasNoConfidenceWhereThereIsNoPartner) {

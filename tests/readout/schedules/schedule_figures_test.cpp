@@ -19,10 +19,10 @@ TEST(ScheduleFiguresTest, AreThoseOfTheClosedFormForAnEvenTile) {
     EXPECT_EQ(figures.period_slots, 15);
     EXPECT_DOUBLE_EQ(figures.compression_ratio, 3.75);
     EXPECT_EQ(figures.light_throughput, 1);
-    EXPECT_EQ(figures.least_exposures, 4);
-    EXPECT_EQ(figures.most_exposures, 4);
-    EXPECT_EQ(figures.least_due, 6U * 68);
-    EXPECT_EQ(figures.most_due, 6U * 69);
+    EXPECT_EQ(figures.min_exposures, 4);
+    EXPECT_EQ(figures.max_exposures, 4);
+    EXPECT_EQ(figures.min_due, 6U * 68);
+    EXPECT_EQ(figures.max_due, 6U * 69);
     EXPECT_DOUBLE_EQ(figures.mean_due, 6 * 1024 / 15.0);
     EXPECT_EQ(figures.code_memory_bits, 16U * 16 * 15);
 }
@@ -37,9 +37,9 @@ TEST(ScheduleFiguresTest, CountTheMemoryOfTheCompiledSchedule) {
 
 TEST(ScheduleFiguresTest, KnowPixelsThatAreNeverRead) {
     const auto figures = schedule_figures({1, 2, 4, {0, 1, 1}, {{0, 1}}}, kShape);
-    EXPECT_EQ(figures.least_exposures, 0);
-    EXPECT_EQ(figures.least_due, 0U);
-    EXPECT_EQ(figures.most_due, 32U * 24);
+    EXPECT_EQ(figures.min_exposures, 0);
+    EXPECT_EQ(figures.min_due, 0U);
+    EXPECT_EQ(figures.max_due, 32U * 24);
     EXPECT_EQ(figures.compression_ratio, 8);
 }
 

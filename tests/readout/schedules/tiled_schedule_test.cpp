@@ -80,7 +80,7 @@ std::set<std::vector<int>> all_due_counts(std::vector<int> lengths, int pixels) 
     return totals;
 }
 
-std::size_t least_spread(const std::set<std::vector<int>>& totals) {
+std::size_t min_spread(const std::set<std::vector<int>>& totals) {
     int least = INT_MAX;
     for (const auto& total : totals) {
         const auto [fewest, most] = std::ranges::minmax(total);
@@ -96,7 +96,7 @@ TEST(TiledScheduleTest, IsAsEvenAsAnySmallTileCanBe) {
          {std::vector<int>{2, 4}, {2, 2, 4}, {1, 3}, {3, 3}, {1, 1, 4}, {1, 2, 4}})
         for (int pixels = 1; pixels <= 4; ++pixels) {
             const auto counts = due_per_slot(tiled_schedule(1, pixels, lengths, 1));
-            EXPECT_EQ(counts.most - counts.fewest, least_spread(all_due_counts(lengths, pixels)))
+            EXPECT_EQ(counts.most - counts.fewest, min_spread(all_due_counts(lengths, pixels)))
                 << pixels << " pixels, first of " << lengths.size() << " lengths " << lengths[0];
         }
 }

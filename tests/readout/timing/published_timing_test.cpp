@@ -139,17 +139,17 @@ TEST(PublishedTimingTest, AQuarterOfTheColumnsGainsWhatTheRowTimeLawAllows) {
         const auto timing = sensor_timing(gain.sensor);
         const FrameShape shape{timing.rows, timing.cols, 1};
         EXPECT_EQ(full_readout(timing, shape).row, gain.full_row) << gain.sensor;
-        EXPECT_EQ(even_readout(timing, shape, 0.25).row, gain.quarter_row) << gain.sensor;
+        EXPECT_EQ(balanced_readout(timing, shape, 0.25).row, gain.quarter_row) << gain.sensor;
         EXPECT_NEAR(static_cast<double>(gain.full_row) / static_cast<double>(gain.quarter_row),
                     gain.ratio, 0.005);
     }
     // 4 exposures in 15 slots: 1280 / 16 x 4 / 15 = 21.3 columns a channel, 21 in some rows and 22
     // in others.
     const auto lux = sensor_timing("lux1310");
-    EXPECT_NEAR(even_readout(lux, {1024, 1280, 1}, 4.0 / 15).row, 80 * 4.0 / 15 + 2, 1e-9);
+    EXPECT_NEAR(balanced_readout(lux, {1024, 1280, 1}, 4.0 / 15).row, 80 * 4.0 / 15 + 2, 1e-9);
     // Dark rows are read in full; 93 clocks and a conversion of 19 + 3 come first.
     const auto dark = sensor_timing("lux1310", {"timing.dark_rows=4"});
-    EXPECT_EQ(even_readout(dark, {1024, 1280, 1}, 0.25).total, 93 + 22 + 4 * 82 + 1024 * 22);
+    EXPECT_EQ(balanced_readout(dark, {1024, 1280, 1}, 0.25).total, 93 + 22 + 4 * 82 + 1024 * 22);
 }
 
 }  // namespace

@@ -21,11 +21,12 @@ class Draw {
     std::mt19937 engine_;
 };
 
-/// A small sensor of any law, addressing and ADC sharing, with clocks that often tie or are 0.
+/// A small sensor of any row timing, addressing and ADC sharing, with clocks that often tie or are
+/// 0.
 inline ReadoutTiming random_timing(Draw& draw) {
     ReadoutTiming timing;
     timing.clock_hz = 1'000'000;
-    timing.law = static_cast<RowTimeLaw>(draw(0, 2));
+    timing.row_timing = static_cast<RowTiming>(draw(0, 2));
     timing.rows = draw(1, 9);
     timing.addressing.kind = static_cast<ColumnAddressing::Kind>(draw(0, 1));
     timing.addressing.channels = draw(1, 4);

@@ -128,7 +128,7 @@ TEST(ReadoutPipelineTest, LateCommandsKeepAdcsLinkAndLatchesApart) {
             spans[kind].push_back({cycle, cycle + clocks});
             ++next[kind];
         }
-        const std::size_t latches = timing.law == RowTimeLaw::kSequential ? 1 : 2;
+        const std::size_t latches = timing.row_timing == RowTiming::kSequential ? 1 : 2;
         const auto& [select, convert, transfer] = spans;
         for (std::size_t i = 0; i < select.size(); ++i) {
             EXPECT_TRUE(comes_after(select, i, convert, i - 1)) << "seed " << seed;

@@ -21,7 +21,7 @@ TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
     EXPECT_EQ(rate.full.total, 84143);
     EXPECT_EQ(rate.slowest.clocks, 84143);
     EXPECT_EQ(rate.slowest_phase, 3);
-    EXPECT_DOUBLE_EQ(rate.gain, 1);
+    EXPECT_DOUBLE_EQ(rate.speedup, 1);
     EXPECT_NEAR(rate.full_hz, 1069.6, 0.1);
     // In the other three slots, only the exposure code is loaded.
     EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 8640) / 4.0);
@@ -36,9 +36,9 @@ TEST(ReadoutRateTest, RandomCodesOnLux1310) {
     const FrameShape shape{256, 1280, 1};
     const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
     EXPECT_NEAR(rate.even.row, 80 * 4.0 / 15 + 2, 1e-9);
-    EXPECT_NEAR(rate.gain, 82 / 31.0, 0.1);
-    EXPECT_GT(rate.even_gain, 3.3);
-    EXPECT_LT(rate.gain, rate.even_gain);
+    EXPECT_NEAR(rate.speedup, 82 / 31.0, 0.1);
+    EXPECT_GT(rate.balanced_speedup, 3.3);
+    EXPECT_LT(rate.speedup, rate.balanced_speedup);
 }
 
 // With groups of 16 x 2 pixels, nearly every group has some pixel due: all is transferred.
@@ -46,7 +46,7 @@ TEST(ReadoutRateTest, RandomCodesGainNothingInGroupsOf16By2) {
     const auto timing = sensor_timing("lux1310", {"timing.addressing=group"});
     const FrameShape shape{128, 1280, 1};
     const auto rate = rate_of(timing, random_schedule(128, 1280, kPaperExposureSlots, 1), shape);
-    EXPECT_NEAR(rate.gain, 1, 0.01);
+    EXPECT_NEAR(rate.speedup, 1, 0.01);
 }
 
 // A tile of one row and 15 columns on 3 channels, where pixel c is due in slot c: in each slot a
@@ -92,7 +92,7 @@ TEST(ReadoutRateTest, NoScheduleThatReadsEveryRowBeatsTheBound) {
         // A chip that settles less for fewer columns may gain by uneven rows.
         if (!timing.settle_clocks.empty() || !reads_every_row(timing, schedule, shape)) continue;
         const auto rate = rate_of(timing, schedule, shape);
-        EXPECT_LE(rate.gain, rate.even_gain * (1 + 1e-12)) << "seed " << seed;
+        EXPECT_LE(rate.speedup, rate.balanced_speedup * (1 + 1e-12)) << "seed " << seed;
         ++tested;
     }
     EXPECT_GT(tested, 30);
@@ -117,7 +117,7 @@ TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
                     const auto made = read_schedule(schedule, shape, 1, timing->addressing);
                     if (!reads_every_row(*timing, made.schedule, shape)) continue;
                     const auto rate = rate_of(*timing, made.schedule, shape);
-                    EXPECT_LE(rate.gain, rate.even_gain * (1 + 1e-12))
+                    EXPECT_LE(rate.speedup, rate.balanced_speedup * (1 + 1e-12))
                         << file.path().filename() << " " << name << " " << shape.cols;
                     ++tested;
                 }

@@ -63,7 +63,7 @@ TEST(SlotReadoutTest, AFullSlotTakesAsLongAsTheFormulaSays) {
         ASSERT_EQ(slot.end - slot.begin, formula.total) << "seed " << seed;
         ASSERT_EQ(slot.settle, formula.settle) << "seed " << seed;
         const RowTimes& first = slot.rows.front();
-        const bool takes_turns = timing.law == RowTimeLaw::kSequential;
+        const bool takes_turns = timing.row_timing == RowTiming::kSequential;
         ASSERT_EQ((takes_turns ? first.select : first.transfer) - slot.begin, formula.lead)
             << "seed " << seed;
     }
@@ -74,7 +74,7 @@ TEST(SlotReadoutTest, NeitherTheAdcsNorTheLinkNorALatchIsEverUsedTwiceAtOnce) {
         Draw draw(seed);
         const ReadoutTiming timing = random_timing(draw);
         const auto rows = read_slot(timing, timing.cols, random_loads(timing, draw), 0).rows;
-        const std::size_t latches = timing.law == RowTimeLaw::kSequential ? 1 : 2;
+        const std::size_t latches = timing.row_timing == RowTiming::kSequential ? 1 : 2;
         for (std::size_t i = 0; i < rows.size(); ++i) {
             EXPECT_LE(rows[i].select, rows[i].convert);
             EXPECT_LE(rows[i].convert_end, rows[i].transfer);

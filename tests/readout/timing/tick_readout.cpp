@@ -15,7 +15,7 @@ class Clockwork {
               std::int64_t begin)
         : timing_(timing),
           settle_(settle_of(timing, loads)),
-          turns_(timing.law == RowTimeLaw::kSequential),
+          turns_(timing.row_timing == RowTiming::kSequential),
           now_(begin),
           free_latches_(turns_ ? 1 : 2) {
         for (const RowLoad& load : loads) rows_.push_back({.load = load});

@@ -20,11 +20,11 @@ TEST(TimingConfigTest, ASensorWithoutTheSectionHasNoTiming) {
 TEST(TimingConfigTest, KeysArriveWhereTheyBelong) {
     const ReadoutTiming timing = sensor_timing(
         "lux1310",
-        {"timing.law=full_width", "timing.addressing=group", "timing.group_cols=8",
+        {"timing.row_timing=full_width", "timing.addressing=group", "timing.group_cols=8",
          "timing.columns_per_adc=2", "timing.adc_skip=true", "timing.rot_clocks=7",
          "timing.blanking_clocks=6", "timing.skip_row_clocks=5", "timing.overhead_rows=4",
          "timing.link_lanes=3", "timing.link_bps=1000000", "timing.code_bit_pj=0.25"});
-    EXPECT_EQ(timing.law, RowTimeLaw::kFullWidth);
+    EXPECT_EQ(timing.row_timing, RowTiming::kFullWidth);
     EXPECT_EQ(timing.addressing, (ColumnAddressing{ColumnAddressing::Kind::kGroup, 16, 8, 2}));
     EXPECT_EQ(timing.columns_per_adc, 2);
     EXPECT_EQ(timing.adcs(), 640);
@@ -56,7 +56,7 @@ TEST(TimingConfigTest, AssumedConstantsFollowTheSizeOfTheChip) {
             << name;
         EXPECT_TRUE(timing.hypothetical.find("exposes all pixels alike") != std::string::npos);
         EXPECT_EQ(timing.hypothetical.find("whole rows") != std::string::npos,
-                  timing.law == RowTimeLaw::kFullWidth);
+                  timing.row_timing == RowTiming::kFullWidth);
     }
 }
 
@@ -79,7 +79,7 @@ TEST(TimingConfigTest, ImpossibleTimingNamesTheConstraint) {
                   {"row_table_clocks", "falls"}},
              Case{{"timing.overhead_rows=65535", "timing.adc_clocks=100000000"},
                   {"exceed", "rows"}},
-             Case{{"timing.law=random"}, {"timing.law", "overlapped"}},
+             Case{{"timing.row_timing=random"}, {"timing.row_timing", "overlapped"}},
              Case{{"timing.rows=70000"}, {"timing.rows", "65535"}},
              Case{{"timing.channel=8"}, {"timing.channel", "timing.channels"}},
          })
@@ -102,7 +102,7 @@ TEST(TimingConfigTest, ASlowLinkHoldsTheTransferUp) {
     const auto timing = sensor_timing("cmv4000", {"timing.link_bps=240000000"});
     EXPECT_EQ(transfer_clocks(timing, 256), 514);
     const auto odd =
-        sensor_timing("cmv4000", {"timing.link_bps=479999999", "timing.law=overlapped"});
+        sensor_timing("cmv4000", {"timing.link_bps=479999999", "timing.row_timing=overlapped"});
     EXPECT_EQ(transfer_clocks(odd, 256), 259) << "a clock that has begun counts";
 }
 

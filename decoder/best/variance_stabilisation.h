@@ -14,8 +14,8 @@ struct RootScale {
     float least = 0;
 };
 
-void stabilise(std::span<const float> light, int planes, RootScale scale,
-               std::span<float> stabilised);
+void stabilise_variance(std::span<const float> light, int planes, RootScale scale,
+                        std::span<float> stabilised);
 
 /// The inverse; never below `least`.
 void restore_light(std::span<const float> stabilised, int planes, RootScale scale,

@@ -1,4 +1,4 @@
-#include "decoder/best/stabilised_light.h"
+#include "decoder/best/variance_stabilisation.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 TEST(StabilisedLightTest, OnePlaneIsTwiceTheSquareRoot) {
     const std::vector<float> light = {0, 0.24F, 2, -1};
     std::vector<float> v(light.size());
-    stabilise(light, 1, {0.01F}, v);
+    stabilise_variance(light, 1, {0.01F}, v);
     EXPECT_FLOAT_EQ(v[0], 0.2F);
     EXPECT_FLOAT_EQ(v[1], 1);
     EXPECT_FLOAT_EQ(v[2], 2 * std::sqrt(2.01F));
@@ -22,7 +22,7 @@ TEST(StabilisedLightTest, OnePlaneIsTwiceTheSquareRoot) {
 TEST(StabilisedLightTest, LightDownToTheLeastIsKept) {
     const std::vector<float> light = {-0.005F, -0.02F};
     std::vector<float> v(2);
-    stabilise(light, 1, {.offset = 0.01F, .least = -0.008F}, v);
+    stabilise_variance(light, 1, {.offset = 0.01F, .least = -0.008F}, v);
     EXPECT_FLOAT_EQ(v[0], 2 * std::sqrt(0.005F));
     std::vector<float> back(2);
     restore_light(v, 1, {.offset = 0.01F, .least = -0.008F}, back);
@@ -33,7 +33,7 @@ TEST(StabilisedLightTest, LightDownToTheLeastIsKept) {
 TEST(StabilisedLightTest, GreyHasNoOpponentColours) {
     const std::vector<float> grey(6, 0.5F);
     std::vector<float> v(grey.size());
-    stabilise(grey, 3, {0.01F}, v);
+    stabilise_variance(grey, 3, {0.01F}, v);
     EXPECT_FLOAT_EQ(v[0], std::sqrt(3.0F) * 2 * std::sqrt(0.51F));
     for (std::size_t i = 2; i < v.size(); ++i) EXPECT_NEAR(v[i], 0, 1e-6F);
 }
@@ -41,7 +41,7 @@ TEST(StabilisedLightTest, GreyHasNoOpponentColours) {
 TEST(StabilisedLightTest, OpponentColoursKeepTheNorm) {
     const std::vector<float> light = random_values(30, 0, 2, 1);
     std::vector<float> v(light.size());
-    stabilise(light, 3, {0.02F}, v);
+    stabilise_variance(light, 3, {0.02F}, v);
     for (std::size_t i = 0; i < 10; ++i) {
         double norm = 0;
         double expected = 0;
@@ -58,7 +58,7 @@ TEST(StabilisedLightTest, RestoringIsTheInverseAndNeverNegative) {
         const std::vector<float> light = random_values(60, 0, 2, 2);
         std::vector<float> v(light.size());
         std::vector<float> back(light.size());
-        stabilise(light, planes, {0.01F}, v);
+        stabilise_variance(light, planes, {0.01F}, v);
         restore_light(v, planes, {0.01F}, back);
         for (std::size_t i = 0; i < light.size(); ++i) EXPECT_NEAR(back[i], light[i], 2e-6F);
         for (float& x : v) x -= 2;

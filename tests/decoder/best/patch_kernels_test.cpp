@@ -1,4 +1,4 @@
-#include "decoder/best/block_kernels.h"
+#include "decoder/best/patch_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -12,16 +12,16 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kSide = kBlockSide;
-constexpr std::size_t kBlocks = kGroupBlocks;
+constexpr std::size_t kSide = kPatchSide;
+constexpr std::size_t kPatches = kGroupPatches;
 constexpr std::size_t kCols = 41;
 constexpr std::size_t kVoxels = 37 * kCols;
 
-/// A group of 16 blocks, some of which overlap, in a frame of 37 x 41.
+/// A group of 16 patches, some of which overlap, in a frame of 37 x 41.
 struct Frames {
     explicit Frames(std::uint32_t seed = 1)
         : noisy(random_values(kVoxels, 0, 2, seed)), pilot(random_values(kVoxels, 0, 2, seed + 1)) {
-        for (std::size_t k = 0; k < kBlocks; ++k)
+        for (std::size_t k = 0; k < kPatches; ++k)
             at[k] = static_cast<std::ptrdiff_t>(k / 4 * 7 * kCols + k % 4 * 5);
     }
     [[nodiscard]] GroupFrames group() {
@@ -30,16 +30,16 @@ struct Frames {
                 .sum = sum.data(),
                 .weight = weight.data(),
                 .cols = kCols,
-                .block = at};
+                .patch = at};
     }
-    std::array<std::ptrdiff_t, kBlocks> at = {};
+    std::array<std::ptrdiff_t, kPatches> at = {};
     std::vector<float> noisy;
     std::vector<float> pilot;
     std::vector<float> sum = std::vector<float>(kVoxels);
     std::vector<float> weight = std::vector<float>(kVoxels);
 };
 
-using Coefficients = std::vector<double>;  // order (block, row, col)
+using Coefficients = std::vector<double>;  // order (patch, row, col)
 
 /// The k-th of `count` orthonormal DCT-II functions at point n.
 double cosine(std::size_t k, std::size_t n, std::size_t count) {
@@ -69,7 +69,7 @@ Coefficients transformed(const Coefficients& x, bool back) {
         for (std::size_t j = 0; j < x.size(); ++j) {
             const std::size_t k = back ? j : i;
             const std::size_t n = back ? i : j;
-            result[i] += x[j] * haar(k / kPixels, n / kPixels, kBlocks) *
+            result[i] += x[j] * haar(k / kPixels, n / kPixels, kPatches) *
                          cosine(k / kSide % kSide, n / kSide % kSide, kSide) *
                          cosine(k % kSide, n % kSide, kSide);
         }
@@ -86,7 +86,7 @@ Coefficients values(const Frames& frames, const std::vector<float>& from) {
     return x;
 }
 
-TEST(BlockKernelsTest, FilterGroupIsTheWienerFilterInDctTimesHaar) {
+TEST(PatchKernelsTest, FilterGroupIsTheWienerFilterInDctTimesHaar) {
     constexpr double kSigma = 0.4;
     Frames frames;
     filter_group(frames.group(), static_cast<float>(kSigma));
@@ -117,7 +117,7 @@ TEST(BlockKernelsTest, FilterGroupIsTheWienerFilterInDctTimesHaar) {
     }
 }
 
-TEST(BlockKernelsTest, WithoutNoiseTheFilterChangesNothing) {
+TEST(PatchKernelsTest, WithoutNoiseTheFilterChangesNothing) {
     Frames frames;
     filter_group(frames.group(), 0);
     for (std::size_t i = 0; i < kVoxels; ++i)
@@ -139,7 +139,7 @@ struct ColourFrames {
 
 // Planes that are multiples of one plus a constant have one axis on which they vary at all, and on
 // it are that plane, longer by the norm of the multiples.
-TEST(BlockKernelsTest, ColoursThatVaryTogetherAreFilteredAsOnePlane) {
+TEST(PatchKernelsTest, ColoursThatVaryTogetherAreFilteredAsOnePlane) {
     constexpr float kShare[3] = {0.6F, 0.48F, 0.64F};  // of norm 1
     Frames mono(7);
     ColourFrames colours;
@@ -158,7 +158,7 @@ TEST(BlockKernelsTest, ColoursThatVaryTogetherAreFilteredAsOnePlane) {
             }
 }
 
-TEST(BlockKernelsTest, NoiseOfAColourThatThePilotLacksIsTakenOut) {
+TEST(PatchKernelsTest, NoiseOfAColourThatThePilotLacksIsTakenOut) {
     ColourFrames colours;
     for (std::size_t i = 0; i < kVoxels; ++i) {
         const float light = colours.planes[0].pilot[i];
@@ -176,7 +176,7 @@ TEST(BlockKernelsTest, NoiseOfAColourThatThePilotLacksIsTakenOut) {
         }
 }
 
-TEST(BlockKernelsTest, WithoutNoiseColoursStayAsTheyAre) {
+TEST(PatchKernelsTest, WithoutNoiseColoursStayAsTheyAre) {
     ColourFrames colours;
     filter_group(colours.group(), 0);
     for (std::size_t p = 0; p < 3; ++p)
@@ -186,7 +186,7 @@ TEST(BlockKernelsTest, WithoutNoiseColoursStayAsTheyAre) {
             }
 }
 
-TEST(BlockKernelsTest, SquaredDifferencesAreThoseOfSixBySixPixels) {
+TEST(PatchKernelsTest, SquaredDifferencesAreThoseOfSixBySixPixels) {
     const std::vector<float> image = random_values(kVoxels, 0, 2, 3);
     const std::vector<std::uint32_t> at = {0, 3, 5 * kCols + 7, 31 * kCols - 9};
     std::vector<float> result(at.size());
@@ -204,7 +204,7 @@ TEST(BlockKernelsTest, SquaredDifferencesAreThoseOfSixBySixPixels) {
     }
 }
 
-TEST(BlockKernelsTest, EverySimdTargetGivesTheSameBits) {
+TEST(PatchKernelsTest, EverySimdTargetGivesTheSameBits) {
     std::vector<std::vector<float>> found;
     for_each_simd_target([&](const std::string&) {
         Frames frames;

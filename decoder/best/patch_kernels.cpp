@@ -1,9 +1,9 @@
-// Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over blocks and
+// Compiled once per SIMD target by foreach_target.h, chosen at run time. The loops over patches and
 // columns are left to the compiler's vectoriser; every target gives the same bits.
-#include "decoder/best/block_kernels.h"
+#include "decoder/best/patch_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "decoder/best/block_kernels.cpp"
+#define HWY_TARGET_INCLUDE "decoder/best/patch_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>
@@ -13,9 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
 
-constexpr int kSide = kBlockSide;
+constexpr int kSide = kPatchSide;
 constexpr int kPixels = kSide * kSide;
-constexpr int kBlocks = kGroupBlocks;
+constexpr int kPatches = kGroupPatches;
 
 float squared_difference(const float* HWY_RESTRICT a, const float* HWY_RESTRICT b,
                          std::ptrdiff_t cols) {
@@ -33,18 +33,18 @@ void all_squared_differences(const float* image, const float* reference,
         result[i] = squared_difference(reference, image + at[i], cols);
 }
 
-/// Values or coefficients of a group, order (row, col, block). Variables are not zeroed, which
+/// Values or coefficients of a group, order (row, col, patch). Variables are not zeroed, which
 /// would take a 50th of the time.
 struct alignas(64) Group {
-    float v[kPixels][kBlocks];
+    float v[kPixels][kPatches];
 };
 
-/// The place of each block: in the reverse order of bits the Haar transform pairs neighbours.
-constexpr int kPlace[kBlocks] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+/// The place of each patch: in the reverse order of bits the Haar transform pairs neighbours.
+constexpr int kPlace[kPatches] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
 
 void load(const GroupFrames& group, const float* from, Group& g) {
-    for (std::size_t k = 0; k < kBlocks; ++k) {
-        const float* row = from + group.block[k];
+    for (std::size_t k = 0; k < kPatches; ++k) {
+        const float* row = from + group.patch[k];
         for (int r = 0; r < kSide; ++r, row += group.cols)
             for (int c = 0; c < kSide; ++c) g.v[r * kSide + c][kPlace[k]] = row[c];
     }
@@ -59,10 +59,10 @@ constexpr float kSecond = 0.5F;          // sqrt(1/3) cos(pi/6)
 constexpr float kFourth = 0.288675135F;  // sqrt(1/3) cos(pi/3)
 constexpr float kMiddle = 0.577350269F;  // sqrt(1/3)
 
-/// Of all blocks at once; the six values of a block are `stride` apart.
+/// Of all patches at once; the six values of a patch are `stride` apart.
 HWY_INLINE void transform(float* HWY_RESTRICT x, int stride) {
     const auto at = [&](int n) { return x + n * stride; };
-    for (int i = 0; i < kBlocks; ++i) {
+    for (int i = 0; i < kPatches; ++i) {
         const float even[3] = {at(0)[i] + at(5)[i], at(1)[i] + at(4)[i], at(2)[i] + at(3)[i]};
         const float odd[3] = {at(0)[i] - at(5)[i], at(1)[i] - at(4)[i], at(2)[i] - at(3)[i]};
         at(0)[i] = kMean * (even[0] + even[1] + even[2]);
@@ -77,7 +77,7 @@ HWY_INLINE void transform(float* HWY_RESTRICT x, int stride) {
 /// The transpose.
 HWY_INLINE void transform_back(float* HWY_RESTRICT x, int stride) {
     const auto at = [&](int n) { return x + n * stride; };
-    for (int i = 0; i < kBlocks; ++i) {
+    for (int i = 0; i < kPatches; ++i) {
         const float c0 = kMean * at(0)[i];
         const float c2 = kSecond * at(2)[i];
         const float c4 = kFourth * at(4)[i];
@@ -107,13 +107,13 @@ HWY_INLINE void pair_up(float* HWY_RESTRICT x) {
 /// Squares of the scales that make the Haar transform orthonormal. They are applied where
 /// coefficients shrink: g++ 12 would fuse a product with the sums and differences of `pair_up`,
 /// whatever -ffp-contract says, and the bits would differ.
-constexpr float kHaarSquare[kBlocks] = {0.0625F, 0.0625F, 0.125F, 0.125F, 0.25F, 0.25F,
-                                        0.25F,   0.25F,   0.5F,   0.5F,   0.5F,  0.5F,
-                                        0.5F,    0.5F,    0.5F,   0.5F};
+constexpr float kHaarSquare[kPatches] = {0.0625F, 0.0625F, 0.125F, 0.125F, 0.25F, 0.25F,
+                                         0.25F,   0.25F,   0.5F,   0.5F,   0.5F,  0.5F,
+                                         0.5F,    0.5F,    0.5F,   0.5F};
 
 void analyse(Group& g) {
-    for (int row = 0; row < kSide; ++row) transform(g.v[row * kSide], kBlocks);
-    for (int col = 0; col < kSide; ++col) transform(g.v[col], kSide * kBlocks);
+    for (int row = 0; row < kSide; ++row) transform(g.v[row * kSide], kPatches);
+    for (int col = 0; col < kSide; ++col) transform(g.v[col], kSide * kPatches);
     for (float* x : g.v) {
         pair_up<8>(x);
         pair_up<4>(x);
@@ -129,15 +129,15 @@ void synthesise(Group& g) {
         pair_up<4>(x);
         pair_up<8>(x);
     }
-    for (int col = 0; col < kSide; ++col) transform_back(g.v[col], kSide * kBlocks);
-    for (int row = 0; row < kSide; ++row) transform_back(g.v[row * kSide], kBlocks);
+    for (int col = 0; col < kSide; ++col) transform_back(g.v[col], kSide * kPatches);
+    for (int row = 0; row < kSide; ++row) transform_back(g.v[row * kSide], kPatches);
 }
 
 /// Returns the sum of the squared factors.
 float shrink(const Group& pilot, float sigma, Group& g) {
-    float squares[kBlocks] = {};
+    float squares[kPatches] = {};
     for (int i = 0; i < kPixels; ++i)
-        for (int k = 0; k < kBlocks; ++k) {
+        for (int k = 0; k < kPatches; ++k) {
             const float power = kHaarSquare[k] * pilot.v[i][k] * pilot.v[i][k];
             const float factor = power / (power + sigma * sigma);
             g.v[i][k] *= kHaarSquare[k] * factor;
@@ -152,16 +152,16 @@ float weight_of(float squares) {
     return 1 / (squares > 1 ? squares : 1.0F);
 }
 
-/// Along a side of a block.
+/// Along a side of a patch.
 constexpr float kWindow[kSide] = {0.45F, 0.8F, 1, 1, 0.8F, 0.45F};
 
 void add(const Group& g, float group_weight, const GroupFrames& group) {
     float window[kPixels];
     for (int i = 0; i < kPixels; ++i)
         window[i] = group_weight * kWindow[i / kSide] * kWindow[i % kSide];
-    for (std::size_t k = 0; k < kBlocks; ++k) {
-        float* HWY_RESTRICT sum = group.sum + group.block[k];
-        float* HWY_RESTRICT weight = group.weight + group.block[k];
+    for (std::size_t k = 0; k < kPatches; ++k) {
+        float* HWY_RESTRICT sum = group.sum + group.patch[k];
+        float* HWY_RESTRICT weight = group.weight + group.patch[k];
         for (int r = 0; r < kSide; ++r, sum += group.cols, weight += group.cols)
             for (int c = 0; c < kSide; ++c) {
                 sum[c] += window[r * kSide + c] * g.v[r * kSide + c][kPlace[k]];
@@ -190,9 +190,9 @@ constexpr std::size_t kColours = 3;
 
 /// Inner product of two planes of a group, without its mean.
 float product(const Group& a, const Group& b) {
-    float products[kBlocks] = {};
+    float products[kPatches] = {};
     for (int i = 0; i < kPixels; ++i)
-        for (int k = 0; k < kBlocks; ++k)
+        for (int k = 0; k < kPatches; ++k)
             if (i > 0 || k > 0) products[k] += kHaarSquare[k] * a.v[i][k] * b.v[i][k];
     float sum = 0;
     for (const float each : products) sum += each;
@@ -210,7 +210,7 @@ ColourMatrix axes_of(const Group (&planes)[kColours]) {
 /// Each plane becomes the sum of all, times a column of `mix`.
 void mix_planes(const ColourMatrix& mix, Group (&planes)[kColours]) {
     for (int i = 0; i < kPixels; ++i)
-        for (int k = 0; k < kBlocks; ++k) {
+        for (int k = 0; k < kPatches; ++k) {
             const float x[kColours] = {planes[0].v[i][k], planes[1].v[i][k], planes[2].v[i][k]};
             for (std::size_t p = 0; p < kColours; ++p)
                 planes[p].v[i][k] = x[0] * mix[0][p] + x[1] * mix[1][p] + x[2] * mix[2][p];

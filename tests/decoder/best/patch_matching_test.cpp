@@ -1,4 +1,4 @@
-#include "decoder/best/block_matching.h"
+#include "decoder/best/patch_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ namespace {
 constexpr FrameShape kShape{.rows = 20, .cols = 26, .planes = 1};
 constexpr int kSlots = 5;
 
-double difference(const FluxVideo& image, int slot, int row, int col, const BlockOffset& to) {
+double difference(const FluxVideo& image, int slot, int row, int col, const PatchOffset& to) {
     double sum = 0;
-    for (int r = 0; r < kBlockSide; ++r)
-        for (int c = 0; c < kBlockSide; ++c) {
+    for (int r = 0; r < kPatchSide; ++r)
+        for (int c = 0; c < kPatchSide; ++c) {
             const auto at = [&](int s, int y, int x) {
                 return static_cast<double>(image.plane(s, 0).row(y)[static_cast<std::size_t>(x)]);
             };
@@ -30,16 +30,16 @@ double difference(const FluxVideo& image, int slot, int row, int col, const Bloc
     return sum;
 }
 
-TEST(BlockGridTest, EveryPixelIsInABlockForEveryStepAndOffset) {
+TEST(ReferenceGridTest, EveryPixelIsInAPatchForEveryStepAndOffset) {
     for (const int side : {6, 7, 11, 12, 26})
-        for (int step = 1; step <= kBlockSide; ++step)
+        for (int step = 1; step <= kPatchSide; ++step)
             for (int offset = 0; offset < step; ++offset) {
-                const BlockGrid grid{{side, side, 1}, step, offset};
+                const ReferenceGrid grid{{side, side, 1}, step, offset};
                 std::vector<int> covered(static_cast<std::size_t>(side));
                 for (int i = 0; i < grid.rows(); ++i) {
                     ASSERT_GE(grid.row(i), 0);
-                    ASSERT_LE(grid.row(i), side - kBlockSide);
-                    for (int r = 0; r < kBlockSide; ++r)
+                    ASSERT_LE(grid.row(i), side - kPatchSide);
+                    for (int r = 0; r < kPatchSide; ++r)
                         ++covered[static_cast<std::size_t>(grid.row(i) + r)];
                 }
                 EXPECT_GT(*std::ranges::min_element(covered), 0)
@@ -47,11 +47,11 @@ TEST(BlockGridTest, EveryPixelIsInABlockForEveryStepAndOffset) {
             }
 }
 
-TEST(BlockMatchingTest, GroupsAreTheMostSimilarBlocksInReach) {
+TEST(PatchMatchingTest, GroupsAreTheMostSimilarPatchesInReach) {
     const FluxVideo image = random_video(kSlots, kShape, 5);
-    const BlockGrid grid{kShape, 4, 1};
+    const ReferenceGrid grid{kShape, 4, 1};
     const MatchingOptions options{.slots = 1, .own_radius = 2, .path_radius = 1};
-    const BlockGroups groups = match_blocks(image, grid, {}, options);
+    const PatchGroups groups = match_patches(image, grid, {}, options);
     constexpr int kSlot = 2;
     for (int i = 0; i < grid.rows(); ++i)
         for (int j = 0; j < grid.cols(); ++j) {
@@ -62,8 +62,8 @@ TEST(BlockMatchingTest, GroupsAreTheMostSimilarBlocksInReach) {
                         const int row = grid.row(i) + r;
                         const int col = grid.col(j) + c;
                         if (s != 0 && std::max(std::abs(r), std::abs(c)) > 1) continue;
-                        if (row < 0 || col < 0 || row + kBlockSide > kShape.rows ||
-                            col + kBlockSide > kShape.cols)
+                        if (row < 0 || col < 0 || row + kPatchSide > kShape.rows ||
+                            col + kPatchSide > kShape.cols)
                             continue;
                         all.push_back(
                             difference(image, kSlot, grid.row(i), grid.col(j),
@@ -71,35 +71,35 @@ TEST(BlockMatchingTest, GroupsAreTheMostSimilarBlocksInReach) {
                                         static_cast<std::int16_t>(c)}));
                     }
             std::ranges::sort(all);
-            const BlockGroup& group = groups.group(kSlot, i, j);
+            const PatchGroup& group = groups.group(kSlot, i, j);
             for (std::size_t k = 0; k < group.size(); ++k)
                 EXPECT_NEAR(difference(image, kSlot, grid.row(i), grid.col(j), group[k]), all[k],
                             1e-4);
         }
 }
 
-TEST(BlockMatchingTest, AGroupBeginsWithItsReferenceEvenWhereAllIsEqual) {
+TEST(PatchMatchingTest, AGroupBeginsWithItsReferenceEvenWhereAllIsEqual) {
     const FluxVideo flat(kSlots, kShape);
-    const BlockGroups groups = match_blocks(flat, {kShape, 5, 0}, {}, {});
-    for (const BlockGroup& group : groups.groups) {
+    const PatchGroups groups = match_patches(flat, {kShape, 5, 0}, {}, {});
+    for (const PatchGroup& group : groups.groups) {
         EXPECT_EQ(std::tuple(group[0].slots, group[0].rows, group[0].cols), std::tuple(0, 0, 0));
         std::set<std::tuple<int, int, int>> different;
-        for (const BlockOffset& block : group)
-            different.insert({block.slots, block.rows, block.cols});
+        for (const PatchOffset& patch : group)
+            different.insert({patch.slots, patch.rows, patch.cols});
         EXPECT_EQ(different.size(), group.size());
     }
 }
 
-TEST(BlockMatchingTest, TooFewBlocksAreRepeated) {
+TEST(PatchMatchingTest, TooFewPatchesAreRepeated) {
     const FluxVideo one = random_video(1, {6, 6, 1}, 1);
-    const BlockGroups groups = match_blocks(one, {{6, 6, 1}, 5, 0}, {}, {});
+    const PatchGroups groups = match_patches(one, {{6, 6, 1}, 5, 0}, {}, {});
     ASSERT_EQ(groups.groups.size(), 1U);
-    for (const BlockOffset& block : groups.groups[0])
-        EXPECT_EQ(std::tuple(block.slots, block.rows, block.cols), std::tuple(0, 0, 0));
+    for (const PatchOffset& patch : groups.groups[0])
+        EXPECT_EQ(std::tuple(patch.slots, patch.rows, patch.cols), std::tuple(0, 0, 0));
 }
 
 /// The image moves by (1, 2) pixels a slot, as the motion says.
-TEST(BlockMatchingTest, BlocksAreFoundAlongMotion) {
+TEST(PatchMatchingTest, PatchesAreFoundAlongMotion) {
     constexpr FrameShape kLarge{.rows = 40, .cols = 60, .planes = 1};
     const std::vector<float> world = random_values(60 * 80, 0, 1, 9);
     FluxVideo image(kSlots, kLarge);
@@ -116,26 +116,26 @@ TEST(BlockMatchingTest, BlocksAreFoundAlongMotion) {
             for (int col = 0; col < kLarge.cols; ++col)
                 image.plane(slot, 0).row(row)[static_cast<std::size_t>(col)] =
                     world[static_cast<std::size_t>((row - slot + 8) * 80 + col - 2 * slot + 16)];
-    const BlockGrid grid{kLarge, 5, 0};
-    const BlockGroups groups =
-        match_blocks(image, grid, motion, {.slots = 4, .own_radius = 1, .path_radius = 0});
-    const BlockGroup& group = groups.group(0, 3, 4);  // row 15, col 20
+    const ReferenceGrid grid{kLarge, 5, 0};
+    const PatchGroups groups =
+        match_patches(image, grid, motion, {.slots = 4, .own_radius = 1, .path_radius = 0});
+    const PatchGroup& group = groups.group(0, 3, 4);  // row 15, col 20
     for (int slot = 0; slot < kSlots; ++slot) {
-        const BlockOffset& block = group[static_cast<std::size_t>(slot)];
-        EXPECT_EQ(block.rows, block.slots);
-        EXPECT_EQ(block.cols, 2 * block.slots);
-        EXPECT_EQ(difference(image, 0, 15, 20, block), 0);
+        const PatchOffset& patch = group[static_cast<std::size_t>(slot)];
+        EXPECT_EQ(patch.rows, patch.slots);
+        EXPECT_EQ(patch.cols, 2 * patch.slots);
+        EXPECT_EQ(difference(image, 0, 15, 20, patch), 0);
     }
 }
 
-TEST(BlockMatchingTest, OneAndTwoThreadsFindTheSame) {
+TEST(PatchMatchingTest, OneAndTwoThreadsFindTheSame) {
     const FluxVideo image = random_video(kSlots, kShape, 6);
     const auto find = [&](int threads) {
         const ThreadLimit limit(threads);
         std::vector<int> all;
-        for (const BlockGroup& group : match_blocks(image, {kShape, 3, 2}, {}, {}).groups)
-            for (const BlockOffset& block : group)
-                all.insert(all.end(), {block.slots, block.rows, block.cols});
+        for (const PatchGroup& group : match_patches(image, {kShape, 3, 2}, {}, {}).groups)
+            for (const PatchOffset& patch : group)
+                all.insert(all.end(), {patch.slots, patch.rows, patch.cols});
         return all;
     };
     EXPECT_EQ(find(1), find(2));

@@ -1,11 +1,11 @@
-#include "decoder/best/block_matching.h"
+#include "decoder/best/patch_matching.h"
 
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include "core/parallel.h"
-#include "decoder/best/block_kernels.h"
+#include "decoder/best/patch_kernels.h"
 
 namespace stipple {
 namespace {
@@ -14,7 +14,7 @@ std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
-struct BlockPlace {
+struct PatchPlace {
     int slot = 0;
     int row = 0;
     int col = 0;
@@ -25,7 +25,7 @@ struct ImageSize {
     FrameShape shape;
 };
 
-/// Order (slot, row, col), and two values more, which a block in the last corner reads beyond it.
+/// Order (slot, row, col), and two values more, which a patch in the last corner reads beyond it.
 std::vector<float> first_planes(const FluxVideo& video) {
     const std::size_t pixels = video.shape().pixels();
     std::vector<float> image;
@@ -49,7 +49,7 @@ class Matcher {
           motion_(motion),
           options_(options) {}
 
-    [[nodiscard]] BlockGroup group(const BlockPlace& reference) {
+    [[nodiscard]] PatchGroup group(const PatchPlace& reference) {
         reference_ = reference;
         offsets_.assign(1, {});  // first among equals, so that every group has its reference
         voxels_.assign(1, static_cast<std::uint32_t>(voxel(reference)));
@@ -62,18 +62,18 @@ class Matcher {
     }
 
   private:
-    [[nodiscard]] std::size_t voxel(const BlockPlace& at) const {
+    [[nodiscard]] std::size_t voxel(const PatchPlace& at) const {
         return (index(at.slot) * index(shape_.rows) + index(at.row)) * index(shape_.cols) +
                index(at.col);
     }
 
-    void add_around(const BlockPlace& centre, int radius) {
+    void add_around(const PatchPlace& centre, int radius) {
         const auto last = [&](int at, int side) {
-            return std::min(at + radius, side - kBlockSide);
+            return std::min(at + radius, side - kPatchSide);
         };
-        const int first_row = std::max({centre.row - radius, reference_.row - kMaxBlockRows, 0});
+        const int first_row = std::max({centre.row - radius, reference_.row - kMaxPatchRows, 0});
         const int last_row =
-            std::min(last(centre.row, shape_.rows), reference_.row + kMaxBlockRows);
+            std::min(last(centre.row, shape_.rows), reference_.row + kMaxPatchRows);
         for (int row = first_row; row <= last_row; ++row)
             for (int col = std::max(centre.col - radius, 0); col <= last(centre.col, shape_.cols);
                  ++col) {
@@ -88,15 +88,15 @@ class Matcher {
             }
     }
 
-    /// Adds the blocks around the path that motion takes the middle of the reference along.
+    /// Adds the patches around the path that motion takes the middle of the reference along.
     void follow(int step) {
         constexpr int kUnit = MotionField::kShiftsPerPixel;
         const auto pixel = [](int position, int side) {
             return std::clamp((position + kUnit / 2) / kUnit, 0, side - 1);
         };
-        int row = (reference_.row + kBlockSide / 2) * kUnit;
-        int col = (reference_.col + kBlockSide / 2) * kUnit;
-        BlockPlace middle = reference_;
+        int row = (reference_.row + kPatchSide / 2) * kUnit;
+        int col = (reference_.col + kPatchSide / 2) * kUnit;
+        PatchPlace middle = reference_;
         for (int i = 0; i < options_.slots; ++i) {
             middle.row = pixel(row, shape_.rows);
             middle.col = pixel(col, shape_.cols);
@@ -107,21 +107,21 @@ class Matcher {
                 }
             middle.slot += step;
             if (middle.slot < 0 || middle.slot >= slots_) return;
-            add_around({middle.slot, pixel(row, shape_.rows) - kBlockSide / 2,
-                        pixel(col, shape_.cols) - kBlockSide / 2},
+            add_around({middle.slot, pixel(row, shape_.rows) - kPatchSide / 2,
+                        pixel(col, shape_.cols) - kPatchSide / 2},
                        options_.path_radius);
         }
     }
 
-    [[nodiscard]] BlockGroup most_similar() {
+    [[nodiscard]] PatchGroup most_similar() {
         order_.clear();
         order_.reserve(differences_.size());
         for (std::size_t i = 0; i < differences_.size(); ++i)
             order_.emplace_back(differences_[i], static_cast<std::uint32_t>(i));
-        const auto count = std::min<std::size_t>(order_.size(), kGroupBlocks);
+        const auto count = std::min<std::size_t>(order_.size(), kGroupPatches);
         std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
                           order_.end());
-        BlockGroup group;
+        PatchGroup group;
         for (std::size_t i = 0; i < group.size(); ++i)
             group[i] = offsets_[order_[i % count].second];
         return group;
@@ -132,8 +132,8 @@ class Matcher {
     int slots_;
     std::span<const MotionField> motion_;
     MatchingOptions options_;
-    BlockPlace reference_;
-    std::vector<BlockOffset> offsets_;
+    PatchPlace reference_;
+    std::vector<PatchOffset> offsets_;
     std::vector<std::uint32_t> voxels_;
     std::vector<float> differences_;
     std::vector<std::pair<float, std::uint32_t>> order_;
@@ -141,18 +141,18 @@ class Matcher {
 
 }  // namespace
 
-BlockGroups match_blocks(const FluxVideo& video, const BlockGrid& grid,
-                         std::span<const MotionField> motion, const MatchingOptions& options) {
+PatchGroups match_patches(const FluxVideo& video, const ReferenceGrid& grid,
+                          std::span<const MotionField> motion, const MatchingOptions& options) {
     const FrameShape shape = grid.shape;
-    assert(shape.rows >= kBlockSide && shape.cols >= kBlockSide);
+    assert(shape.rows >= kPatchSide && shape.cols >= kPatchSide);
     const std::vector<float> image = first_planes(video);
     assert(image.size() <= UINT32_MAX);
-    BlockGroups result{.grid = grid,
-                       .groups = std::vector<BlockGroup>(index(video.slots()) * index(grid.rows()) *
+    PatchGroups result{.grid = grid,
+                       .groups = std::vector<PatchGroup>(index(video.slots()) * index(grid.rows()) *
                                                          index(grid.cols()))};
     parallel_for(0, video.slots() * grid.rows(), [&](int i) {
         Matcher matcher(image, {video.slots(), shape}, motion, options);
-        const BlockPlace row{.slot = i / grid.rows(), .row = grid.row(i % grid.rows()), .col = 0};
+        const PatchPlace row{.slot = i / grid.rows(), .row = grid.row(i % grid.rows()), .col = 0};
         for (int col = 0; col < grid.cols(); ++col)
             result.groups[index(i) * index(grid.cols()) + index(col)] =
                 matcher.group({row.slot, row.row, grid.col(col)});

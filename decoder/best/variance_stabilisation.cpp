@@ -1,4 +1,4 @@
-#include "decoder/best/stabilised_light.h"
+#include "decoder/best/variance_stabilisation.h"
 
 #include <algorithm>
 #include <cassert>
@@ -17,8 +17,8 @@ PlaneTriple planes_of(std::span<float> frame) {
 
 }  // namespace
 
-void stabilise(std::span<const float> light, int planes, RootScale scale,
-               std::span<float> stabilised) {
+void stabilise_variance(std::span<const float> light, int planes, RootScale scale,
+                        std::span<float> stabilised) {
     assert(stabilised.size() == light.size());
     for (std::size_t i = 0; i < light.size(); ++i)
         stabilised[i] = 2 * std::sqrt(std::max(light[i], scale.least) + scale.offset);

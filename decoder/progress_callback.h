@@ -5,6 +5,6 @@
 namespace stipple {
 
 /// Told now and then which fraction of the work is done; false stops.
-using Checkpoint = std::function<bool(double fraction)>;
+using ProgressCallback = std::function<bool(double fraction)>;
 
 }  // namespace stipple
