@@ -7,7 +7,6 @@
 #include <list>
 #include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include "core/error.h"
@@ -88,22 +87,27 @@ std::string_view type_name(const toml::node& value) {
     }
 }
 
+template <typename Value>
+std::string range_text(Value min, Value max) {
+    return fmt::format("{}..{}", min, max);
+}
+
 }  // namespace
 
 struct Config::Impl {
     std::string file;
     std::list<toml::table> tables;  ///< what the entries point into
     Entries entries;
-    std::set<std::string, std::less<>> asked;
+    std::map<std::string, KnownKey, std::less<>> asked;
 
     void set(const std::string& assignment);
     /// The value of a key, or null; from now on the key is known.
-    const toml::node* find(std::string_view key);
+    const toml::node* find(std::string_view key, std::string fallback = {}, std::string range = {});
     [[nodiscard]] std::string place(std::string_view key) const;
 
     template <typename Value>
-    [[noreturn]] void fail_range(std::string_view key, Value value, Value least, Value most) const {
-        throw InputError(place(key), fmt::format("{} is outside {}..{}", value, least, most));
+    [[noreturn]] void fail_range(std::string_view key, Value value, Value min, Value max) const {
+        throw InputError(place(key), fmt::format("{} is outside {}", value, range_text(min, max)));
     }
     [[noreturn]] void fail_type(std::string_view key, const toml::node& value,
                                 std::string_view wanted) const {
@@ -120,8 +124,9 @@ void Config::Impl::set(const std::string& assignment) {
     entries[key] = Entry{tables.back().get("value"), "--set", false, kAfterFile + tables.size()};
 }
 
-const toml::node* Config::Impl::find(std::string_view key) {
-    asked.emplace(key);
+const toml::node* Config::Impl::find(std::string_view key, std::string fallback,
+                                     std::string range) {
+    asked.try_emplace(std::string(key), std::string(key), std::move(fallback), std::move(range));
     const auto found = entries.find(key);
     if (found == entries.end()) return nullptr;
     found->second.known = true;
@@ -167,34 +172,35 @@ Config::~Config() = default;
 Config::Config(Config&&) noexcept = default;
 Config& Config::operator=(Config&&) noexcept = default;
 
-double Config::number(std::string_view key, double fallback, double least, double most) {
-    const toml::node* node = impl_->find(key);
+double Config::number(std::string_view key, double fallback, double min, double max) {
+    const toml::node* node =
+        impl_->find(key, fmt::format("{:.7g}", fallback), range_text(min, max));
     if (node == nullptr) return fallback;
     if (!node->is_number()) impl_->fail_type(key, *node, "a number");
     const double value = *node->value<double>();
-    if (!(value >= least && value <= most)) impl_->fail_range(key, value, least, most);
+    if (!(value >= min && value <= max)) impl_->fail_range(key, value, min, max);
     return value;
 }
 
-std::int64_t Config::integer(std::string_view key, std::int64_t fallback, std::int64_t least,
-                             std::int64_t most) {
-    const toml::node* node = impl_->find(key);
+std::int64_t Config::integer(std::string_view key, std::int64_t fallback, std::int64_t min,
+                             std::int64_t max) {
+    const toml::node* node = impl_->find(key, fmt::format("{}", fallback), range_text(min, max));
     if (node == nullptr) return fallback;
     if (!node->is_integer()) impl_->fail_type(key, *node, "an integer");
     const std::int64_t value = *node->value<std::int64_t>();
-    if (value < least || value > most) impl_->fail_range(key, value, least, most);
+    if (value < min || value > max) impl_->fail_range(key, value, min, max);
     return value;
 }
 
 bool Config::boolean(std::string_view key, bool fallback) {
-    const toml::node* node = impl_->find(key);
+    const toml::node* node = impl_->find(key, fallback ? "true" : "false");
     if (node == nullptr) return fallback;
     if (!node->is_boolean()) impl_->fail_type(key, *node, "true or false");
     return *node->value<bool>();
 }
 
 std::string Config::text(std::string_view key, std::string_view fallback) {
-    const toml::node* node = impl_->find(key);
+    const toml::node* node = impl_->find(key, std::string(fallback));
     if (node == nullptr) return std::string(fallback);
     if (!node->is_string()) impl_->fail_type(key, *node, "text");
     return *node->value<std::string>();
@@ -209,15 +215,15 @@ std::string Config::choice(std::string_view key, std::string_view fallback,
     return value;
 }
 
-std::vector<int> Config::integers(std::string_view key, std::vector<int> fallback, int least,
-                                  int most) {
-    const toml::node* node = impl_->find(key);
+std::vector<int> Config::integers(std::string_view key, std::vector<int> fallback, int min,
+                                  int max) {
+    const toml::node* node = impl_->find(key, {}, range_text(min, max));
     if (node == nullptr) return fallback;
     std::vector<int> values;
     const auto take = [&](const toml::node& item) {
         if (!item.is_integer()) impl_->fail_type(key, item, "a list of integers");
         const std::int64_t value = *item.value<std::int64_t>();
-        if (value < least || value > most) impl_->fail_range<std::int64_t>(key, value, least, most);
+        if (value < min || value > max) impl_->fail_range<std::int64_t>(key, value, min, max);
         values.push_back(static_cast<int>(value));
     };
     if (const toml::array* list = node->as_array())
@@ -241,15 +247,15 @@ std::vector<std::string> Config::texts(std::string_view key) {
     return values;
 }
 
-std::vector<double> Config::numbers(std::string_view key, std::vector<double> fallback,
-                                    double least, double most) {
-    const toml::node* node = impl_->find(key);
+std::vector<double> Config::numbers(std::string_view key, std::vector<double> fallback, double min,
+                                    double max) {
+    const toml::node* node = impl_->find(key, {}, range_text(min, max));
     if (node == nullptr) return fallback;
     std::vector<double> values;
     const auto take = [&](const toml::node& item) {
         if (!item.is_number()) impl_->fail_type(key, item, "a number or a list of numbers");
         const double value = *item.value<double>();
-        if (!(value >= least && value <= most)) impl_->fail_range(key, value, least, most);
+        if (!(value >= min && value <= max)) impl_->fail_range(key, value, min, max);
         values.push_back(value);
     };
     if (const toml::array* list = node->as_array())
@@ -298,12 +304,19 @@ std::string Config::as_toml(std::string_view section) const {
 }
 
 void Config::reject_unknown_keys() const {
-    const std::vector<std::string> asked(impl_->asked.begin(), impl_->asked.end());
+    std::vector<std::string> asked;
+    for (const auto& [key, known] : impl_->asked) asked.push_back(key);
     for (const auto& [key, entry] : impl_->entries) {
         if (entry.known) continue;
         throw InputError(place(key),
                          asked.empty() ? "is unknown" : "is unknown; " + suggestion(key, asked));
     }
+}
+
+std::vector<KnownKey> Config::known_keys() const {
+    std::vector<KnownKey> keys;
+    for (const auto& [key, known] : impl_->asked) keys.push_back(known);
+    return keys;
 }
 
 std::string Config::place(std::string_view key) const {

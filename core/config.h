@@ -10,6 +10,13 @@
 
 namespace stipple {
 
+/// A key that a reader knows, as it asked for it.
+struct KnownKey {
+    std::string name;
+    std::string fallback;  ///< of numbers and texts; of lists empty
+    std::string range;     ///< "min..max" of numbers and lists of numbers
+};
+
 /// Settings from a TOML file with `key=value` overrides laid over it. A module asks for each key
 /// it knows by its dotted name; what nobody asked for is an error, so a misspelt key never passes.
 class Config {
@@ -25,10 +32,10 @@ class Config {
     Config& operator=(Config&&) noexcept;
 
     /// The value of `key`, or `fallback` if absent. \throws InputError naming file, line and key
-    /// if the type is wrong or the value lies outside [least, most].
-    [[nodiscard]] double number(std::string_view key, double fallback, double least, double most);
+    /// if the type is wrong or the value lies outside [min, max].
+    [[nodiscard]] double number(std::string_view key, double fallback, double min, double max);
     [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback,
-                                       std::int64_t least, std::int64_t most);
+                                       std::int64_t min, std::int64_t max);
     [[nodiscard]] bool boolean(std::string_view key, bool fallback);
     [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
     /// One of `choices`. \throws InputError listing them.
@@ -36,10 +43,10 @@ class Config {
                                      const std::vector<std::string>& choices);
     /// One integer or a list of integers.
     [[nodiscard]] std::vector<int> integers(std::string_view key, std::vector<int> fallback,
-                                            int least, int most);
+                                            int min, int max);
     /// One number or a list of numbers.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback,
-                                              double least, double most);
+                                              double min, double max);
     /// Whether the key is given; asking does not make it known.
     [[nodiscard]] bool contains(std::string_view key) const;
 
@@ -59,6 +66,9 @@ class Config {
     /// \throws InputError for a key that was given but never asked for, with the nearest known
     /// key as a suggestion.
     void reject_unknown_keys() const;
+
+    /// What has been asked for, by key.
+    [[nodiscard]] std::vector<KnownKey> known_keys() const;
 
     /// "file:line: key" (or "--set key") for messages.
     [[nodiscard]] std::string place(std::string_view key) const;
