@@ -51,10 +51,12 @@ std::map<std::string, std::vector<std::string>> key_table(const std::string& pag
                                                           std::string_view heading) {
     std::ifstream file(project_path(page));
     std::map<std::string, std::vector<std::string>> table;
-    bool inside = false;
+    bool inside = heading.empty(), of_keys = false;
     for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("## ")) inside = line.substr(3) == heading;
-        if (!inside || !line.starts_with("| `")) continue;
+        if (line.starts_with("## ")) inside = heading.empty() || line.substr(3) == heading;
+        if (line.starts_with("| key")) of_keys = line.find("| default |") != std::string::npos;
+        if (!line.starts_with('|')) of_keys = false;
+        if (!inside || !of_keys || !line.starts_with("| `")) continue;
         const auto row = split(line.substr(1), '|');
         const auto keys = split(row[0], ',');
         for (std::size_t key = 0; key < keys.size(); ++key) {
@@ -81,8 +83,8 @@ void expect_documented(const std::vector<KnownKey>& known,
         const auto cell = [&](int index) {
             return index < 0 ? std::string() : row->second.at(static_cast<std::size_t>(index));
         };
-        if (const auto value = number(key.fallback); value && !cell(fallback_cell).empty()) {
-            EXPECT_EQ(number(cell(fallback_cell)), value) << key.name;
+        if (const auto value = number(cell(fallback_cell))) {
+            EXPECT_EQ(number(key.fallback), value) << key.name;
         }
         if (const auto values = range(key.range); values && range_cell >= 0) {
             EXPECT_EQ(range(cell(range_cell)), values) << key.name;
