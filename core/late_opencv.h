@@ -4,22 +4,10 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/plane.h"
 
 namespace stipple {
-
-/// The pixels of a PNG file.
-struct PngPixels {
-    int rows = 0;
-    int cols = 0;
-    int channels = 1;  ///< of colour: blue, green, red
-    int bytes_a_sample = 1;
-    std::vector<std::uint8_t> bytes;  ///< row after row; samples of 2 bytes as the machine has them
-};
-
-enum class PngLayout { kAsStored, kGrey, kColour };
 
 struct FilmFormat {
     int rows = 0;
@@ -34,9 +22,6 @@ using FilmFrames = std::function<void(std::span<std::uint8_t>)>;
 /// They are no part of the program but of libstipple_opencv.so, which is loaded at the first use: a
 /// start takes a third of the time. Its functions throw what OpenCV throws.
 struct LateOpenCv {
-    /// Nothing if the file cannot be decoded.
-    PngPixels (*decode_png)(std::span<const std::uint8_t> file, PngLayout layout);
-    std::vector<std::uint8_t> (*encode_png)(PngPixels& pixels);
     /// Nothing if no codec can write such a film there.
     FilmFrames (*create_film)(const std::string& file, const FilmFormat& format);
     /// Dense flow from image to image by TV-L1: (x, y) in pixels for each pixel.

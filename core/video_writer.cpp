@@ -70,8 +70,9 @@ void VideoWriter::write(std::span<const float> frame) {
     const FrameShape shape = impl_->shape;
     tone_map_frame(frame, shape, {impl_->pixels.data, shape.sites()});
     try {
-        cv::Mat colour = impl_->pixels;
-        if (shape.planes == 1) cv::cvtColor(impl_->pixels, colour, cv::COLOR_GRAY2BGR);
+        cv::Mat colour;
+        cv::cvtColor(impl_->pixels, colour,
+                     shape.planes == 1 ? cv::COLOR_GRAY2BGR : cv::COLOR_RGB2BGR);
         const cv::Size size = impl_->encoded_size();
         cv::copyMakeBorder(colour, impl_->colour, 0, size.height - shape.rows, 0,
                            size.width - shape.cols, cv::BORDER_REPLICATE);
