@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/interleaved.h"
+#include "core/late_ffmpeg.h"
 #include "core/light.h"
 
 extern "C" {
@@ -20,19 +21,23 @@ extern "C" {
 namespace stipple {
 namespace {
 
+STIPPLE_LATE(av_color_space_name);
+STIPPLE_LATE(av_color_transfer_name);
+STIPPLE_LATE(av_frame_alloc);
+STIPPLE_LATE(av_frame_get_buffer);
+STIPPLE_LATE(av_pix_fmt_desc_get);
+STIPPLE_LATE(sws_getCoefficients);
+STIPPLE_LATE(sws_getContext);
+STIPPLE_LATE(sws_isSupportedInput);
+STIPPLE_LATE(sws_scale);
+STIPPLE_LATE(sws_setColorspaceDetails);
+
 enum class Colours { kGrey, kYcbcr, kRgb };
 
 /// Y' = red R + (1 - red - blue) G + blue B.
 struct LumaWeights {
     float red;
     float blue;
-};
-
-struct SwsDeleter {
-    void operator()(SwsContext* context) const { sws_freeContext(context); }
-};
-struct FrameDeleter {
-    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
 
 const AVPixFmtDescriptor& checked_format(const AVFrame& frame, const std::string& name) {
@@ -146,8 +151,8 @@ struct VideoPlanes::Impl {
     Scale scale{16, true};
     SourceTraits traits;
     /// The frame as it is stored below, not turned; RGB may be of bytes.
-    std::unique_ptr<AVFrame, FrameDeleter> words{av_frame_alloc()};
-    std::unique_ptr<SwsContext, SwsDeleter> to_words;
+    FfmpegPtr<AVFrame> words{av_frame_alloc()};
+    FfmpegPtr<SwsContext> to_words;
 
     void prepare_words(bool deep, const std::string& name);
     void store_row(int row, std::span<float> planes) const;

@@ -49,7 +49,7 @@ void tv_l1_flow(cv::Mat from, cv::Mat to, cv::Mat& flow) {
         return PlaneView(image.ptr<float>(), image.rows, image.cols);
     };
     flow.create(from.size(), CV_32FC2);
-    late_opencv().tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
+    tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
 }
 
 Flows tv_l1_flows(const FluxVideo& video, const KeepGoing& keep_going) {
