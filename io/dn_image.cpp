@@ -26,12 +26,12 @@ DnImage dn_image(FrameShape shape, const void* samples) {
 }
 
 DnImage read_dn_png(const std::string& place) {
-    const PngPixels image =
-        decode_png(critical_png_chunks(read_file(place), place), PngLayout::kAsStored, place);
-    if (image.channels != 1) fail_kind(place);
-    const FrameShape shape{.rows = image.rows, .cols = image.cols, .planes = 1};
-    if (image.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, image.bytes.data());
-    return dn_image<std::uint8_t>(shape, image.bytes.data());
+    const PngImage png = decode_png(read_file(place), place);
+    if (!png.as_stored) fail_kind(place);
+    const PngPixels& pixels = png.pixels;
+    const FrameShape shape{.rows = pixels.rows, .cols = pixels.cols, .planes = 1};
+    if (pixels.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, pixels.bytes.data());
+    return dn_image<std::uint8_t>(shape, pixels.bytes.data());
 }
 
 DnImage read_dn_tiff(const std::filesystem::path& file) {

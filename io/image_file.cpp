@@ -18,20 +18,16 @@ namespace stipple {
 namespace {
 
 void read_png(const std::string& place, Picture& picture) {
-    const PngChunks png = critical_png_chunks(read_file(place), place);
-    const PngPixels pixels =
-        decode_png(png, png.grey ? PngLayout::kGrey : PngLayout::kColour, place);
+    const PngImage png = decode_png(read_file(place), place);
+    const PngPixels& pixels = png.pixels;
     const int planes = pixels.channels;
-    picture.resize(checked_shape(static_cast<std::uint64_t>(pixels.rows),
-                                 static_cast<std::uint64_t>(pixels.cols),
-                                 static_cast<std::uint64_t>(planes), place));
-    picture.traits = {.gamma_coded = png.gamma_coded, .has_alpha = png.has_alpha};
+    picture.resize({pixels.rows, pixels.cols, planes});
+    picture.traits = png.traits;
     const auto bytes = std::as_bytes(std::span(pixels.bytes));
-    const InterleavedOrder order{planes, true};
     if (pixels.bytes_a_sample == 2)
-        split_planes<std::uint16_t>(bytes, order, planes, picture.values, UnitScale());
+        split_planes<std::uint16_t>(bytes, planes, planes, picture.values, UnitScale());
     else
-        split_planes<std::uint8_t>(bytes, order, planes, picture.values, UnitScale());
+        split_planes<std::uint8_t>(bytes, planes, planes, picture.values, UnitScale());
 }
 
 }  // namespace
@@ -44,7 +40,7 @@ void to_picture(const TiffPixels& pixels, Picture& picture) {
                       .floating = pixels.sample == Sample::kF32,
                       .has_alpha = pixels.channels > planes};
     const auto split = [&]<typename Stored>(Stored, auto to_float) {
-        split_planes<Stored>(pixels.bytes, {pixels.channels}, planes, picture.values, to_float);
+        split_planes<Stored>(pixels.bytes, pixels.channels, planes, picture.values, to_float);
     };
     switch (pixels.sample) {
         case Sample::kU8:

@@ -6,24 +6,17 @@
 
 namespace stipple {
 
-/// Order of the samples of one pixel in interleaved data.
-struct InterleavedOrder {
-    int channels = 1;
-    bool blue_first = false;  ///< BGR or BGRA, as OpenCV has it
-};
-
-/// Turns interleaved samples into planes: planes[p][i] = to_float(sample of plane p of pixel i).
+/// Turns samples of interleaved channels into planes: planes[p][i] = to_float(sample p of pixel i).
 /// Channels beyond the `plane_count` first ones (alpha) are left out.
-/// Precondition: bytes.size() == pixels * order.channels * sizeof(Sample),
+/// Precondition: bytes.size() == pixels * channels * sizeof(Sample),
 /// planes.size() == pixels * plane_count, plane_count is 1 or 3.
 template <typename Sample, typename ToFloat>
-void split_planes(std::span<const std::byte> bytes, InterleavedOrder order, int plane_count,
+void split_planes(std::span<const std::byte> bytes, int channels, int plane_count,
                   std::span<float> planes, ToFloat to_float) {
     const std::size_t pixels = planes.size() / static_cast<std::size_t>(plane_count);
-    const std::size_t step = static_cast<std::size_t>(order.channels) * sizeof(Sample);
+    const std::size_t step = static_cast<std::size_t>(channels) * sizeof(Sample);
     for (int p = 0; p < plane_count; ++p) {
-        const int channel = order.blue_first && plane_count == 3 ? 2 - p : p;
-        const std::byte* from = bytes.data() + static_cast<std::size_t>(channel) * sizeof(Sample);
+        const std::byte* from = bytes.data() + static_cast<std::size_t>(p) * sizeof(Sample);
         float* to = planes.data() + static_cast<std::size_t>(p) * pixels;
         for (std::size_t i = 0; i < pixels; ++i) {
             Sample sample;

@@ -26,18 +26,17 @@ struct Cast {
 
 void to_planes(std::span<const std::byte> bytes, const NpyHeader& header, std::span<float> frame) {
     const int planes = header.shape.planes;
-    const InterleavedOrder order{planes, false};
     switch (header.type) {
         case NpyType::kUint8:
-            return split_planes<std::uint8_t>(bytes, order, planes, frame, UnitScale());
+            return split_planes<std::uint8_t>(bytes, planes, planes, frame, UnitScale());
         case NpyType::kUint16:
-            return split_planes<std::uint16_t>(bytes, order, planes, frame, UnitScale());
+            return split_planes<std::uint16_t>(bytes, planes, planes, frame, UnitScale());
         case NpyType::kHalf:
-            return split_planes<half>(bytes, order, planes, frame, Cast());
+            return split_planes<half>(bytes, planes, planes, frame, Cast());
         case NpyType::kFloat:
-            return split_planes<float>(bytes, order, planes, frame, Cast());
+            return split_planes<float>(bytes, planes, planes, frame, Cast());
         case NpyType::kDouble:
-            return split_planes<double>(bytes, order, planes, frame, Cast());
+            return split_planes<double>(bytes, planes, planes, frame, Cast());
     }
 }
 

@@ -24,15 +24,14 @@ inline constexpr float kWhiteLight = 4.0F;
     return static_cast<std::uint8_t>(std::lround(255.0F * std::pow(compressed, 1.0F / 2.2F)));
 }
 
-/// A frame (plane, row, col) as interleaved 8-bit pixels: grey, or blue, green, red as OpenCV has
-/// it. Precondition: both hold shape.sites() values.
+/// A frame (plane, row, col) as interleaved 8-bit pixels: grey, or red, green, blue.
+/// Precondition: both hold shape.sites() values.
 inline void tone_map_frame(std::span<const float> frame, FrameShape shape,
                            std::span<std::uint8_t> pixels) {
     const auto planes = static_cast<std::size_t>(shape.planes);
     for (std::size_t plane = 0; plane < planes; ++plane)
         for (std::size_t i = 0; i < shape.pixels(); ++i)
-            pixels[i * planes + (planes - 1 - plane)] =
-                tone_mapped(frame[plane * shape.pixels() + i]);
+            pixels[i * planes + plane] = tone_mapped(frame[plane * shape.pixels() + i]);
 }
 
 }  // namespace stipple

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "io/late_ffmpeg.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -20,6 +21,26 @@ extern "C" {
 
 namespace stipple {
 namespace {
+
+STIPPLE_LATE(av_dict_free);
+STIPPLE_LATE(av_dict_set);
+STIPPLE_LATE(av_display_rotation_get);
+STIPPLE_LATE(av_find_best_stream);
+STIPPLE_LATE(av_frame_alloc);
+STIPPLE_LATE(av_log_set_callback);
+STIPPLE_LATE(av_max_alloc);
+STIPPLE_LATE(av_packet_alloc);
+STIPPLE_LATE(av_packet_unref);
+STIPPLE_LATE(av_read_frame);
+STIPPLE_LATE(av_stream_get_side_data);
+STIPPLE_LATE(avcodec_alloc_context3);
+STIPPLE_LATE(avcodec_get_class);
+STIPPLE_LATE(avcodec_open2);
+STIPPLE_LATE(avcodec_parameters_to_context);
+STIPPLE_LATE(avcodec_receive_frame);
+STIPPLE_LATE(avcodec_send_packet);
+STIPPLE_LATE(avformat_find_stream_info);
+STIPPLE_LATE(avformat_open_input);
 
 /// Containers announce a number of frames or a duration, which may be off by some frames.
 constexpr double kMinFractionOfAnnounced = 0.9;
@@ -40,21 +61,6 @@ void log_to_decoder(void* context, int level, const char* /*format*/, va_list /*
     if (errors != nullptr && errors->count++ == 0) errors->first_frame = errors->next_frame;
 }
 
-struct Deleter {
-    void operator()(AVFormatContext* file) const { avformat_close_input(&file); }
-    void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-    void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-};
-template <typename Type>
-using Owned = std::unique_ptr<Type, Deleter>;
-
-std::string reason(int error) {
-    char text[AV_ERROR_MAX_STRING_SIZE] = {};
-    av_strerror(error, text, sizeof(text));
-    return text;
-}
-
 /// Some hundred bytes may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of
 /// them: none of its blocks may be larger than its share of what the input may take.
 void limit_blocks(std::uint64_t bytes) {
@@ -62,19 +68,19 @@ void limit_blocks(std::uint64_t bytes) {
     av_max_alloc(max_memory(bytes) / kBlocks);
 }
 
-Owned<AVFormatContext> open_file(const std::string& name) {
+FfmpegPtr<AVFormatContext> open_file(const std::string& name) {
     AVFormatContext* file = nullptr;
     AVDictionary* options = nullptr;
     av_dict_set(&options, "protocol_whitelist", "file", 0);
     // "file:" before it, for a name may have a colon.
     int error = avformat_open_input(&file, ("file:" + name).c_str(), nullptr, &options);
     av_dict_free(&options);
-    Owned<AVFormatContext> opened(file);
+    FfmpegPtr<AVFormatContext> opened(file);
     if (error >= 0) error = avformat_find_stream_info(file, nullptr);
     if (error < 0)
         throw InputError(name, fmt::format("cannot be read as video ({}); it is damaged, ends too "
                                            "early or is none",
-                                           reason(error)));
+                                           ffmpeg_reason(error)));
     return opened;
 }
 
@@ -90,11 +96,11 @@ void complete_colours(AVFrame& frame, const AVCodecParameters& container) {
 struct VideoDecoder::Impl {
     std::string name;
     LoggedErrors errors;
-    Owned<AVFormatContext> file;
+    FfmpegPtr<AVFormatContext> file;
     const AVStream* stream = nullptr;
-    Owned<AVCodecContext> codec;
-    Owned<AVPacket> packet{av_packet_alloc()};
-    Owned<AVFrame> frame{av_frame_alloc()};
+    FfmpegPtr<AVCodecContext> codec;
+    FfmpegPtr<AVPacket> packet{av_packet_alloc()};
+    FfmpegPtr<AVFrame> frame{av_frame_alloc()};
     bool ended = false;  ///< the file, not yet the frames
     int packets = 0;     ///< one a frame, those that an edit list hides too
     double end_s =
@@ -143,7 +149,7 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     codec->thread_count = 0;
     codec->thread_type = FF_THREAD_SLICE;  // decoders in one context each log which frame is wrong
     const int error = avcodec_open2(codec.get(), decoder, nullptr);
-    if (error < 0) throw InputError(name, "cannot be decoded: " + reason(error));
+    if (error < 0) throw InputError(name, "cannot be decoded: " + ffmpeg_reason(error));
 }
 
 /// Gives the decoder what it needs for more frames.
@@ -154,11 +160,11 @@ void VideoDecoder::Impl::send_packet() {
         error = av_read_frame(file.get(), packet.get());
         if (error >= 0) count_packet();
     } while (error >= 0 && (packet->stream_index != stream->index || packet->size == 0));
-    if (error < 0 && error != AVERROR_EOF) fail("cannot be read: " + reason(error));
+    if (error < 0 && error != AVERROR_EOF) fail("cannot be read: " + ffmpeg_reason(error));
     ended = error < 0;
     if (!ended && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0) fail("is damaged or cut short");
     error = avcodec_send_packet(codec.get(), ended ? nullptr : packet.get());
-    if (error < 0) fail("is damaged: " + reason(error));
+    if (error < 0) fail("is damaged: " + ffmpeg_reason(error));
 }
 
 void VideoDecoder::Impl::count_packet() {
@@ -234,7 +240,7 @@ const AVFrame* VideoDecoder::next() {
         impl_->check_end();
         return nullptr;
     }
-    if (error < 0) impl_->fail("is damaged: " + reason(error));
+    if (error < 0) impl_->fail("is damaged: " + ffmpeg_reason(error));
     if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
         impl_->fail("is damaged: parts of it are missing or made up");
     ++impl_->errors.next_frame;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "io/interleaved.h"
+#include "io/late_ffmpeg.h"
 
 extern "C" {
 #include <libavutil/frame.h>
@@ -20,19 +21,23 @@ extern "C" {
 namespace stipple {
 namespace {
 
+STIPPLE_LATE(av_color_space_name);
+STIPPLE_LATE(av_color_transfer_name);
+STIPPLE_LATE(av_frame_alloc);
+STIPPLE_LATE(av_frame_get_buffer);
+STIPPLE_LATE(av_pix_fmt_desc_get);
+STIPPLE_LATE(sws_getCoefficients);
+STIPPLE_LATE(sws_getContext);
+STIPPLE_LATE(sws_isSupportedInput);
+STIPPLE_LATE(sws_scale);
+STIPPLE_LATE(sws_setColorspaceDetails);
+
 enum class Colours { kGrey, kYcbcr, kRgb };
 
 /// Y' = red R + (1 - red - blue) G + blue B.
 struct LumaWeights {
     float red;
     float blue;
-};
-
-struct SwsDeleter {
-    void operator()(SwsContext* context) const { sws_freeContext(context); }
-};
-struct FrameDeleter {
-    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
 
 const AVPixFmtDescriptor& checked_format(const AVFrame& frame, const std::string& name) {
@@ -60,7 +65,7 @@ Colours colours_of(const AVPixFmtDescriptor& about) {
 LumaWeights luma_weights(const AVFrame& frame, const std::string& name) {
     constexpr LumaWeights kBt601{0.299F, 0.114F};
     constexpr LumaWeights kBt709{0.2126F, 0.0722F};
-    constexpr int kMinRowsOfBt709 = 720;
+    constexpr int kLeastRowsOfBt709 = 720;
     switch (frame.colorspace) {
         case AVCOL_SPC_BT709:
             return kBt709;
@@ -75,7 +80,7 @@ LumaWeights luma_weights(const AVFrame& frame, const std::string& name) {
             return {0.2627F, 0.0593F};
         case AVCOL_SPC_UNSPECIFIED:
         case AVCOL_SPC_RESERVED:
-            return frame.height >= kMinRowsOfBt709 ? kBt709 : kBt601;
+            return frame.height >= kLeastRowsOfBt709 ? kBt709 : kBt601;
         default:
             throw InputError(name, fmt::format("its colours are coded by the matrix \"{}\"; give "
                                                "BT.601, BT.709 or BT.2020 (not constant luminance)",
@@ -146,8 +151,8 @@ struct VideoPlanes::Impl {
     Scale scale{16, true};
     SourceTraits traits;
     /// The frame as it is stored below, not turned; RGB may be of bytes.
-    std::unique_ptr<AVFrame, FrameDeleter> words{av_frame_alloc()};
-    std::unique_ptr<SwsContext, SwsDeleter> to_words;
+    FfmpegPtr<AVFrame> words{av_frame_alloc()};
+    FfmpegPtr<SwsContext> to_words;
 
     void prepare_words(bool deep, const std::string& name);
     void store_row(int row, std::span<float> planes) const;

@@ -9,9 +9,9 @@
 
 namespace stipple {
 
-/// Writes a film for people to look at: tone-mapped (io/tone_map.h), 8 bit, H.264 where FFmpeg
-/// has an encoder for it, else MPEG-4. Odd sizes, and fewer than four columns, are
-/// padded by repeating the last row or column.
+/// Writes a film for people to look at: tone-mapped (io/tone_map.h), H.264 of 8 bits by FFmpeg's
+/// libraries, Y'CbCr by BT.709 in limited range, which it declares. Odd sizes, and fewer than four
+/// columns, are padded by repeating the last row or column. The same bits on any machine.
 class VideoWriter {
   public:
     /// Creates `file` (.mp4 or .mkv); messages say `place`. \throws DeviceError.
@@ -23,8 +23,7 @@ class VideoWriter {
 
     /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
     void write(std::span<const float> frame);
-    /// Completes the file and reads it back, because OpenCV does not say whether the disk took it.
-    /// \throws DeviceError.
+    /// Completes the file. \throws DeviceError.
     void finish();
 
   private:

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "core/late_opencv.h"
 #include "core/light.h"
 #include "core/parallel.h"
 #include "decoder/motion/motion.h"
+#include "decoder/portz2013/late_opencv.h"
 
 namespace stipple {
 namespace {
@@ -49,7 +49,7 @@ void tv_l1_flow(cv::Mat from, cv::Mat to, cv::Mat& flow) {
         return PlaneView(image.ptr<float>(), image.rows, image.cols);
     };
     flow.create(from.size(), CV_32FC2);
-    late_opencv().tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
+    tv_l1_flow(plane(from), plane(to), {flow.ptr<float>(), 2 * flow.total()});
 }
 
 Flows tv_l1_flows(const FluxVideo& video, const ProgressCallback& progress) {

@@ -11,12 +11,12 @@ COLOUR = (0xC0, 0x30, 0x60)
 HINT = "looks gamma-coded: add --transfer srgb"
 
 
-@unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
 def but_the_rate(said):
     """Without the warning that the film plays at another rate than that of the slots."""
     return "".join(line for line in said.splitlines(True) if ": plays " not in line)
 
 
+@unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
 class VideoTest(ProgramTest):
     def ffmpeg(self, *arguments, data=None):
         done = subprocess.run(["ffmpeg", "-v", "error", "-y", *map(str, arguments)], input=data,

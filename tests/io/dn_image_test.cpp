@@ -42,6 +42,9 @@ TEST(DnImageTest, RefusesWhatHoldsNoDigitalNumbersByName) {
         expect_parts(message_of<InputError>([&] { return read_dn_image(folder / name); }), parts);
     };
     refuse("colour.png", {"colour.png", "not grey"});
+    cv::imwrite((folder / "bits.png").string(), cv::Mat::ones(2, 8, CV_8UC1),
+                {cv::IMWRITE_PNG_BILEVEL, 1});
+    refuse("bits.png", {"bits.png", "is not grey with 8 or 16 bits"});
     refuse("broken.png", {"broken.png"});
     refuse("missing.png", {"missing.png"});
     refuse("video.mp4", {"video.mp4", "PNG or TIFF"});

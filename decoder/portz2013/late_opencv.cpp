@@ -1,4 +1,4 @@
-#include "core/late_opencv.h"
+#include "decoder/portz2013/late_opencv.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -9,20 +9,29 @@
 
 namespace stipple {
 namespace fs = std::filesystem;
+namespace {
 
-const LateOpenCv& late_opencv() {
+using TvL1Flow = decltype(tv_l1_flow);
+
+TvL1Flow* load() {
     constexpr const char* kName = "libstipple_opencv.so";
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
     std::string why;
     for (const fs::path& folder : {program, fs::path(STIPPLE_BUILD_DIR)}) {
-        void* const library =
-            dlopen((folder / kName).c_str(), RTLD_LAZY);  // once, then found again
-        const void* const functions = library ? dlsym(library, "stipple_late_opencv") : nullptr;
-        if (functions != nullptr) return *static_cast<const LateOpenCv*>(functions);
+        void* const library = dlopen((folder / kName).c_str(), RTLD_LAZY);
+        void* const flow = library ? dlsym(library, "stipple_tv_l1_flow") : nullptr;
+        if (flow != nullptr) return reinterpret_cast<TvL1Flow*>(flow);
         why += fmt::format("{}{}", why.empty() ? "" : "; ", dlerror());
     }
     throw DeviceError(kName, "cannot be loaded; it belongs beside the program: " + why);
+}
+
+}  // namespace
+
+void tv_l1_flow(PlaneView<float> from, PlaneView<float> to, std::span<float> flow) {
+    static TvL1Flow* const calculate = load();
+    calculate(from, to, flow);
 }
 
 }  // namespace stipple
