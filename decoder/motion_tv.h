@@ -21,7 +21,7 @@ struct MosaicTvOptions {
 };
 
 /// The method `fast`; the values were found on natural and high-speed footage
-/// (docs/decoder_experiments.md).
+/// (docs/notes/decoder_experiments.md).
 struct MotionTvOptions {
     /// The estimate that the first motion is found in: total variation at rest.
     TotalVariationOptions at_rest{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
