@@ -36,7 +36,8 @@ class FiguresTest(ProgramTest):
     def test_the_timing_diagram_in_the_documentation_is_the_program_s(self):
         figures.timing(self.program, self.folder)
         drawn = (self.folder / "timing.svg").read_text()
-        self.assertEqual(drawn, (project_path("docs/figures") / "timing.svg").read_text())
+        self.assertEqual(drawn, (project_path("docs/figures") / "timing.svg").read_text(),
+                         "run scripts/figures timing, and look whether docs/concept.md still says what it shows")
 
     def test_samples_of_a_slot_are_the_light_of_their_exposures(self):
         # No noise, 8 bits for light 0 to 8 of all slots together: a sample is off by at most half a DN.
@@ -54,14 +55,14 @@ class FiguresTest(ProgramTest):
 
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
     def test_the_strip_has_five_pictures_and_their_details(self):
-        figures.SIZE, figures.FRAMES, figures.SHOWN = "48x32", "16", 12
-        figures.CROP, figures.DETAILS = (slice(0, 32), slice(0, 48)), {"red": (slice(8, 16), slice(8, 20))}
+        figures.SIZE, figures.FRAMES, figures.SHOWN = "32x24", "12", 8
+        figures.CROP, figures.DETAILS = (slice(0, 24), slice(0, 32)), {"red": (slice(8, 14), slice(8, 16))}
         text = io.StringIO()
         with contextlib.redirect_stdout(text):
             figures.strip(self.program, self.folder)
         self.assertEqual(len(text.getvalue().splitlines()), 7)
         head = (self.folder / "strip.png").read_bytes()[:24]
-        self.assertEqual(struct.unpack(">II", head[16:]), (5 * (48 + 8) + 8, 44 + 2 * (32 + 8)))
+        self.assertEqual(struct.unpack(">II", head[16:]), (5 * (32 + 8) + 8, 44 + 2 * (24 + 8)))
 
 
 if __name__ == "__main__":
