@@ -1,7 +1,7 @@
 // Speed, memory and quality of every decoding method, clip by clip: the figures of
-// docs/decoder_experiments.md. Each method runs in a process of its own, on the same recording
-// (seed 1, colour as luminance, light clipped at 2.0). Quality is without the first and last 4
-// frames, of light up to what the shortest exposure can hold.
+// docs/notes/decoder_experiments.md. Each method runs in a process of its own, on the same
+// recording (seed 1, colour as luminance, light clipped at 2.0). Quality is without the first and
+// last 4 frames, of light up to what the shortest exposure can hold.
 #include "bench/decoder/decode_table.h"
 
 #include <fmt/format.h>

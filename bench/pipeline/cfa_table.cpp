@@ -9,7 +9,7 @@
 //   together to mosaics, then OpenCV's edge-aware demosaicing of 16 bits a pixel: of linear light,
 //   and of its square root.
 // Arguments: [method [side [clip ...]]]; of each clip the middle of `side` pixels, 0 for all of it.
-// The figures of docs/decoder_experiments.md.
+// The figures of docs/notes/decoder_experiments.md.
 #include <fmt/format.h>
 
 #include <algorithm>

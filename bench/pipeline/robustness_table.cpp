@@ -1,6 +1,6 @@
 // What faults of a recording cost: PSNR lost (dB, linear / after 1/2.2) on three clips of the
-// footage folder, 256 x 256, 32 slots: the table of docs/robustness.md. `bench_robustness [METHOD]`
-// (fast).
+// footage folder, 256 x 256, 32 slots: the table of docs/notes/robustness.md. `bench_robustness
+// [METHOD]` (fast).
 #include <fmt/format.h>
 
 #include <algorithm>

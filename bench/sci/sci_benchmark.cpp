@@ -1,7 +1,7 @@
 // The six-clip video-SCI benchmark: 8 frames of 256 x 256 added up through binary masks, without
 // noise. `bench_sci FOLDER --masks masks.npy` prints the PSNR of each clip beside the published
-// averages; without a folder it runs on stand-ins. docs/sci_benchmark.md says how to get the clips
-// into it.
+// averages; without a folder it runs on stand-ins. docs/notes/sci_benchmark.md says how to get the
+// clips into it.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -110,7 +110,7 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
     stipple::Arguments arguments;
-    stipple::CommandLine line("bench_sci", "Video-SCI benchmark; docs/sci_benchmark.md");
+    stipple::CommandLine line("bench_sci", "Video-SCI benchmark; docs/notes/sci_benchmark.md");
     stipple::Command command = line.root();
     command.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of pictures");
     command.add_option("--masks", arguments.masks, ".npy of 8 masks of 0 and 1 (random ones)");

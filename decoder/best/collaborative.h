@@ -25,7 +25,7 @@ struct MosaicFilterOptions {
 };
 
 /// The method `best`; the values were found on natural and high-speed footage
-/// (docs/decoder_experiments.md).
+/// (docs/notes/decoder_experiments.md).
 struct CollaborativeOptions {
     MotionTvOptions start = {};
     int iterations = 28;

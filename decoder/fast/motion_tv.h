@@ -22,7 +22,7 @@ struct MosaicTvOptions {
 };
 
 /// The method `fast`; the values were found on natural and high-speed footage
-/// (docs/decoder_experiments.md).
+/// (docs/notes/decoder_experiments.md).
 struct MotionTvOptions {
     /// The estimate in which motion is first searched: static total variation, without motion.
     TotalVariationOptions static_tv{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};

@@ -1,5 +1,5 @@
 """Links in Markdown lead to files and headings that exist, and so do mentions of docs/*.md and
-scripts/* in any file."""
+scripts/* in any file. The index docs/README.md links every page of docs/."""
 
 import posixpath
 import re
@@ -7,10 +7,12 @@ import re
 from tree import report
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-MENTION = re.compile(r"(?<![\w/.-])((?:docs/\w+\.md)|(?:scripts/[\w-]+(?:\.txt|\.py)?))(?![\w/*])")
+MENTION = re.compile(r"(?<![\w/.-])((?:docs/(?:\w+/)*\w+\.md)|(?:scripts/[\w-]+(?:\.txt|\.py)?))(?![\w/*])")
+INDEX = "docs/README.md"
 
 
 def check(tree):
+    yield from unlisted(tree)
     for name in tree.texts():
         for number, line in tree.lines(name):
             if name.endswith(".md"):
@@ -20,6 +22,15 @@ def check(tree):
             for target in MENTION.findall(line):
                 if target not in tree.files:
                     yield f"{name}:{number}: {target} does not exist"
+
+
+def unlisted(tree):
+    if INDEX not in tree.files:
+        return
+    listed = {f"docs/{target}" for target in LINK.findall(tree.text(INDEX))}
+    for name in tree.ending(".md"):
+        if name.startswith("docs/") and name != INDEX and name not in listed:
+            yield f"{INDEX}: no link to {name}; say in one line whom it serves"
 
 
 def broken(tree, name, number, target):

@@ -127,9 +127,10 @@ class ChecksTest(unittest.TestCase):
 
     def test_nothing_depends_on_one_machine(self):
         folder, site = "/" + "home/someone/data", "https:/" + "/example.org"
+        papers = "[DOI](https://doi.org/10.1000/1), [arXiv](https://arxiv.org/abs/1)\n"
         files = {"a.md": f"see {folder}\n/usr/bin/env, /dev/full and docs/home/x are fine\n",
-                 "b.cpp": f"// {site}/page\n"}
-        self.assertEqual(self.places(words.check, files), ["a.md:1", "b.cpp:1"])
+                 "b.cpp": f"// {site}/page\n", "c.md": papers, "d.md": papers.replace("doi", "doy")}
+        self.assertEqual(self.places(words.check, files), ["a.md:1", "b.cpp:1", "d.md:1"])
 
     def test_vague_names_and_uncertain_bits_are_found(self):
         files = {"core/a.h": "class FrameManager;\nstruct BaseLine;\nenum class FrameHelper {};\n",
@@ -142,9 +143,13 @@ class ChecksTest(unittest.TestCase):
     def test_links_lead_somewhere(self):
         link = "[a](pages/a.md) [b](pages/b.md) [c](pages/a.md#two-words) [d](#none)\n"
         files = {"README.md": link, "pages/a.md": "# Two words\n[up](../README.md)\n",
-                 "core/a.h": "// docs" + "/none.md\n"}
+                 "core/a.h": "// docs" + "/none.md, docs" + "/notes/none.md\n"}
         self.assertEqual(self.places(links.check, files),
-                         ["README.md:1", "README.md:1", "core/a.h:1"])
+                         ["README.md:1", "README.md:1", "core/a.h:1", "core/a.h:1"])
+
+    def test_the_index_of_the_documentation_links_every_page(self):
+        pages = {links.INDEX: "[a](a.md)\n", "docs" + "/a.md": "", "docs/notes" + "/b.md": ""}
+        self.assertEqual(self.places(links.check, pages), [links.INDEX])
 
     def test_every_config_key_is_explained(self):
         text = '# width\na = 1\nb = "#"\nc = 2  # height\n[t]\nd = 1\n'

@@ -10,7 +10,7 @@
 namespace {
 
 /// Of XML that begins otherwise, Aravis (0.8.26) may free memory that it has not taken: case 5 of
-/// docs/aravis_xml.md.
+/// docs/notes/aravis_xml.md.
 constexpr std::string_view kDeclaration = R"(<?xml version="1.0"?>)";
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Real footage through the paper's sensor and back. The least quality of `fast` is that of the
 // motion-compensated total variation measured before this decoder was written, on the same clips
 // with the same noise, less 0.2 dB; that of `best` is that of the collaborative filter
-// measured then (docs/decoder_experiments.md).
+// measured then (docs/notes/decoder_experiments.md).
 #include <gtest/gtest.h>
 
 #include <iterator>
