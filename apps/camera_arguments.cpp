@@ -16,10 +16,6 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
         .type_name("FILE")
         .input();
     command
-        .add_list("--set", arguments.settings,
-                  "set a feature or control of the camera, over --config")
-        .type_name("FEATURE=VALUE");
-    command
         .add_option("--buffers", arguments.buffers.frames,
                     "frames that the host can hold while we are busy (32)")
         .check(whole_check(2, 1024))
@@ -27,8 +23,9 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
 }
 
 CameraSettings camera_settings(const CameraArguments& arguments) {
-    const Config config = arguments.config.empty() ? Config(arguments.settings)
-                                                   : Config(arguments.config, arguments.settings);
+    const Config config = arguments.config.empty()
+                              ? Config(arguments.settings, "camera")
+                              : Config(arguments.config, arguments.settings, "camera");
     return config.entries();
 }
 

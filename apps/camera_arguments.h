@@ -18,7 +18,7 @@ struct CameraArguments {
     CameraBuffers buffers;
 };
 
-/// `ADDRESS`, `--config`, `--set` and `--buffers`.
+/// `ADDRESS`, `--config` and `--buffers`; `--set camera.FEATURE=VALUE` is the command's.
 void add_camera_arguments(Command& command, CameraArguments& arguments);
 
 /// The settings in the order of the file, then of the command line. \throws InputError.

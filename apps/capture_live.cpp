@@ -32,7 +32,11 @@ void add_capture_live(Command& capture, Action& action) {
         .required()
         .output(kStreamName);
     add_capture_limits(command, options->limits);
-    add_sensor_arguments(command, options->sensor, "--sensor-set");
+    add_sensor_arguments(command, options->sensor);
+    auto sections = sensor_sections(options->sensor);
+    sections.push_back({"camera", &options->camera.settings});
+    add_settings(command, std::move(sections),
+                 "change a key of the sensor or of the schedule, or set a feature of the camera");
     add_preview_arguments(command, options->preview);
     add_session_arguments(command, options->session);
     command.add_option("--black-level", options->black_level_dn, "DN without light (0)")

@@ -4,6 +4,7 @@
 #include "apps/coded_recording.h"
 #include "apps/output_names.h"
 #include "apps/session_arguments.h"
+#include "apps/settings_argument.h"
 
 namespace stipple {
 namespace {
@@ -18,6 +19,8 @@ void add_capture_record(Command& capture, Action& action) {
     Command command = capture.add_command("record", "Record a camera, every frame accounted for");
     const auto options = std::make_shared<CameraRecordingArguments>();
     add_camera_arguments(command, options->camera);
+    add_settings(command, {{"camera", &options->camera.settings}},
+                 "set a feature or control of the camera, over --config");
     command
         .add_option("-o,--output", options->output,
                     "recording, or a folder for one that is named by the time")
@@ -36,7 +39,7 @@ void add_capture_record(Command& capture, Action& action) {
         "Examples:\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --seconds 10\n"
         "  stipple capture record gige:192.168.0.5 -o clip.strec --config camera.toml \\\n"
-        "      --set PixelFormat=Mono12p --set ExposureTime=2000");
+        "      --set camera.PixelFormat=Mono12p --set camera.ExposureTime=2000");
     set_action(command, action, options, record, [command, options] {
         check_session_arguments(command, options->camera);
         check_extension("--output", options->output, options->coded ? kStreamName : kRecordingName);

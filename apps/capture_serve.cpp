@@ -108,6 +108,8 @@ void add_source_arguments(Command& command, ServedSourceChoice& source) {
     command.add_option("--format", source.format, "pixel format of footage (Mono8)")
         .type_name("NAME");
     add_sensor_arguments(command, source.sensor);
+    add_settings(command, sensor_sections(source.sensor),
+                 "change a key of the sensor or of the schedule");
     add_footage_arguments(command, source.reading);
     add_max_value(command, source.reading.max_value);
 }

@@ -15,6 +15,7 @@
 #include "apps/number_check.h"
 #include "apps/progress.h"
 #include "apps/session_report.h"
+#include "apps/settings_argument.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "apps/text_file.h"
@@ -121,9 +122,8 @@ void add_characterize(Command& app, Action& action) {
     const auto sensor = command.add_option("--sensor", options->sensor.sensor, "sensor (paper)")
                             .type_name("NAME|FILE")
                             .input();
-    const auto set =
-        command.add_list("--set", options->sensor.settings, "change a key of the sensor")
-            .type_name("KEY=VALUE");
+    const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
+                                  "change a key of the sensor");
     const auto seed = command.add_option("--seed", options->sensor.seed, "of the noise (1)")
                           .check(whole_check(0))
                           .type_name("S");
@@ -141,7 +141,8 @@ void add_characterize(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple characterize --sensor grasshopper -o series\n"
-        "  stipple characterize --sensor t6 --set temperature_c=60 -o warm --json figures.json\n"
+        "  stipple characterize --sensor t6 --set sensor.temperature_c=60 -o warm --json "
+        "figures.json\n"
         "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
     set_action(command, action, options, characterize, [options] {
         if (options->descriptor.empty() && options->output.empty())

@@ -194,6 +194,15 @@ CommandOption Command::add_list(const std::string& names, std::vector<std::strin
     return handle(app_->add_option(names, values, text)->allow_extra_args(false));
 }
 
+CommandOption Command::add_list(const std::string& names, std::function<void(std::string)> take,
+                                const std::string& text) {
+    const auto call = [take = std::move(take)](const std::vector<std::string>& values) {
+        for (const std::string& value : values) take(value);
+    };
+    return handle(app_->add_option_function<std::vector<std::string>>(names, call, text)
+                      ->allow_extra_args(false));
+}
+
 CommandOption Command::add_flag(const std::string& names, bool& value, const std::string& text) {
     return handle(app_->add_flag(names, value, text));
 }

@@ -101,6 +101,9 @@ class Command {
     /// An option that may be given several times, with one value each.
     CommandOption add_list(const std::string& names, std::vector<std::string>& values,
                            const std::string& text);
+    /// The same, where each value is taken apart. `take` may throw UsageError.
+    CommandOption add_list(const std::string& names, std::function<void(std::string)> take,
+                           const std::string& text);
     /// An option that is a name of a value.
     template <typename Value>
     CommandOption add_choice(const std::string& names, Value& value,

@@ -8,6 +8,7 @@
 #include "apps/names_of.h"
 #include "apps/number_check.h"
 #include "apps/output_names.h"
+#include "apps/settings_argument.h"
 #include "apps/subcommands.h"
 #include "core/joined.h"
 #include "decoder/reconstruct.h"
@@ -39,8 +40,7 @@ void add_decode(Command& app, Action& action) {
                     "options of the method: a file as docs/decoder_options.md says")
         .type_name("FILE")
         .input();
-    command.add_list("--set", options->settings, "change one option of the method")
-        .type_name("KEY=VALUE");
+    add_settings(command, {{"decoder", &options->settings}}, "change one option of the method");
     command
         .add_option("--stages", options->stages,
                     "keep the estimate of each stage as .npy, and a chart of the convergence")

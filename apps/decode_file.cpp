@@ -38,8 +38,8 @@ DecodeOptions options_of(const DecodeArguments& arguments) {
         throw InputError("--stages",
                          fmt::format("method {} has none; portz2013 has", arguments.method));
     Config config = arguments.options.empty()
-                        ? Config(arguments.settings)
-                        : Config(std::filesystem::path(arguments.options), arguments.settings);
+                        ? Config(arguments.settings, "decoder")
+                        : Config(arguments.options, arguments.settings, "decoder");
     return read_decode_options(method, config);
 }
 

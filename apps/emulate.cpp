@@ -92,6 +92,8 @@ void add_emulate(Command& app, Action& action) {
         .required()
         .output(kStreamName);
     add_sensor_arguments(command, options->sensor);
+    add_settings(command, sensor_sections(options->sensor),
+                 "change a key of the sensor or of the schedule");
     add_footage_arguments(command, options->reading);
     add_max_value(command, options->reading.max_value);
     command
@@ -105,7 +107,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
-        "      --set read_noise_e=5 --set bit_depth=10 --set schedule.tile_rows=8");
+        "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");
     set_action(command, action, options, emulate);
 }
 

@@ -15,24 +15,15 @@ namespace {
 struct CheckOptions {
     ScheduleChoice schedule;
     std::string sensor = "paper";
+    std::vector<std::string> sensor_settings = {};
 };
-
-/// Settings of the schedule, and after "sensor." of the sensor, in the form of `emulate`.
-std::vector<std::string> emulate_settings(const std::vector<std::string>& settings) {
-    constexpr std::string_view kSensor = "sensor.";
-    std::vector<std::string> result;
-    result.reserve(settings.size());
-    for (const std::string& setting : settings)
-        result.push_back(setting.starts_with(kSensor) ? setting.substr(kSensor.size())
-                                                      : "schedule." + setting);
-    return result;
-}
 
 void check(const CheckOptions& options, const RunOptions& run) {
     const ScheduleChoice& choice = options.schedule;
     const SensorSetup setup = set_up_sensor({.sensor = options.sensor,
                                              .schedule = choice.schedule,
-                                             .settings = emulate_settings(choice.settings),
+                                             .settings = options.sensor_settings,
+                                             .schedule_settings = choice.settings,
                                              .seed = choice.seed},
                                             choice.shape);
     const auto& [name, source, schedule] = setup.schedule;
@@ -61,6 +52,9 @@ void add_schedule_check(Command& schedule, Action& action) {
         "check", "Whether a sensor can do what a schedule says; exit code 1 if not");
     const auto options = std::make_shared<CheckOptions>();
     add_schedule_choice(command, options->schedule);
+    add_settings(command,
+                 {schedule_section(options->schedule), {"sensor", &options->sensor_settings}},
+                 "change a key of the schedule or of the sensor");
     command.add_option("--sensor", options->sensor, "sensor (paper)")
         .type_name("NAME|FILE")
         .input();

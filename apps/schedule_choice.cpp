@@ -11,6 +11,10 @@ constexpr int kMaxSide = 65535;
 
 }  // namespace
 
+SettingsSection schedule_section(ScheduleChoice& choice) {
+    return {"schedule", &choice.settings};
+}
+
 void add_schedule_choice(Command& command, ScheduleChoice& choice) {
     command
         .add_option("SCHEDULE", choice.schedule,
@@ -18,8 +22,6 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .type_name("NAME|FILE")
         .required()
         .input();
-    command.add_list("--set", choice.settings, "change a key of the schedule")
-        .type_name("KEY=VALUE");
     command
         .add_parsed(
             "--size",
@@ -34,10 +36,9 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
 }
 
 NamedSchedule set_up_schedule(const ScheduleChoice& choice) {
-    SensorChoice sensor{.schedule = choice.schedule, .seed = choice.seed};
-    for (const std::string& setting : choice.settings)
-        sensor.settings.push_back("schedule." + setting);
-    return set_up_schedule(sensor, choice.shape, ColumnAddressing{});
+    return set_up_schedule(
+        {.schedule = choice.schedule, .schedule_settings = choice.settings, .seed = choice.seed},
+        choice.shape, ColumnAddressing{});
 }
 
 }  // namespace stipple

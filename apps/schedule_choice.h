@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/command_line.h"
+#include "apps/settings_argument.h"
 #include "core/geometry.h"
 #include "readout/schedules/schedule_catalogue.h"
 
@@ -18,8 +19,11 @@ struct ScheduleChoice {
     std::uint64_t seed = 1;
 };
 
-/// NAME|FILE, --set, --size and --seed.
+/// NAME|FILE, --size and --seed.
 void add_schedule_choice(Command& command, ScheduleChoice& choice);
+
+/// What `--set schedule.KEY=VALUE` changes.
+[[nodiscard]] SettingsSection schedule_section(ScheduleChoice& choice);
 
 /// \throws InputError naming file, line and key of what cannot be used.
 [[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);

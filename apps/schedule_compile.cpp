@@ -47,6 +47,7 @@ void add_schedule_compile(Command& schedule, Action& action) {
         "compile", "Write the program of the chip's sequencer, a memory image for $readmemh");
     const auto options = std::make_shared<CompileOptions>();
     add_schedule_choice(command, options->schedule);
+    add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
     command.add_option("-o,--output", options->output, "memory image, .mem or .hex")
         .required()
         .type_name("FILE")
@@ -54,7 +55,7 @@ void add_schedule_compile(Command& schedule, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple schedule compile tiled -o tiled.mem\n"
-        "  stipple schedule compile tiled -o tiled.mem --set tile_rows=8 --seed 7\n"
+        "  stipple schedule compile tiled -o tiled.mem --set schedule.tile_rows=8 --seed 7\n"
         "  stipple emulate scene -o clip.stipple --schedule tiled.mem");
     set_action(command, action, options, compile);
 }

@@ -34,13 +34,15 @@ void add_schedule_make(Command& schedule, Action& action) {
         schedule.add_command("make", "Write out what each pixel of a schedule does (kind code)");
     const auto options = std::make_shared<MakeOptions>();
     add_schedule_choice(command, options->schedule);
+    add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
     command.add_option("-o,--output", options->output, "schedule file, .toml")
         .type_name("FILE")
         .required()
         .output(kScheduleName);
     command.footer(
         "Examples:\n"
-        "  stipple schedule make two_bucket -o mine.toml --set tile_rows=4 --set tile_cols=4\n"
+        "  stipple schedule make two_bucket -o mine.toml --set schedule.tile_rows=4 --set "
+        "schedule.tile_cols=4\n"
         "  stipple schedule make random -o tile.toml --size 32x32 --seed 7");
     set_action(command, action, options, make);
 }

@@ -42,6 +42,7 @@ void add_schedule_show(Command& schedule, Action& action) {
     Command command = schedule.add_command("show", "Timing diagram and figures of a schedule");
     const auto options = std::make_shared<ShowOptions>();
     add_schedule_choice(command, options->schedule);
+    add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
     command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
         .type_name("FILE")
         .output(kDiagramName);

@@ -5,7 +5,7 @@
 
 namespace stipple {
 
-void add_sensor_arguments(Command& command, SensorChoice& sensor, const char* settings_option) {
+void add_sensor_arguments(Command& command, SensorChoice& sensor) {
     command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\" (paper)")
         .type_name("NAME|FILE")
         .input();
@@ -14,14 +14,14 @@ void add_sensor_arguments(Command& command, SensorChoice& sensor, const char* se
                     "who exposes when, of \"stipple list schedules\" (random)")
         .type_name("NAME|FILE")
         .input();
-    command
-        .add_list(settings_option, sensor.settings,
-                  "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        .type_name("KEY=VALUE");
     command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
         .check(whole_check(0))
         .type_name("S");
     add_overrun(command, sensor.overrun);
+}
+
+std::vector<SettingsSection> sensor_sections(SensorChoice& sensor) {
+    return {{"sensor", &sensor.settings}, {"schedule", &sensor.schedule_settings}};
 }
 
 }  // namespace stipple

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <vector>
+
 #include "apps/command_line.h"
+#include "apps/settings_argument.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
 
-/// `--sensor`, `--schedule`, `--seed`, `--overrun`, and the settings of both, which are `--set`
-/// but where that is the camera's.
-void add_sensor_arguments(Command& command, SensorChoice& sensor,
-                          const char* settings_option = "--set");
+/// `--sensor`, `--schedule`, `--seed` and `--overrun`.
+void add_sensor_arguments(Command& command, SensorChoice& sensor);
+
+/// What `--set sensor.KEY=VALUE` and `--set schedule.KEY=VALUE` change.
+[[nodiscard]] std::vector<SettingsSection> sensor_sections(SensorChoice& sensor);
 
 }  // namespace stipple

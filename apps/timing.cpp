@@ -8,6 +8,7 @@
 #include "apps/interrupt.h"
 #include "apps/json_file.h"
 #include "apps/number_check.h"
+#include "apps/sensor_arguments.h"
 #include "apps/size_argument.h"
 #include "apps/subcommands.h"
 #include "apps/timing_arguments.h"
@@ -74,10 +75,8 @@ void add_timing(Command& app, Action& action) {
             },
             "width and height of what is read (the whole array)")
         .type_name("WxH");
-    command
-        .add_list("--set", options->sensor.settings,
-                  "change a key of the sensor, or with \"schedule.\" before it of the schedule")
-        .type_name("KEY=VALUE");
+    add_settings(command, sensor_sections(options->sensor),
+                 "change a key of the sensor or of the schedule");
     command.add_option("--seed", options->sensor.seed, "of the schedule (1)")
         .check(whole_check(0))
         .type_name("S");
@@ -86,7 +85,7 @@ void add_timing(Command& app, Action& action) {
         "Examples:\n"
         "  stipple timing --sensor lux1310\n"
         "  stipple timing --sensor vita --roi 640x480 --schedule tiled --json -\n"
-        "  stipple timing --sensor lux1310 --set timing.addressing=group --vcd readout.vcd");
+        "  stipple timing --sensor lux1310 --set sensor.timing.addressing=group --vcd readout.vcd");
     set_action(command, action, options, time_readout);
 }
 

@@ -96,6 +96,7 @@ std::string range_text(Value min, Value max) {
 
 struct Config::Impl {
     std::string file;
+    std::string section;            ///< of the overrides, "sensor."
     std::list<toml::table> tables;  ///< what the entries point into
     Entries entries;
     std::map<std::string, KnownKey, std::less<>> asked;
@@ -118,7 +119,7 @@ struct Config::Impl {
 void Config::Impl::set(const std::string& assignment) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-        throw InputError(fmt::format("--set {}", assignment), "write key=value");
+        throw InputError(fmt::format("--set {}{}", section, assignment), "write key=value");
     const std::string key = assignment.substr(0, equals);
     tables.push_back(parse_value(std::string_view(assignment).substr(equals + 1)));
     entries[key] = Entry{tables.back().get("value"), "--set", false, kAfterFile + tables.size()};
@@ -137,13 +138,15 @@ std::string Config::Impl::place(std::string_view key) const {
     const auto found = entries.find(key);
     if (found == entries.end())
         return file.empty() ? std::string(key) : fmt::format("{}: {}", file, key);
-    if (found->second.place == "--set") return fmt::format("--set {}", key);
+    if (found->second.place == "--set") return fmt::format("--set {}{}", section, key);
     return fmt::format("{}: {}", found->second.place, key);
 }
 
-Config::Config(const std::filesystem::path& file, const std::vector<std::string>& overrides)
+Config::Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+               std::string_view section)
     : impl_(std::make_unique<Impl>()) {
     impl_->file = file.string();
+    if (!section.empty()) impl_->section = fmt::format("{}.", section);
     const auto bytes = read_file(file);
     const std::string text(bytes.begin(), bytes.end());
     if (const std::size_t line = line_of_long_key(text); line != 0)
@@ -160,7 +163,9 @@ Config::Config(const std::filesystem::path& file, const std::vector<std::string>
     for (const std::string& assignment : overrides) impl_->set(assignment);
 }
 
-Config::Config(const std::vector<std::string>& overrides) : impl_(std::make_unique<Impl>()) {
+Config::Config(const std::vector<std::string>& overrides, std::string_view section)
+    : impl_(std::make_unique<Impl>()) {
+    if (!section.empty()) impl_->section = fmt::format("{}.", section);
     for (const std::string& assignment : overrides) impl_->set(assignment);
 }
 

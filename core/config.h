@@ -22,11 +22,13 @@ struct KnownKey {
 class Config {
   public:
     /// Reads `file` and applies `overrides` ("read_noise_e=5", "adc.bit_depth=10"; values in TOML
-    /// syntax, a bare word is a string).
+    /// syntax, a bare word is a string). Messages name an override as the command line has it, with
+    /// the `section` before it ("sensor").
     /// \throws InputError naming file, line and column, or the override.
-    Config(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+    Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+           std::string_view section = {});
     /// Overrides alone, without a file. \throws InputError naming the override.
-    explicit Config(const std::vector<std::string>& overrides);
+    explicit Config(const std::vector<std::string>& overrides, std::string_view section = {});
     ~Config();
     Config(Config&&) noexcept;
     Config& operator=(Config&&) noexcept;

@@ -79,7 +79,9 @@ toml::table footage_table(const FootageOrigin& footage) {
 /// The command line, without what another table has.
 toml::table options_table(const SensorChoice& choice) {
     toml::array settings;
-    for (const std::string& setting : choice.settings) settings.push_back(setting);
+    for (const std::string& setting : choice.settings) settings.push_back("sensor." + setting);
+    for (const std::string& setting : choice.schedule_settings)
+        settings.push_back("schedule." + setting);
     return toml::table{{"sensor", file_name(choice.sensor)},
                        {"schedule", file_name(choice.schedule)},
                        {"set", settings}};

@@ -17,32 +17,22 @@
 namespace stipple {
 namespace {
 
-/// The settings whose key begins with `section` (empty: with none of the sections), without it.
-std::vector<std::string> settings_of(const SensorChoice& choice, std::string_view section) {
-    constexpr std::string_view kSchedule = "schedule.";
-    std::vector<std::string> settings;
-    for (const std::string& setting : choice.settings)
-        if (setting.starts_with(kSchedule) == (section == kSchedule))
-            settings.push_back(setting.substr(section.size()));
-    return settings;
-}
-
 /// \throws InputError for a file without keys, which would be taken for all the defaults.
 Config open_config(std::string_view kind, const std::string& name,
                    const std::vector<std::string>& settings) {
     const auto file = find_config(kind, name);
-    Config config(file, settings);
+    Config config(file, settings, kind == "sensors" ? "sensor" : "schedule");
     if (config.file_is_empty())
         throw InputError(file.string(), fmt::format("holds no keys; config/{} has examples", kind));
     return config;
 }
 
 Config sensor_config(const SensorChoice& choice) {
-    return open_config("sensors", choice.sensor, settings_of(choice, ""));
+    return open_config("sensors", choice.sensor, choice.settings);
 }
 
 Config schedule_config(const SensorChoice& choice) {
-    return open_config("schedules", choice.schedule, settings_of(choice, "schedule."));
+    return open_config("schedules", choice.schedule, choice.schedule_settings);
 }
 
 /// True for a compiled schedule (docs/sequencer_program.md).
@@ -52,9 +42,8 @@ bool is_program(const std::filesystem::path& file) {
 }
 
 NamedSchedule read_program(const SensorChoice& choice) {
-    const auto settings = settings_of(choice, "schedule.");
-    if (!settings.empty())
-        throw InputError("--set schedule." + settings.front(),
+    if (!choice.schedule_settings.empty())
+        throw InputError("--set schedule." + choice.schedule_settings.front(),
                          fmt::format("{} is a compiled schedule, which has no keys; set them in "
                                      "\"stipple schedule compile\"",
                                      choice.schedule));
@@ -120,9 +109,6 @@ SensorDescription read_sensor_file(const SensorChoice& choice) {
 }
 
 SensorParams set_up_params(const SensorChoice& choice) {
-    const auto settings = settings_of(choice, "schedule.");
-    if (!settings.empty())
-        throw InputError("--set schedule." + settings.front(), "there is no schedule here");
     return read_sensor_file(choice).params;
 }
 

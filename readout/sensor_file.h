@@ -18,8 +18,9 @@ namespace stipple {
 struct SensorChoice {
     std::string sensor = "paper";            ///< name or file
     std::string schedule = "random";         ///< name, file, or compiled file (.mem, .hex)
-    std::vector<std::string> settings = {};  ///< "key=value" for the sensor, "schedule.key=value"
-    std::uint64_t seed = 1;                  ///< of noise and schedule
+    std::vector<std::string> settings = {};  ///< "key=value" of the sensor
+    std::vector<std::string> schedule_settings = {};
+    std::uint64_t seed = 1;  ///< of noise and schedule
     OverrunPolicy overrun = OverrunPolicy::kStretch;
 };
 
@@ -58,7 +59,7 @@ struct SensorSetup {
 [[nodiscard]] std::string schedule_keys(const SensorChoice& choice);
 
 /// The parameters of a sensor that has no schedule. \throws InputError naming file, line and key of
-/// what cannot be used; the schedule's settings cannot.
+/// what cannot be used.
 [[nodiscard]] SensorParams set_up_params(const SensorChoice& choice);
 
 /// A sensor for this footage, which may be a mosaic of colours already. \throws InputError naming

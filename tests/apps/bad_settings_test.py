@@ -14,11 +14,15 @@ class BadSettingsTest(ProgramTest):
         self.fails(code, parts, "emulate", "light.npy", "-o", "clip.stipple", *arguments)
 
     def test_an_unknown_key_with_the_nearest_known_one(self):
-        self.refuse(["--set read_noise", "unknown", "read_noise_e"], "--set", "read_noise=3")
+        self.refuse(["--set sensor.read_noise", "unknown", "read_noise_e"], "--set", "sensor.read_noise=3")
         self.refuse(["unknown"], "--schedule", "tiled", "--set", "schedule.tile_row=3")
 
+    def test_a_setting_of_a_section_that_the_command_does_not_have(self):
+        for setting in ("read_noise_e=5", "camera.Width=64", "sensors.bit_depth=8", "sensor"):
+            self.refuse([setting, "begins with none of sensor., schedule."], "--set", setting, code=USAGE)
+
     def test_an_unknown_key_that_is_like_none_with_the_known_ones(self):
-        message = "--set tile_rows: is unknown; known are exposure_slots, kind, name"
+        message = "--set schedule.tile_rows: is unknown; known are exposure_slots, kind, name"
         self.refuse([message], "--set", "schedule.tile_rows=8")
 
     def test_a_policy_for_overruns_without_timing(self):
@@ -27,28 +31,28 @@ class BadSettingsTest(ProgramTest):
     def test_a_value_out_of_range_with_the_range(self):
         for setting, limits in (("bit_depth=17", "1..16"), ("photons_per_unit=0", "0.001"),
                                 ("read_noise_e=-1", "0..100000"), ("slot_us=nan", "slot_us")):
-            self.refuse([setting.split("=")[0], limits], "--set", setting)
+            self.refuse([setting.split("=")[0], limits], "--set", f"sensor.{setting}")
         self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[65]")
         self.refuse(["exposure_slots"], "--set", "schedule.exposure_slots=[]")
 
     def test_a_key_of_the_physical_mode_in_paper_mode(self):
-        self.refuse(["--set dsnu_e", 'mode = "physical"'], "--set", "dsnu_e=1")
-        self.refuse(["prnu", "0..0.5"], "--sensor", "grasshopper", "--set", "prnu=2")
+        self.refuse(["--set sensor.dsnu_e", 'mode = "physical"'], "--set", "sensor.dsnu_e=1")
+        self.refuse(["prnu", "0..0.5"], "--sensor", "grasshopper", "--set", "sensor.prnu=2")
         self.refuse(["gain_map", "map_rows x map_cols = 1 x 1"], "--sensor", "ideal",
-                    "--set", "gain_map=[1, 2]")
-        self.refuse(["black_level_dn", "leaves nothing"], "--set", "mode=physical",
-                    "--set", "read_noise_e=900")
+                    "--set", "sensor.gain_map=[1, 2]")
+        self.refuse(["black_level_dn", "leaves nothing"], "--set", "sensor.mode=physical",
+                    "--set", "sensor.read_noise_e=900")
 
     def test_a_colour_filter_array_without_colour(self):
-        self.refuse(["cfa", "needs colour footage"], "--sensor", "ideal", "--set", "cfa=rggb")
-        self.refuse(["cfa", "gbrg"], "--sensor", "ideal", "--set", "cfa=rgbg")
+        self.refuse(["cfa", "needs colour footage"], "--sensor", "ideal", "--set", "sensor.cfa=rggb")
+        self.refuse(["cfa", "gbrg"], "--sensor", "ideal", "--set", "sensor.cfa=rgbg")
 
     def test_a_value_of_another_type(self):
-        self.refuse(["bit_depth", "integer"], "--set", "bit_depth=many")
-        self.refuse(["rounding", "nearest", "floor"], "--set", "rounding=up")
+        self.refuse(["bit_depth", "integer"], "--set", "sensor.bit_depth=many")
+        self.refuse(["rounding", "nearest", "floor"], "--set", "sensor.rounding=up")
 
     def test_a_setting_without_a_value(self):
-        self.refuse(["bit_depth"], "--set", "bit_depth")
+        self.refuse(["bit_depth"], "--set", "sensor.bit_depth")
 
     def test_a_file_by_file_and_line(self):
         (self.folder / "mine.toml").write_text('mode = "paper"\nread_noise = 3\n')
@@ -61,9 +65,9 @@ class BadSettingsTest(ProgramTest):
     def test_an_option_of_the_decoding_method(self):
         self.succeed("emulate", "light.npy", "-o", "clip.stipple")
         (self.folder / "mine.toml").write_text("rounds = 2\nlast_iterations = -1\n")
-        for parts, options in ((["--set round", "rounds"], ["--set", "round=2"]),
-                               (["--set rounds", "0..100"], ["--set", "rounds=-1"]),
-                               (["rounds", "unknown"], ["--set", "rounds=2", "--method", "naive"]),
+        for parts, options in ((["--set decoder.round", "rounds"], ["--set", "decoder.round=2"]),
+                               (["--set decoder.rounds", "0..100"], ["--set", "decoder.rounds=-1"]),
+                               (["rounds", "unknown"], ["--set", "decoder.rounds=2", "--method", "naive"]),
                                (["mine.toml:2", "0..10000"], ["--options", "mine.toml"]),
                                (["yours.toml", "No such file"], ["--options", "yours.toml"])):
             self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy",

@@ -35,7 +35,7 @@ class CharacterizeTest(ProgramTest):
         return json.loads((self.made / "figures.json").read_text())
 
     def characterize(self, sensor, *settings):
-        arguments = [word for setting in settings for word in ("--set", setting)]
+        arguments = [word for setting in settings for word in ("--set", f"sensor.{setting}")]
         return self.figures("characterize", "--sensor", sensor, "-o", "series", *arguments)
 
     def expect_configured(self, figures, keys):
@@ -90,7 +90,7 @@ class CharacterizeTest(ProgramTest):
     def test_without_black_level_the_evaluation_is_biased_and_says_so(self):
         """Eq. 1 cuts the noise off at 0: mean 0.40 sigma, deviation 0.58 sigma of 10 e."""
         text = self.succeed("characterize", "--sensor", "paper", "-o", "series",
-                            "--set", "bit_depth=12", "--json", "figures.json")
+                            "--set", "sensor.bit_depth=12", "--json", "figures.json")
         self.assertNotIn("black level", text)
         done = self.run_program("characterize", "--evaluate", "series/emva1288_data.txt", "-q")
         self.assertEqual((done.returncode, done.stdout), (OK, ""))
@@ -173,8 +173,8 @@ class CharacterizeTest(ProgramTest):
     def test_what_cannot_be_used_is_named(self):
         self.fails(USAGE, ["--output"], "characterize", "--sensor", "t6")
         self.fails(INPUT, ["unequal transmittance"], "characterize", "--sensor", "ideal", "-o", "a",
-                   "--set", "transmittance=[0.5]")
-        self.fails(INPUT, ["schedule"], "characterize", "-o", "a", "--set", "schedule.tile_rows=3")
+                   "--set", "sensor.transmittance=[0.5]")
+        self.fails(USAGE, ["schedule"], "characterize", "-o", "a", "--set", "schedule.tile_rows=3")
         self.fails(INPUT, ["a/emva1288_data.txt", "more light"], "characterize", "--sensor", "ideal", "-o", "a")
         self.fails(INPUT, ["none.txt"], "characterize", "--evaluate", "none.txt")
         (self.folder / "a.txt").write_text("v 4.0\nn 8 4 4\nd 1\ni a.png\ni b.png\n")

@@ -152,13 +152,13 @@ class CommandLineTest(ProgramTest):
 
     def test_losses_are_shown_while_it_records(self):
         self.succeed("capture", "record", f"replay:{self.write_flat('light.npy', 100)}", "-o", "clip.strec",
-                     "--set", "AcquisitionFrameRate=0", "--buffers", 1024)
+                     "--set", "camera.AcquisitionFrameRate=0", "--buffers", 1024)
         clip = self.folder / "clip.strec"
         content = clip.read_bytes()
         starts = [at for at in range(len(content)) if content.startswith(b"\xc5FRM", at)]
         clip.write_bytes(content[:starts[4]] + content[starts[6]:])
         text = self.on_a_terminal("capture", "record", "replay:clip.strec", "-o", "again.strec", "--set",
-                                  "AcquisitionFrameRate=200")
+                                  "camera.AcquisitionFrameRate=200")
         self.assertRegex(text, r"recording \d+ frames, 2 lost, 0 incomplete, [\d.]+ frames/s")
 
     def test_the_summary_stands_alone_in_its_line(self):

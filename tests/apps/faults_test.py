@@ -21,7 +21,7 @@ LONG = "STIPPLE_LONG" in os.environ
 EVERY = os.environ.get("STIPPLE_LONG") == "every"
 SEED = 1
 OLD = b"the output before" * 100
-FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+FAST = ("--set", "camera.AcquisitionFrameRate=0", "--buffers", "1024")
 ERRORS = {"open": (errno.EMFILE, errno.ENOSPC), "read": (errno.EIO,), "write": (errno.ENOSPC, errno.EIO, SHORT),
           "sync": (errno.EIO, errno.ENOSPC), "rename": (errno.EIO,), "cut": (errno.EIO,), "remove": (errno.EIO,),
           "map": (errno.ENOMEM,), "thread": (errno.EAGAIN,)}

@@ -43,8 +43,8 @@ class FiguresTest(ProgramTest):
         # No noise, 8 bits for light 0 to 8 of all slots together: a sample is off by at most half a DN.
         light = np.random.default_rng(1).random((20, 3, 12, 16), np.float32)
         np.save(self.folder / "light.npy", light.transpose(0, 2, 3, 1))
-        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--set", "shot_noise=false", "--set",
-                     "read_noise_e=0", "--set", "full_scale_e=8000")
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--set", "sensor.shot_noise=false", "--set",
+                     "sensor.read_noise_e=0", "--set", "sensor.full_scale_e=8000")
         figures.SIZE = "16x12"
         samples = figures.samples_of_slot(self.program, "clip.stipple", 15, (12, 16, 3))
         mean = np.cumsum(light[15::-1].transpose(0, 2, 3, 1), 0) / np.arange(1, 17)[:, None, None, None]

@@ -39,7 +39,7 @@ class FootageWarningsTest(ProgramTest):
     def test_a_replay_says_the_same(self):
         def said(footage, verb="record"):
             done = self.run_program("capture", verb, f"replay:{footage}", "-o", "clip", "--set",
-                                    "AcquisitionFrameRate=0", "--force", "-q")
+                                    "camera.AcquisitionFrameRate=0", "--force", "-q")
             self.assertEqual(done.returncode, OK, done.stderr)
             return done.stderr
 

@@ -12,10 +12,10 @@ import numpy as np
 from program import DEVICE, INPUT, STOPPED, USAGE, ProgramTest
 from sample_stream import samples
 
-FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+FAST = ("--set", "camera.AcquisitionFrameRate=0", "--buffers", "1024")
 WINDOW = 16  # slots of a preview: twice the longest exposure of the schedule `random`
 CAPTION = 20  # rows of text above a .png
-PREVIEW_OF_FAST = ("--method", "fast", "--set", "rounds=1", "--set", "last_iterations=10")
+PREVIEW_OF_FAST = ("--method", "fast", "--set", "decoder.rounds=1", "--set", "decoder.last_iterations=10")
 
 
 def moving_light(slots, rows=24, cols=32):
@@ -41,7 +41,7 @@ class LiveTest(ProgramTest):
         """A recording that goes on until somebody stops it."""
         self.write_array("light.npy", moving_light(40))
         program = self.start_program("capture", "live", "replay:light.npy", "-o", "clip.stipple",
-                                     "-q", "--set", "Loop=1", "--json", "figures.json", *arguments)
+                                     "-q", "--set", "camera.Loop=1", "--json", "figures.json", *arguments)
         self.addCleanup(program.communicate)
         self.addCleanup(program.kill)
         return program
@@ -102,7 +102,7 @@ class PreviewTest(LiveTest):
         light = np.full((WINDOW, 24, 32), 0.2)
         light[:, :, :8] = 1
         self.write_array("light.npy", light)
-        self.live("light.npy", *FAST, "--preview", "now.png", "--sensor-set", "full_scale_e=900")
+        self.live("light.npy", *FAST, "--preview", "now.png", "--set", "sensor.full_scale_e=900")
         self.succeed("emulate", "now.png", "-o", "x.stipple", "--truth", "now.npy")
         red, green, _ = np.moveaxis(self.array("now.npy")[0, CAPTION:], -1, 0)
         np.testing.assert_array_equal(red - green > 0.9, light[0] == 1)
@@ -145,7 +145,7 @@ class FullDiskTest(LiveTest):
         self.write_array("light.npy", moving_light(40))
         limit = 9000  # bytes: the header and some slots
         done = self.run_program(
-            "capture", "live", "replay:light.npy", "-o", "clip.stipple", "--set", "Loop=1",
+            "capture", "live", "replay:light.npy", "-o", "clip.stipple", "--set", "camera.Loop=1",
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertEqual(done.returncode, DEVICE, done.stderr)
         for part in ("clip.stipple: cannot be written", "what was written before is kept"):
@@ -165,14 +165,14 @@ class RateTest(LiveTest):
         return done.stderr, figures["frames_hz"], figures["slots_hz"]
 
     def test_frames_that_come_at_another_rate_than_slots_are_said(self):
-        slow = ("--set", "AcquisitionFrameRate=160", "--buffers", "1024")
+        slow = ("--set", "camera.AcquisitionFrameRate=160", "--buffers", "1024")
         said, frames_hz, slots_hz = self.warning(*slow)
         for part in ("sends 160 frames/s", "5000 us (200 a second)", "AcquisitionFrameRate=200",
                      "slot_us=6250"):
             self.assertIn(part, said)
         self.assertAlmostEqual(frames_hz, 160, places=3)
         self.assertEqual(slots_hz, 200)
-        self.assertEqual(self.warning(*slow, "--sensor-set", "slot_us=6250")[0], "")
+        self.assertEqual(self.warning(*slow, "--set", "sensor.slot_us=6250")[0], "")
 
 
 class ColourFilterTest(LiveTest):
@@ -183,17 +183,17 @@ class ColourFilterTest(LiveTest):
         dn = np.random.default_rng(3).integers(0, 65536, (20, 12, 16, 3))
         self.write_array("light.npy", dn / 65535)
         self.succeed("capture", "record", "replay:light.npy", "-o", "bayer.strec", "--set",
-                     "PixelFormat=BayerGB16", *FAST)
+                     "camera.PixelFormat=BayerGB16", *FAST)
 
     def samples(self, name):
         """The packets of a stream; names of files are in its header."""
         return samples((self.folder / name).read_bytes())
 
     def test_the_sensor_samples_it_as_it_does_colour(self):
-        gbrg = ("--sensor", "ideal", "--set", "cfa=gbrg")
+        gbrg = ("--sensor", "ideal", "--set", "sensor.cfa=gbrg")
         self.succeed("emulate", "light.npy", "-o", "colour.stipple", *gbrg)
         self.succeed("emulate", "bayer.strec", "-o", "bayer.stipple", *gbrg)
-        self.live("bayer.strec", *FAST, "--sensor", "ideal", "--sensor-set", "cfa=gbrg",
+        self.live("bayer.strec", *FAST, "--sensor", "ideal", "--set", "sensor.cfa=gbrg",
                   "--preview", "now.npy", "--preview-method", "naive")
         self.assertEqual(self.samples("bayer.stipple"), self.samples("colour.stipple"))
         self.assertEqual(self.samples("clip.stipple"), self.samples("colour.stipple"))
@@ -203,9 +203,9 @@ class ColourFilterTest(LiveTest):
     def test_another_phase_is_refused(self):
         parts = ["begins as rggb, the frames as gbrg", "cfa=gbrg", "OffsetX"]
         self.fails(INPUT, parts, "emulate", "bayer.strec", "-o", "x.stipple", "--sensor", "ideal",
-                   "--set", "cfa=rggb")
+                   "--set", "sensor.cfa=rggb")
         self.fails(INPUT, parts, "capture", "live", "replay:bayer.strec", "-o", "x.stipple",
-                   "--sensor", "ideal", "--sensor-set", "cfa=rggb")
+                   "--sensor", "ideal", "--set", "sensor.cfa=rggb")
 
     def test_a_sensor_without_filters_takes_it_for_grey_and_says_so(self):
         for command in (("emulate", "bayer.strec"), ("capture", "live", "replay:bayer.strec")):

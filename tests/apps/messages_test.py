@@ -89,7 +89,7 @@ class InputTest(ProgramTest):
         stream = self.write_stream()
         self.fails(INPUT, [stream, "stipple decode"], "emulate", stream, "-o", "x")
         self.succeed("capture", "record", "replay:light.npy", "-o", "b.strec", "--set",
-                     "AcquisitionFrameRate=0")
+                     "camera.AcquisitionFrameRate=0")
         self.fails(INPUT, ["b.strec", "recording of a camera", "capture replay"],
                    "decode", "b.strec", "-o", "x.npy")
 

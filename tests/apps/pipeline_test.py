@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 from program import ProgramTest
 
-EXACT = ["--set", "shot_noise=false", "--set", "read_noise_e=0"]
+EXACT = ["--set", "sensor.shot_noise=false", "--set", "sensor.read_noise_e=0"]
 STEP = 2000 / 255 / 1000  # one DN of the default sensor in units of light
 
 
@@ -54,7 +54,7 @@ class PipelineTest(ProgramTest):
 
     def test_samples_that_the_full_well_clips_count_as_saturated(self):
         light = self.write_flat("light.npy", slots=8, light=0.9)
-        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "full_well_e=500")
+        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "sensor.full_well_e=500")
         self.assertEqual(figures["saturated_fraction"], 1)  # 900 e a slot
         self.assertIn("100.00 % of the samples saturated",
                       self.succeed("decode", "a.stipple", "-o", "a.npy", "--method", "naive"))
@@ -90,7 +90,7 @@ class PipelineTest(ProgramTest):
 
     def test_schedule_and_sensor_follow_the_settings(self):
         light = self.write_flat("light.npy", slots=6, rows=4, cols=4)
-        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "bit_depth=12",
+        figures = self.figures("emulate", light, "-o", "a.stipple", "--set", "sensor.bit_depth=12",
                                "--set", "schedule.exposure_slots=[1]")
         self.assertEqual(figures["samples"], 6 * 16)  # each pixel in each slot
         self.assertEqual(figures["payload_bits"], 6 * 16 * 12)
@@ -113,7 +113,7 @@ class PipelineTest(ProgramTest):
         light = np.zeros((6, 4, 5, 3), np.float32) + [0.25, 0.5, 1]
         self.write_array("light.npy", light)
         figures = self.figures("emulate", "light.npy", "-o", "a.stipple", "--sensor", "ideal",
-                               "--set", "cfa=gbrg", "--schedule", "full1x", "--truth", "truth.npy")
+                               "--set", "sensor.cfa=gbrg", "--schedule", "full1x", "--truth", "truth.npy")
         self.assertEqual(figures["samples"] * figures["compression_ratio"], 6 * 20)
         np.testing.assert_allclose(self.array("truth.npy"), light)
         report = self.figures("info", "a.stipple")
@@ -127,9 +127,9 @@ class PipelineTest(ProgramTest):
 
     def test_pixels_that_differ_come_back_alike(self):
         light = self.write_flat("light.npy", slots=40, light=0.2)
-        self.succeed("emulate", light, "-o", "a.stipple", "--sensor", "ideal", "--set", "map_cols=2",
-                     "--set", "transmittance=[1, 0.125]", "--set", "gain_map=[1, 4]",
-                     "--set", "dark_current_e_per_s=2000")
+        self.succeed("emulate", light, "-o", "a.stipple", "--sensor", "ideal", "--set", "sensor.map_cols=2",
+                     "--set", "sensor.transmittance=[1, 0.125]", "--set", "sensor.gain_map=[1, 4]",
+                     "--set", "sensor.dark_current_e_per_s=2000")
         calibration = self.figures("info", "a.stipple")["calibration"]
         self.assertEqual(calibration["responsivity"], [1, 0.125])
         self.assertEqual(calibration["dark_e_per_slot"], 10)

@@ -14,7 +14,7 @@ from program import OK, ProgramTest
 
 SEED = 1
 RANDOM_STATES = 12
-FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+FAST = ("--set", "camera.AcquisitionFrameRate=0", "--buffers", "1024")
 RUNS = {"out.stipple": ("emulate", "light.npy"),
         "live.stipple": ("capture", "live", "replay:light.npy", *FAST),
         "out.strec": ("capture", "record", "replay:light.npy", *FAST),

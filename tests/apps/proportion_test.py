@@ -156,7 +156,7 @@ class ProportionTest(ProgramTest):
     def recorded(self, frames=2, size=8):
         self.write_flat("light.npy", frames, size, size)
         self.succeed("capture", "record", "replay:light.npy", "-o", "clip.strec", "--force", "--set",
-                     "AcquisitionFrameRate=0", "--set", "PixelFormat=Mono8", "--buffers", 64)
+                     "camera.AcquisitionFrameRate=0", "--set", "camera.PixelFormat=Mono8", "--buffers", 64)
 
     def change_frame(self, which, fields, payload=None):
         """Writes numbers (offset in the record: code, value) of docs/recording_format.md to a frame."""
@@ -284,7 +284,7 @@ class ProportionTest(ProgramTest):
             self.refuses(["deep.toml:", "longer than 256"], "schedule", "show", "deep.toml")
         self.write_flat("light.npy")
         self.refuses(["bit_depth"], "emulate", "light.npy", "-o", "x.stipple", "--set",
-                     f"bit_depth={{{key}=1}}")
+                     f"sensor.bit_depth={{{key}=1}}")
         self.write("deep.stipple", stream_header(8, 8, provenance=f"{key}=1".encode()) + dropped(0, 8))
         code, said = self.measured("info", "deep.stipple")
         self.assertEqual(code, OK, said)

@@ -40,9 +40,9 @@ class ProvenanceTest(ProgramTest):
         np.save(self.folder / "a scene's.npy", light)
         provenance, command = self.made_again(
             "a scene's.npy", "--transfer", "srgb", "--max-value", 0.51234567890123, "--luminance",
-            "--sensor", "lux1310", "--set", "slot_us=3.5", "--set", "timing.channels=8",
-            "--set", "timing.code_load_clocks=0",
-            "--set", "full_scale_e=1e4", "--schedule", "tiled", "--set", "schedule.tile_rows=8",
+            "--sensor", "lux1310", "--set", "sensor.slot_us=3.5", "--set", "sensor.timing.channels=8",
+            "--set", "sensor.timing.code_load_clocks=0",
+            "--set", "sensor.full_scale_e=1e4", "--schedule", "tiled", "--set", "schedule.tile_rows=8",
             "--overrun", "drop", "--seed", 2**64 - 1)
         self.assertEqual(shlex.split(command)[2], "a scene's.npy")
         self.assertEqual(provenance["footage"]["max_value"], 0.51234567890123)
@@ -60,7 +60,7 @@ class ProvenanceTest(ProgramTest):
             self.write_png(f"scene/f{i}.png", frame)
         (self.folder / "my.toml").write_text('name = "my"\nfull_well_e = 900\n')
         self.succeed("schedule", "make", "tiled", "-o", "code.toml", "--size", "6x4", "--set",
-                     "tile_rows=4", "--set", "tile_cols=6")
+                     "schedule.tile_rows=4", "--set", "schedule.tile_cols=6")
         provenance, command = self.made_again("scene/", "--sensor", "my.toml", "--schedule",
                                               "code.toml")
         self.assertEqual(command, "stipple emulate scene -o again.stipple --sensor my.toml "

@@ -13,7 +13,7 @@ from program import DEVICE, INPUT, PROGRAM, STOPPED, ProgramTest, project_path
 from sample_stream import crc32c, samples
 
 DOCUMENT = project_path("docs/recording_format.md")
-FAST = ("--set", "AcquisitionFrameRate=0", "--buffers", "1024")
+FAST = ("--set", "camera.AcquisitionFrameRate=0", "--buffers", "1024")
 
 
 def lines_of_the_document():
@@ -59,7 +59,7 @@ class RecordingTest(ProgramTest):
         for rate in (50, 400):
             for frames in (2, 3, 6):
                 done = self.figures("capture", "record", "replay:light.npy", "-o", "clip.strec",
-                                    "--set", f"AcquisitionFrameRate={rate}", "--frames", frames,
+                                    "--set", f"camera.AcquisitionFrameRate={rate}", "--frames", frames,
                                     "--force")
                 self.assertAlmostEqual(done["frames_per_s"], rate, places=6)
 
@@ -78,9 +78,9 @@ class RecordingTest(ProgramTest):
         self.write_flat("film.npy", 12)
         for rate, slot_us, said in ((50, 5000, True), (50, 20000, False), (200, 5000, False)):
             self.succeed("capture", "record", "replay:film.npy", "-o", "film.strec", "--set",
-                         f"AcquisitionFrameRate={rate}", "--force")
+                         f"camera.AcquisitionFrameRate={rate}", "--force")
             done = self.run_program("emulate", "film.strec", "-o", "a.stipple", "--force", "-q",
-                                    "--set", f"slot_us={slot_us}")
+                                    "--set", f"sensor.slot_us={slot_us}")
             self.assertEqual(done.returncode, 0, done.stderr)
             if not said:
                 self.assertEqual(done.stderr, "")
@@ -97,7 +97,7 @@ class RecordingTest(ProgramTest):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         for part in ("film.mp4: plays 30 frames/s", "6.67 times as fast", "slot_us=33333"):
             self.assertIn(part, done.stderr)
-        self.assertEqual(self.run_program(*emulate, "--set", "slot_us=33333").stderr, "")
+        self.assertEqual(self.run_program(*emulate, "--set", "sensor.slot_us=33333").stderr, "")
 
     def test_a_recording_comes_back_as_the_light_it_was_made_of(self):
         self.record()
@@ -154,7 +154,7 @@ class RecordingTest(ProgramTest):
     def test_ctrl_c_leaves_a_whole_stream(self):
         self.record()
         live = self.start_program("capture", "live", "replay:clip.strec", "-o", "a.stipple",
-                                  "--set", "Loop=1", "--set", "AcquisitionFrameRate=100")
+                                  "--set", "camera.Loop=1", "--set", "camera.AcquisitionFrameRate=100")
         for _ in range(6000):  # until some slots are in the file that is not yet in place
             if any(path.stat().st_size > 4000 for path in self.folder.glob(".*stipple*")):
                 break

@@ -29,13 +29,13 @@ class RecoverTest(ProgramTest):
     def killed_stream(self):
         self.write_flat("light.npy", slots=40)
         return self.killed("capture", "live", "replay:light.npy", "-o", "clip.stipple", "--set",
-                           "Loop=1", "--set", "AcquisitionFrameRate=100")
+                           "camera.Loop=1", "--set", "camera.AcquisitionFrameRate=100")
 
     def killed_recording(self):
         np.save(self.folder / "light.npy",
                 np.random.default_rng(1).integers(0, 65536, (20, 6, 8), dtype=np.uint16))
         return self.killed("capture", "record", "replay:light.npy", "-o", "clip.strec", "--set",
-                           "Loop=1", "--set", "AcquisitionFrameRate=100")
+                           "camera.Loop=1", "--set", "camera.AcquisitionFrameRate=100")
 
     def test_a_stream_is_kept_up_to_its_last_whole_packet(self):
         left = self.killed_stream()
@@ -101,7 +101,7 @@ class RecoverTest(ProgramTest):
     def test_what_is_being_written_is_left_alone(self):
         self.write_flat("light.npy", slots=40)
         program = self.start_program("capture", "live", "replay:light.npy", "-o", "clip.stipple",
-                                     "--set", "Loop=1", "--set", "AcquisitionFrameRate=100")
+                                     "--set", "camera.Loop=1", "--set", "camera.AcquisitionFrameRate=100")
         self.addCleanup(program.communicate)
         self.addCleanup(program.kill)
         for _ in range(6000):
@@ -152,7 +152,7 @@ class RecordingInfoTest(ProgramTest):
         np.save(self.folder / "light.npy",
                 np.random.default_rng(1).integers(0, 65536, (9, 6, 8), dtype=np.uint16))
         self.succeed("capture", "record", "replay:light.npy", "-o", "clip.strec", "--set",
-                     "AcquisitionFrameRate=50")
+                     "camera.AcquisitionFrameRate=50")
         info = self.figures("info", "clip.strec")
         expected = {"kind": "recording", "settings": {"AcquisitionFrameRate": "50"}, "frames": 9,
                     "incomplete": 0, "missing_frames": 0, "gaps": [], "width": 8, "height": 6,
@@ -167,7 +167,7 @@ class RecordingInfoTest(ProgramTest):
     def test_it_names_the_places_of_gaps_and_damage(self):
         np.save(self.folder / "light.npy", np.zeros((9, 6, 8), np.uint16))
         self.succeed("capture", "record", "replay:light.npy", "-o", "clip.strec", "--set",
-                     "AcquisitionFrameRate=0", "--buffers", "1024")
+                     "camera.AcquisitionFrameRate=0", "--buffers", "1024")
         content = (self.folder / "clip.strec").read_bytes()
         starts = [at for at in range(len(content)) if content.startswith(b"\xc5FRM", at)]
         # Frames 3 and 4 are blocks 4 and 5.

@@ -37,7 +37,7 @@ class DiskTest(ProgramTest):
 
     def test_a_file_is_synced_then_named_then_its_folder_is_synced(self):
         self.write_stream("clip.stipple")
-        record = ("capture", "record", "replay:light.npy", "-o", "a.strec", "--set", "AcquisitionFrameRate=0")
+        record = ("capture", "record", "replay:light.npy", "-o", "a.strec", "--set", "camera.AcquisitionFrameRate=0")
         for name, line in (("out.npy", [*SYNTH, "out.npy"]), ("out.mp4", [*SYNTH, "out.mp4"]),
                            ("b.stipple", ["emulate", "light.npy", "-o", "b.stipple"]),
                            ("a.strec", record), ("s.toml", ["schedule", "make", "tiled", "-o", "s.toml"]),
@@ -159,7 +159,7 @@ class ClosedStreamsTest(ProgramTest):
                 for stream in streams:
                     os.close(stream)
             run = subprocess.Popen([PROGRAM, "capture", "record", "replay:light.npy", "-o", name, "-q", "--set",
-                                    "Loop=1", "--set", "AcquisitionFrameRate=100"], cwd=self.folder,
+                                    "camera.Loop=1", "--set", "camera.AcquisitionFrameRate=100"], cwd=self.folder,
                                    preexec_fn=close)
             self.addCleanup(run.kill)
             deadline = time.monotonic() + 60

@@ -17,14 +17,14 @@ class MakeTest(ProgramTest):
             self.succeed("schedule", "make", name, "-o", f"{name}.toml", "--size", "24x16")
             for schedule in (name, f"{name}.toml"):
                 self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--schedule", schedule,
-                             "--set", "charge_stores=2", "--force")
+                             "--set", "sensor.charge_stores=2", "--force")
                 self.succeed("decode", "clip.stipple", "-o", f"{schedule}.npy", "--method", "naive")
             np.testing.assert_array_equal(self.array(f"{name}.npy"), self.array(f"{name}.toml.npy"))
 
     def test_settings_change_the_schedule(self):
         figures = self.figures("schedule", "make", "pixel_flutter", "-o", "mine.toml", "-q",
-                               "--set", "tile_rows=2", "--set", "tile_cols=3",
-                               "--set", "code_slots=6", "--set", "open_slots=2", "--size", "30x20")
+                               "--set", "schedule.tile_rows=2", "--set", "schedule.tile_cols=3",
+                               "--set", "schedule.code_slots=6", "--set", "schedule.open_slots=2", "--size", "30x20")
         self.assertEqual(figures, {
             "name": "pixel_flutter", "tile_rows": 2, "tile_cols": 3, "period_slots": 6,
             "compression_ratio": 6, "light_throughput": 1 / 3, "min_exposures": 1,
@@ -43,7 +43,7 @@ class MakeTest(ProgramTest):
         self.fails(USAGE, [], "schedule")
         self.fails(INPUT, ["random", "two_bucket"], "schedule", "make", "nobody", "-o", "x.toml")
         self.fails(INPUT, ["tile_row"], "schedule", "make", "tiled", "-o", "x.toml", "--set",
-                   "tile_row=3")
+                   "schedule.tile_row=3")
 
 
 class ShowTest(ProgramTest):

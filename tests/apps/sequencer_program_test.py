@@ -10,7 +10,7 @@ import numpy as np
 from program import INPUT, USAGE, ProgramTest, project_path
 from sample_stream import samples
 
-TILES = {"tiled": ["--set", "tile_rows=5", "--set", "tile_cols=7"],
+TILES = {"tiled": ["--set", "schedule.tile_rows=5", "--set", "schedule.tile_cols=7"],
          "full1x": [], "pixel_flutter": [], "two_bucket": []}
 
 
@@ -28,12 +28,11 @@ class SequencerProgramTest(ProgramTest):
     def test_the_chip_runs_from_the_image_as_from_the_schedule(self):
         light = np.random.default_rng(1).uniform(0, 1, (40, 12, 20))
         self.write_array("light.npy", light)
-        stores = ["--set", "charge_stores=2"]
+        stores = ["--set", "sensor.charge_stores=2"]
         for name, options in TILES.items():
             self.compile(name, *options)
-            settings = [o.replace("tile_", "schedule.tile_") for o in options] + stores
-            self.succeed("emulate", "light.npy", "-o", "a.stipple", "--schedule", name, *settings,
-                         "--force")
+            self.succeed("emulate", "light.npy", "-o", "a.stipple", "--schedule", name, *options,
+                         *stores, "--force")
             self.succeed("emulate", "light.npy", "-o", "b.stipple", "--schedule", f"{name}.mem",
                          *stores, "--force")
             self.assertEqual(self.packets("a.stipple"), self.packets("b.stipple"), name)

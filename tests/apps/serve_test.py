@@ -144,7 +144,7 @@ class ServeTest(ProgramTest):
         address = self.serve(self.scene(), "--fps", 50)
         for rate, code in ((50, 0), (51, INPUT)):
             done = self.run_program("capture", "record", "gige:" + address, "-o", f"{rate}.strec", "--frames",
-                                    2, "--set", f"AcquisitionFrameRate={rate}")
+                                    2, "--set", f"camera.AcquisitionFrameRate={rate}")
             if BUILT_WITHOUT in done.stderr:
                 self.skipTest(BUILT_WITHOUT)
             self.assertEqual(done.returncode, code, done.stderr)
@@ -170,7 +170,8 @@ class ServeTest(ProgramTest):
                 ("Width=33", ["Width: 33 cannot be set", "it takes ", " to 64 in steps of "]),
                 ("ExposureTime=100", ["ExposureTime: the camera has no such feature"]),
                 ("Wdith=32", ["Wdith: the camera has no such feature", 'did you mean "Width"?'])):
-            done = self.run_program("capture", "record", "gige:" + address, "-o", "x.strec", "--set", setting)
+            done = self.run_program("capture", "record", "gige:" + address, "-o", "x.strec", "--set",
+                                    f"camera.{setting}")
             if BUILT_WITHOUT in done.stderr:
                 self.skipTest(BUILT_WITHOUT)
             self.assertEqual(done.returncode, INPUT, done.stderr)
@@ -195,7 +196,7 @@ class ServeTest(ProgramTest):
         return (self.folder / one).read_bytes() == (self.folder / other).read_bytes()
 
     def test_a_coded_stream_arrives_as_emulate_writes_it(self):
-        choice = [self.scene(), "--seed", 7, "--set", "bit_depth=10", "--schedule", "tiled"]
+        choice = [self.scene(), "--seed", 7, "--set", "sensor.bit_depth=10", "--schedule", "tiled"]
         self.succeed("emulate", *choice, "-o", "emulated.stipple")
         address = self.serve(*choice, "--mode", "coded")
         for output in ("first.stipple", "second.stipple"):  # each start begins with slot 0
@@ -206,7 +207,7 @@ class ServeTest(ProgramTest):
         self.succeed("emulate", self.scene(), "-o", "emulated.stipple")
         address = self.serve("scene.npy", "--mode", "coded", "--fault-drop", 0.1,
                              "--fault-reorder")
-        self.record(address, "clip.stipple", "--coded", "--set", "GevSCPSPacketSize=576")
+        self.record(address, "clip.stipple", "--coded", "--set", "camera.GevSCPSPacketSize=576")
         self.assertTrue(self.same_bytes("clip.stipple", "emulated.stipple"))
 
     def test_slots_that_are_lost_are_dropped_packets(self):
@@ -214,7 +215,7 @@ class ServeTest(ProgramTest):
         address = self.serve("scene.npy", "--mode", "coded", "--fault-gap-at", 10,
                              "--fault-gap", 3, "--fault-lose", 0.05)
         done = self.record(address, "clip.stipple", "--coded", "--json", "-", "--set",
-                           "GevSCPSPacketSize=576")
+                           "camera.GevSCPSPacketSize=576")
         report = json.loads(done.stdout)
         self.assertEqual(report["slots"], 24)
         self.assertGreater(report["missing_slots"], 0)
@@ -365,7 +366,7 @@ class ServeTest(ProgramTest):
     def test_options_of_another_mode_are_refused(self):
         serve = ("capture", "serve", self.scene())
         for option, value in (("--sensor", "ideal"), ("--schedule", "tiled"), ("--seed", 3),
-                              ("--set", "bit_depth=8"), ("--overrun", "stretch"), ("--threads", 1)):
+                              ("--set", "sensor.bit_depth=8"), ("--overrun", "stretch"), ("--threads", 1)):
             self.fails(USAGE, [option, "--mode coded"], *serve, option, value)
         self.fails(USAGE, ["--format", "--mode frames"], *serve, "--mode", "coded", "--format",
                    "Mono8")

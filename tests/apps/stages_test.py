@@ -11,7 +11,7 @@ from program import INPUT, OK, ProgramTest
 QUICK = ["--method", "portz2013"]
 for setting in ("stage1.window_px=2", "stage1.iterations=3", "stage2.window_px=2",
                 "stage2.iterations=4", "stage2.flow_radius_slots=1"):
-    QUICK += ["--set", setting]
+    QUICK += ["--set", f"decoder.{setting}"]
 
 
 class StagesTest(ProgramTest):

@@ -47,7 +47,7 @@ class TimingTest(ProgramTest):
         figures = self.figures("timing", "--sensor", "lux1310", "--schedule", "hardware_tiled")
         self.assertEqual(figures["full_settle_clocks"], 79)
         self.assertEqual(figures["slowest_settle_clocks"], 20)
-        arguments = ("timing", "--sensor", "lux1310", *SMALL, "--set", "timing.hypothetical=''")
+        arguments = ("timing", "--sensor", "lux1310", *SMALL, "--set", "sensor.timing.hypothetical=''")
         self.assertIsNone(self.figures(*arguments)["hypothetical"])
         self.assertNotIn("hypothetical", self.succeed(*arguments))
 
@@ -67,7 +67,7 @@ class TimingTest(ProgramTest):
 
     def test_info_says_how_long_stretched_slots_were(self):
         self.write_flat("light.npy", slots=32, rows=40, cols=30)
-        sensor = ("--sensor", "imx296", "--set", "slot_us=50")
+        sensor = ("--sensor", "imx296", "--set", "sensor.slot_us=50")
         emulated = self.figures("emulate", "light.npy", "-o", "a.stipple", *sensor)["readout"]
         self.assertEqual(emulated["overrun_slots"], 32)
         info = self.figures("info", "a.stipple")
@@ -77,7 +77,7 @@ class TimingTest(ProgramTest):
         self.assertIn(f"a slot is nominally 50 us; 32 of 32 slots were stretched, mean {mean_us:.4g} us",
                       self.succeed("info", "a.stipple"))
         self.assertEqual(self.figures("emulate", "light.npy", "-o", "b.stipple", "--sensor",
-                                      "imx296", "--set", "slot_us=5000")["readout"]["overrun_slots"],
+                                      "imx296", "--set", "sensor.slot_us=5000")["readout"]["overrun_slots"],
                          0)
         self.assertNotIn("nominally", self.succeed("info", "b.stipple"))
 
@@ -89,11 +89,11 @@ class TimingTest(ProgramTest):
     def test_impossible_timing_names_the_constraint(self):
         for parts, arguments in (
                 (["2000 x 100", "1280 x 1024"], ["--roi", "2000x100"]),
-                (["7 channels", "1280 columns"], ["--set", "timing.channels=7"]),
-                (["timing.clock_hz", "1.."], ["--set", "timing.clock_hz=0"]),
-                (["0 clocks"], ["--set", "timing.io_clocks=0", "--set",
-                                "timing.clocks_per_column=0"]),
-                (["slot_us", "clock"], ["--set", "slot_us=0.001", "--set", "timing.clock_hz=1"])):
+                (["7 channels", "1280 columns"], ["--set", "sensor.timing.channels=7"]),
+                (["timing.clock_hz", "1.."], ["--set", "sensor.timing.clock_hz=0"]),
+                (["0 clocks"], ["--set", "sensor.timing.io_clocks=0", "--set",
+                                "sensor.timing.clocks_per_column=0"]),
+                (["slot_us", "clock"], ["--set", "sensor.slot_us=0.001", "--set", "sensor.timing.clock_hz=1"])):
             self.fails(INPUT, parts, "timing", "--sensor", "lux1310", *arguments)
         for roi in ("12", "0x5", "5x", "axb"):
             self.fails(USAGE, ["--roi"], "timing", "--sensor", "lux1310", "--roi", roi)
@@ -125,8 +125,8 @@ class ReadoutOfARecordingTest(ProgramTest):
         self.assertNotIn("readout", self.figures("emulate", "light.npy", "-o", "a.stipple"))
 
     def test_rows_that_do_not_fit_are_dropped_and_the_rest_decodes(self):
-        whole = self.emulate("--set", "timing.code_load_clocks=0")
-        cut = self.emulate("--set", "timing.code_load_clocks=0", "--set", "slot_us=6",
+        whole = self.emulate("--set", "sensor.timing.code_load_clocks=0")
+        cut = self.emulate("--set", "sensor.timing.code_load_clocks=0", "--set", "sensor.slot_us=6",
                            "--overrun", "drop")
         readout = cut["readout"]
         self.assertGreater(readout["overrun_slots"], 0)
@@ -148,19 +148,19 @@ class ReadoutOfARecordingTest(ProgramTest):
 
     def test_overruns_stretch_their_slots_and_lose_nothing(self):
         whole = self.emulate()
-        slow = ["--set", "slot_us=6", "--set", f"timing.code_load_clocks={2700 * 1024 // 32}"]
+        slow = ["--set", "sensor.slot_us=6", "--set", f"sensor.timing.code_load_clocks={2700 * 1024 // 32}"]
         stretched = self.emulate(*slow, "--overrun", "stretch")
         self.assertEqual(stretched["samples"], whole["samples"])
         readout = stretched["readout"]
         self.assertEqual(readout["overrun_slots"], 20)  # the code takes 30 us to load
         self.assertEqual(readout["clocks"], 20 * 2700)
         text = self.succeed("emulate", "light.npy", "-o", "b.stipple", "--sensor", "lux1310",
-                            "--set", "slot_us=6")
+                            "--set", "sensor.slot_us=6")
         self.assertIn("--overrun drop", text)
 
     def test_what_dropping_cannot_help_is_refused(self):
         self.fails(INPUT, ["slot_us", "exposure code"], "emulate", "light.npy", "-o", "x.stipple",
-                   "--sensor", "lux1310", "--set", "slot_us=2", "--overrun", "drop")
+                   "--sensor", "lux1310", "--set", "sensor.slot_us=2", "--overrun", "drop")
         self.fails(INPUT, ["1280 x 1024"], "emulate",
                    self.write_flat("tall.npy", slots=1, rows=1025), "-o", "x.stipple", "--sensor",
                    "lux1310")

@@ -51,13 +51,13 @@ class ExtendingTest(unittest.TestCase):
 
     def test_a_sensor_key(self):
         whole = ("emulate", "clip.npy", "--sensor", "ideal", "--schedule", "tiled", "-o")
-        quarter = (*whole, "quarter.stipple", "--set", "fill_factor=0.25")
+        quarter = (*whole, "quarter.stipple", "--set", "sensor.fill_factor=0.25")
         self.run_copy(*quarter)
         self.run_copy(*whole, "whole.stipple")
         per_unit = [self.run_copy("info", name)["calibration"]["electrons_per_unit"]
                     for name in ("quarter.stipple", "whole.stipple")]
         self.assertAlmostEqual(per_unit[0], per_unit[1] / 4)
-        self.assertIn("fill_factor=0.25", self.run_copy("info", "quarter.stipple")["command"])
+        self.assertIn("sensor.fill_factor=0.25", self.run_copy("info", "quarter.stipple")["command"])
 
     def test_a_decoding_method(self):
         still = np.full((16, 24, 40), 0.5, np.float32)
