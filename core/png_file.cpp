@@ -6,6 +6,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <csetjmp>
 #include <cstddef>
 #include <cstdlib>
@@ -193,6 +194,9 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place
         png_set_expand(png);
         png_set_strip_alpha(png);
         swap_bytes(png, image.pixels);
+        png_set_interlace_handling(png);
+        png_read_update_info(png, info);
+        assert(png_get_rowbytes(png, info) == row_bytes(image.pixels));
         png_read_image(png, rows.data());
         png_read_end(png, nullptr);
     }));
