@@ -6,8 +6,10 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <csetjmp>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -24,15 +26,28 @@ constexpr std::size_t kSignatureBytes = 8;
 constexpr png_fixed_point kLinear = PNG_FP_1;  // in a gAMA chunk
 
 /// What libpng gave up for. No string, for libpng leaves by a jump, which skips destructors.
-using Problem = std::array<char, 128>;
+struct Problem {
+    std::array<char, 128> text{};
+    bool no_memory = false;
+};
 
 [[noreturn]] void give_up(png_structp png, png_const_charp text) {
     auto& problem = *static_cast<Problem*>(png_get_error_ptr(png));
-    std::strncpy(problem.data(), text, problem.size() - 1);
+    std::strncpy(problem.text.data(), text, problem.text.size() - 1);
     png_longjmp(png, 1);
 }
 
 void drop_warning(png_structp /*png*/, png_const_charp /*text*/) {}
+
+void* allocate(png_structp png, png_alloc_size_t size) {
+    void* const memory = std::malloc(size);
+    if (memory == nullptr) static_cast<Problem*>(png_get_mem_ptr(png))->no_memory = true;
+    return memory;
+}
+
+void release(png_structp /*png*/, void* memory) {
+    std::free(memory);
+}
 
 /// Runs calls of libpng, which make no objects; false if it has given up.
 template <typename Calls>
@@ -66,8 +81,8 @@ struct Png {
 
     explicit Png(bool for_reading)
         : is_read(for_reading),
-          png((is_read ? png_create_read_struct : png_create_write_struct)(
-              PNG_LIBPNG_VER_STRING, &problem, give_up, drop_warning)),
+          png((is_read ? png_create_read_struct_2 : png_create_write_struct_2)(
+              PNG_LIBPNG_VER_STRING, &problem, give_up, drop_warning, &problem, allocate, release)),
           info(png == nullptr ? nullptr : png_create_info_struct(png)) {
         if (info != nullptr) return;
         destroy();
@@ -77,6 +92,11 @@ struct Png {
     Png(const Png&) = delete;
     Png& operator=(const Png&) = delete;
 
+    /// After libpng has given up. \throws std::bad_alloc.
+    [[nodiscard]] const char* reason() const {
+        if (problem.no_memory) throw std::bad_alloc();
+        return problem.text.data();
+    }
     void destroy() {
         is_read ? png_destroy_read_struct(&png, &info, nullptr)
                 : png_destroy_write_struct(&png, &info);
@@ -162,8 +182,8 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place
     const png_infop info = reader.info;
     const auto check = [&](bool succeeded) {
         if (succeeded) return;
-        throw InputError(place, fmt::format("offset {}: {}; it is damaged", source.chunk,
-                                            reader.problem.data()));
+        throw InputError(
+            place, fmt::format("offset {}: {}; it is damaged", source.chunk, reader.reason()));
     };
     check(succeeds(png, [&] { read_header(png, info, source); }));
     PngImage image = image_of(png, info, file.size(), place);
@@ -174,6 +194,9 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place
         png_set_expand(png);
         png_set_strip_alpha(png);
         swap_bytes(png, image.pixels);
+        png_set_interlace_handling(png);
+        png_read_update_info(png, info);
+        assert(png_get_rowbytes(png, info) == row_bytes(image.pixels));
         png_read_image(png, rows.data());
         png_read_end(png, nullptr);
     }));
@@ -204,8 +227,7 @@ void write_png_file(const std::filesystem::path& file, const PngPixels& pixels) 
     });
     if (sink.failure) std::rethrow_exception(sink.failure);
     if (!succeeded)
-        throw DeviceError(file.string(),
-                          fmt::format("cannot be written: {}", writer.problem.data()));
+        throw DeviceError(file.string(), fmt::format("cannot be written: {}", writer.reason()));
     sink.file.close();
 }
 

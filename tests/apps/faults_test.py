@@ -60,6 +60,10 @@ class FaultyRuns(ProgramTest):
     def prepare_one(self, name):
         if name == "emulate":
             self.prepare("out.stipple", "emulate", "light.npy")
+        elif name == "pictures":
+            for number, values in enumerate(np.load(self.folder / "light.npy") // 256):
+                self.write_png(f"frames/f{number}.png", values)
+            self.prepare("out.stipple", "emulate", "frames")
         elif name == "record":
             self.prepare("out.strec", "capture", "record", "replay:light.npy", *FAST)
         elif name == "live":
@@ -121,8 +125,9 @@ class FaultyRuns(ProgramTest):
         kept = [line for line in lines if re.search(r"(kept|left beside the outputs: \S+)$", line)]
         told = [line for line in lines if line not in kept]
         self.assertEqual(len(told), 1, outcome.said)
-        self.assertRegex(told[0], rf"^stipple: (({self.output}|light\.npy|clip\.stipple|/)\S*: .|"
+        self.assertRegex(told[0], rf"^stipple: (({self.output}|light\.npy|frames|clip\.stipple|/)\S*: .|"
                                   rf"{NO_MEMORY}$|{NO_THREAD}|{NO_WORKER})")
+        self.assertNotIn("damaged", outcome.said)
         for path in hidden:
             self.assertIn(path.name, outcome.said)
             self.assertTrue(self.is_whole(self.content(path.name)) or "left beside" in outcome.said, outcome.said)
@@ -167,6 +172,9 @@ class FaultsTest(FaultyRuns):
 
     def test_emulate(self):
         self.sweep("emulate")
+
+    def test_emulate_pictures(self):
+        self.sweep("pictures")
 
     def test_decode(self):
         self.sweep("decode")
