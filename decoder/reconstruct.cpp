@@ -218,7 +218,7 @@ std::uint64_t voxel_bytes(DecodeMethod method) {
         case DecodeMethod::kNaive:
             return 13;
         case DecodeMethod::kPortz2013:
-            return 400;
+            return 440;
         case DecodeMethod::kFast:
         case DecodeMethod::kBest:
             break;
