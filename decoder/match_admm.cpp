@@ -96,8 +96,9 @@ void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
                              Eigen::IdentityPreconditioner>
         inverse(m);
     inverse.setMaxIterations(options.cg_iterations);
-    // Below that, a residual is the rounding of M x.
-    inverse.setTolerance(std::max(options.cg_tolerance, std::numeric_limits<float>::epsilon()));
+    // A smaller residual is the rounding of M x.
+    constexpr float kRounding = std::numeric_limits<float>::epsilon();
+    inverse.setTolerance(static_cast<double>(std::max(options.cg_tolerance, kRounding)));
     const float threshold = 1 / options.rho;
     std::vector<float> v(problem.rows());
     Eigen::VectorXf d(m.cols());
