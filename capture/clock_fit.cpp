@@ -1,5 +1,6 @@
 #include "capture/clock_fit.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -42,35 +43,26 @@ void ClockFitter::merge_bins() {
 
 std::optional<ClockFit> ClockFitter::fit() const {
     if (bins_.empty()) return std::nullopt;
-    const auto count = static_cast<double>(bins_.size());
-    double mean_time = 0;
-    double mean_delay = 0;
-    for (const Bin& bin : bins_) {
-        mean_time += static_cast<double>(bin.device_ns) / count;
-        mean_delay += static_cast<double>(bin.delay_ns) / count;
-    }
-    double variance = 0;
-    double covariance = 0;
-    for (const Bin& bin : bins_) {
-        const double time = static_cast<double>(bin.device_ns) - mean_time;
-        variance += time * time;
-        covariance += time * (static_cast<double>(bin.delay_ns) - mean_delay);
-    }
+    static_assert(sizeof(Bin) == 2 * sizeof(std::int64_t));
+    using Column = Eigen::Map<const Eigen::Array<std::int64_t, Eigen::Dynamic, 1>, Eigen::Unaligned,
+                              Eigen::InnerStride<2>>;
+    const Column device_ns(&bins_.front().device_ns, std::ssize(bins_));
+    const Column delay_ns(&bins_.front().delay_ns, std::ssize(bins_));
+    const auto time = device_ns.cast<double>();
+    const auto delay = delay_ns.cast<double>();
+    const double mean_time = time.mean();
+    const double mean_delay = delay.mean();
+    const double variance = (time - mean_time).square().sum();
+    const double covariance = ((time - mean_time) * (delay - mean_delay)).sum();
     const double slope = variance > 0 ? covariance / variance : 0;
     const double start = mean_delay - slope * mean_time;
-    double squares = 0;
-    for (const Bin& bin : bins_) {
-        const double deviation =
-            static_cast<double>(bin.delay_ns) - start - slope * static_cast<double>(bin.device_ns);
-        squares += deviation * deviation;
-    }
     ClockFit result = fit_;
     if (std::abs(start) < 9e18)
         result.offset_ns =
             static_cast<std::int64_t>(static_cast<std::uint64_t>(fit_.offset_ns) +
                                       static_cast<std::uint64_t>(std::llround(start)));
     result.drift_ppm = slope * 1e6;
-    result.spread_ns = std::sqrt(squares / count);
+    result.spread_ns = std::sqrt((delay - start - slope * time).square().mean());
     return result;
 }
 

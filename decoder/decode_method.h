@@ -41,7 +41,7 @@ struct NamedDecodeMethod {
     std::uint64_t voxel_bytes;    ///< memory of the estimate and all that belongs to it
     /// The keys of docs/decoder_options.md. \throws InputError as Config.
     void (*read_options)(Config& config, DecodeOptions& options);
-    /// The result may be slightly negative. Nothing if the checkpoint has stopped it.
+    /// The result may be slightly negative. Nothing if the progress callback has stopped it.
     std::optional<FluxVideo> (*decode)(const BlockTask& block);
 };
 

@@ -18,7 +18,7 @@
 namespace stipple {
 namespace {
 
-constexpr double kStartShare = 0.15;  // of all work; for the checkpoint
+constexpr double kStartShare = 0.15;  // of all work; for the progress
 constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
 constexpr float kMaxSigma = 10;
 

@@ -82,18 +82,18 @@ MotionOptions motion_options(int round, bool last) {
                 : MotionOptions{.search = {.patch_stride_px = 6, .range_sigma_px = 0.3F}};
 }
 
-/// Counts iterations for a checkpoint. Finding the motion takes about as long as 8 of them.
+/// Counts iterations for the progress. Finding the motion takes about as long as 8 of them.
 class WorkCount {
   public:
     WorkCount(const MotionTvOptions& options, const ProgressCallback& progress)
         : total_(options.static_tv.iterations +
                  (options.rounds - 1) * (options.along_motion.iterations + kMotion) +
                  options.last_iterations + kMotion),
-          checkpoint_(progress) {}
+          progress_(progress) {}
     void add_motion() { done_ += kMotion; }
     bool add_iteration() {
         ++done_;
-        stopped_ = stopped_ || !checkpoint_(static_cast<double>(done_) / total_);
+        stopped_ = stopped_ || !progress_(static_cast<double>(done_) / total_);
         return !stopped_;
     }
     [[nodiscard]] bool stopped() const { return stopped_; }
@@ -103,7 +103,7 @@ class WorkCount {
     int total_;
     int done_ = 0;
     bool stopped_ = false;
-    const ProgressCallback& checkpoint_;
+    const ProgressCallback& progress_;
 };
 
 MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions options) {

@@ -1,98 +1,115 @@
 #include "decoder/portz2013/match_admm.h"
 
+#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
-#include <cstddef>
+#include <limits>
 #include <vector>
-
-#include "core/parallel.h"
 
 namespace stipple {
 namespace {
 
-constexpr std::size_t kStretch = 16384;
+class NormalMatrix;
 
-/// Calls body(first, one past the last, number) for fixed stretches of [0, size).
-template <typename Body>
-void for_each_stretch(std::size_t size, const Body& body) {
-    parallel_for(0, static_cast<int>((size + kStretch - 1) / kStretch), [&](int i) {
-        const std::size_t begin = static_cast<std::size_t>(i) * kStretch;
-        body(begin, std::min(begin + kStretch, size), static_cast<std::size_t>(i));
-    });
-}
+}  // namespace
+}  // namespace stipple
 
-/// Summed in fixed stretches, these in order.
-double dot(std::span<const float> a, std::span<const float> b) {
-    std::vector<double> sums(a.size() / kStretch + 1);
-    for_each_stretch(a.size(), [&](std::size_t begin, std::size_t end, std::size_t stretch) {
-        double sum = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-        sums[stretch] = sum;
-    });
-    double sum = 0;
-    for (const double part : sums) sum += part;
-    return sum;
-}
+// NOLINTBEGIN(readability-identifier-naming): what Eigen asks of a matrix without elements
+template <>
+struct Eigen::internal::traits<stipple::NormalMatrix>
+    : Eigen::internal::traits<Eigen::SparseMatrix<double>> {};
 
-/// to = a + scale * b
-void combine(std::span<const float> a, double scale, std::span<const float> b,
-             std::span<float> to) {
-    const auto s = static_cast<float>(scale);
-    for_each_stretch(a.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) to[i] = a[i] + s * b[i];
-    });
-}
+namespace stipple {
+namespace {
 
-/// Solves M x = d.
-class ConjugateGradients {
+/// M = K^T K as Eigen multiplies with it: in float, the sums of the solver are in double.
+class NormalMatrix : public Eigen::EigenBase<NormalMatrix> {
   public:
-    explicit ConjugateGradients(MatchOperator& problem)
-        : problem_(problem),
-          residual_(problem.voxels()),
-          direction_(problem.voxels()),
-          image_(problem.voxels()) {}
+    using Scalar = double;
+    using RealScalar = double;
+    using StorageIndex = int;
+    enum {
+        ColsAtCompileTime = Eigen::Dynamic,
+        MaxColsAtCompileTime = Eigen::Dynamic,
+        IsRowMajor = 0
+    };
 
-    void solve(std::span<const float> d, const MatchAdmmOptions& options,
-               const std::function<bool()>& progress, std::span<float> x) {
-        problem_.normal(x, image_);
-        combine(d, -1, image_, residual_);
-        direction_ = residual_;
-        double size = dot(residual_, residual_);
-        const double tolerance = static_cast<double>(options.cg_tolerance);
-        const double small_enough = tolerance * tolerance * dot(d, d);
-        for (int i = 0; i < options.cg_iterations && size > small_enough && progress(); ++i) {
-            problem_.normal(direction_, image_);
-            const double curvature = dot(direction_, image_);
-            if (!(curvature > 0)) return;
-            combine(x, size / curvature, direction_, x);
-            combine(residual_, -size / curvature, image_, residual_);
-            const double next_size = dot(residual_, residual_);
-            combine(residual_, next_size / size, direction_, direction_);
-            size = next_size;
+    NormalMatrix(MatchOperator& problem, const std::function<bool()>& progress)
+        : problem_(problem), progress_(progress), x_(cols()), image_(cols()) {}
+
+    [[nodiscard]] Eigen::Index rows() const { return cols(); }
+    [[nodiscard]] Eigen::Index cols() const { return static_cast<Eigen::Index>(problem_.voxels()); }
+    template <typename X>
+    Eigen::Product<NormalMatrix, X, Eigen::AliasFreeProduct> operator*(
+        const Eigen::MatrixBase<X>& x) const {
+        return {*this, x.derived()};
+    }
+
+    /// Once false, always.
+    bool goes_on() const {
+        going_ = going_ && progress_();
+        return going_;
+    }
+    /// to += scale M x. Once told to stop, M is the identity: the solver ends soon, its result is
+    /// not used.
+    void add_image(const Eigen::VectorXd& x, double scale, Eigen::VectorXd& to) const {
+        if (!goes_on()) {
+            to += scale * x;
+            return;
         }
+        x_ = x.cast<float>();
+        problem_.normal({x_.data(), problem_.voxels()}, {image_.data(), problem_.voxels()});
+        to += scale * image_.cast<double>();
     }
 
   private:
     MatchOperator& problem_;
-    std::vector<float> residual_;
-    std::vector<float> direction_;
-    std::vector<float> image_;
+    const std::function<bool()>& progress_;
+    mutable Eigen::VectorXf x_;
+    mutable Eigen::VectorXf image_;
+    mutable bool going_ = true;
 };
 
 }  // namespace
+}  // namespace stipple
+
+template <>
+struct Eigen::internal::generic_product_impl<stipple::NormalMatrix, Eigen::VectorXd,
+                                             Eigen::SparseShape, Eigen::DenseShape,
+                                             Eigen::GemvProduct>
+    : Eigen::internal::generic_product_impl_base<
+          stipple::NormalMatrix, Eigen::VectorXd,
+          Eigen::internal::generic_product_impl<stipple::NormalMatrix, Eigen::VectorXd>> {
+    static void scaleAndAddTo(Eigen::VectorXd& to, const stipple::NormalMatrix& m,
+                              const Eigen::VectorXd& x, double scale) {
+        m.add_image(x, scale, to);
+    }
+};
+// NOLINTEND(readability-identifier-naming)
+
+namespace stipple {
 
 void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
                       const AfterAdmmIteration& after_iteration,
                       const std::function<bool()>& progress, std::span<float> x) {
+    const NormalMatrix m(problem, progress);
+    Eigen::ConjugateGradient<NormalMatrix, Eigen::Lower | Eigen::Upper,
+                             Eigen::IdentityPreconditioner>
+        inverse(m);
+    inverse.setMaxIterations(options.cg_iterations);
+    // A smaller residual is the rounding of M x.
+    constexpr float kRounding = std::numeric_limits<float>::epsilon();
+    inverse.setTolerance(static_cast<double>(std::max(options.cg_tolerance, kRounding)));
     const float threshold = 1 / options.rho;
     std::vector<float> v(problem.rows());
-    std::vector<float> d(problem.voxels());
-    ConjugateGradients inverse(problem);
+    Eigen::VectorXf d(m.cols());
+    Eigen::Map<Eigen::VectorXf> light(x.data(), m.cols());
     problem.start_duals(x, v);
     for (int i = 0; i < options.iterations; ++i) {
-        problem.right_side(v, threshold, d);
-        inverse.solve(d, options, progress, x);
-        if (!progress()) return;
+        problem.right_side(v, threshold, {d.data(), problem.voxels()});
+        const Eigen::VectorXd solution =
+            inverse.solveWithGuess(d.cast<double>(), light.cast<double>());
+        if (!m.goes_on()) return;
+        light = solution.cast<float>();
         if (!after_iteration(i, problem.update_duals(x, threshold, v))) return;
     }
 }

@@ -48,7 +48,7 @@ class Decoder {
             const StageObserver& observer, const ProgressCallback& progress)
         : options_(options),
           observer_(observer),
-          checkpoint_(progress),
+          progress_(progress),
           table_(measurements),
           x_(nearest_samples(measurements)) {}
 
@@ -70,7 +70,7 @@ class Decoder {
         kSearch2{0.5, 0.55}, kSolve2{0.55, 1};
 
     bool reach(const Share& share, double fraction) {
-        stopped_ = stopped_ || !checkpoint_(share.begin + fraction * (share.end - share.begin));
+        stopped_ = stopped_ || !progress_(share.begin + fraction * (share.end - share.begin));
         return !stopped_;
     }
     void tell(std::string_view stage) const {
@@ -140,7 +140,7 @@ class Decoder {
 
     const Portz2013Options& options_;
     const StageObserver& observer_;
-    const ProgressCallback& checkpoint_;
+    const ProgressCallback& progress_;
     ExposureTable table_;
     FluxVideo x_;
     bool stopped_ = false;

@@ -46,7 +46,7 @@ inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
 /// of the samples that look alike, each explained by the samples of the others; then the same
 /// again, with patches found along the motion in the estimate and by search in it. Observed stages:
 /// `start` (nearest samples), `stage1`, `stage2`. Memory: 4 bytes for each row of the problem, some
-/// 450 bytes a voxel. Nothing if `progress` has stopped it. The same bits for any number of
+/// 490 bytes a voxel. Nothing if `progress` has stopped it. The same bits for any number of
 /// threads.
 [[nodiscard]] std::optional<FluxVideo> decode_portz2013(
     const Measurements& measurements, const Portz2013Options& options,

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <span>
 
 #include "core/error.h"
@@ -61,38 +64,33 @@ std::vector<TransferPoint> transfer_curve(const Series& series, const Statistics
     return points;
 }
 
+/// A figure of each point.
+auto column(std::span<const TransferPoint> points, double TransferPoint::*figure) {
+    constexpr int kFigures = sizeof(TransferPoint) / sizeof(double);
+    using Column = Eigen::Map<const Eigen::ArrayXd, Eigen::Unaligned, Eigen::InnerStride<kFigures>>;
+    return Column(&(points.front().*figure), std::ssize(points));
+}
+
 /// Slope of the least-squares line through the origin.
 double slope(std::span<const TransferPoint> points, double TransferPoint::*x,
              double TransferPoint::*y) {
-    double xy = 0, xx = 0;
-    for (const TransferPoint& point : points) {
-        xy += point.*x * point.*y;
-        xx += point.*x * point.*x;
-    }
-    return xy / xx;
+    return (column(points, x) * column(points, y)).sum() / column(points, x).square().sum();
 }
 
 /// LE: mean distance to the line that fits best relative to itself, 5 to 95 % of saturation.
 double linearity_error(const std::vector<TransferPoint>& points, double saturation_dn) {
-    double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
     std::vector<TransferPoint> used;
-    for (const TransferPoint& point : points)
-        if (point.mean_dn >= 0.05 * saturation_dn && point.mean_dn <= 0.95 * saturation_dn)
-            used.push_back(point);
-    for (const TransferPoint& point : used) {
-        const double weight = 1 / (point.mean_dn * point.mean_dn);
-        w += weight;
-        wx += weight * point.photons;
-        wy += weight * point.mean_dn;
-        wxx += weight * point.photons * point.photons;
-        wxy += weight * point.photons * point.mean_dn;
-    }
-    const double a1 = (w * wxy - wx * wy) / (w * wxx - wx * wx);
-    const double a0 = (wy - a1 * wx) / w;
-    double sum = 0;
-    for (const TransferPoint& point : used)
-        sum += std::abs(point.mean_dn / (a0 + a1 * point.photons) - 1);
-    return sum / static_cast<double>(used.size());
+    std::ranges::copy_if(points, std::back_inserter(used), [&](const TransferPoint& point) {
+        return point.mean_dn >= 0.05 * saturation_dn && point.mean_dn <= 0.95 * saturation_dn;
+    });
+    if (used.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::ArrayXd y = column(used, &TransferPoint::mean_dn);
+    // a0 + a1 H = y, divided by y: the weights are 1 / y^2.
+    Eigen::MatrixX2d line(y.size(), 2);
+    line << y.inverse(), column(used, &TransferPoint::photons) / y;
+    const Eigen::VectorXd fit =
+        line * line.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(y.size()));
+    return (fit.array().inverse() - 1).abs().mean();
 }
 
 /// The points up to 70 % of saturation. \throws InputError if they do not make a line.

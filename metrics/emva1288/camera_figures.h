@@ -21,7 +21,7 @@ struct CameraFigures {
     double snr_max = 0;                  ///< sqrt(mu_e.sat)
     double sensitivity_threshold_p = 0;  ///< mu_p.min, photons with SNR 1
     double dynamic_range = 0;            ///< mu_p.sat / mu_p.min
-    double linearity_error = 0;          ///< LE, a fraction
+    double linearity_error = 0;          ///< LE, a fraction; NaN from less than two points
 };
 
 /// One exposure of the photon transfer curve.

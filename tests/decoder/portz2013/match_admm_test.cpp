@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -62,16 +65,25 @@ TEST(MatchAdmmTest, ASaturatedSampleOnlyPushesUp) {
     EXPECT_NEAR(problem.solve(), 0.7F, 1e-3F);
 }
 
-TEST(MatchAdmmTest, MakesTheObjectiveFall) {
-    const FrameShape shape{16, 16, 1};
-    const ExposureTable table(
-        measure(random_video(16, shape, 2), random_schedule(16, 16, kPaperExposureSlots, 1)));
-    const std::array lists{find_matches(
-        {16, shape}, {.size = {6, 6, 4}, .sigma = 1},
+/// Noisy samples of a random clip.
+Measurements random_samples(int slots, FrameShape shape) {
+    return measure(random_video(slots, shape, 2),
+                   random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1));
+}
+
+/// Four matches of each patch, and itself.
+std::array<MatchList, 1> matches_of(const ExposureTable& table) {
+    return {find_matches(
+        {table.slots(), table.shape()}, {.size = {6, 6, 4}, .sigma = 1},
         [&](const PatchSize& size, const PatchPosition& a, const PatchPosition& b, float bound) {
             return patch_distance(table, size, a, b, bound);
         },
         [](const PatchSize&, const PatchPosition&) { return 4; }, [](double) { return true; })};
+}
+
+TEST(MatchAdmmTest, MakesTheObjectiveFall) {
+    const ExposureTable table(random_samples(16, {16, 16, 1}));
+    const std::array lists = matches_of(table);
     const auto solve = [&](int threads, std::vector<double>& objectives) {
         const ThreadLimit limit(threads);
         MatchOperator problem(table, lists, 0.5F);
@@ -93,6 +105,50 @@ TEST(MatchAdmmTest, MakesTheObjectiveFall) {
     EXPECT_LT(objectives.back(), objectives[10] * 1.001);
     EXPECT_EQ(x, solve(2, again)) << "the same bits with two threads";
     EXPECT_EQ(objectives, again);
+}
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// M = K^T K, column by column.
+SparseMatrix normal_matrix(MatchOperator& k) {
+    const auto voxels = static_cast<Eigen::Index>(k.voxels());
+    SparseMatrix m(voxels, voxels);
+    std::vector<float> unit(k.voxels()), column(k.voxels());
+    for (Eigen::Index i = 0; i < voxels; ++i) {
+        std::ranges::fill(unit, 0.0F);
+        unit[static_cast<std::size_t>(i)] = 1;
+        k.normal(unit, column);
+        m.col(i) = Eigen::Map<Eigen::VectorXf>(column.data(), voxels).cast<double>().sparseView();
+    }
+    return m;
+}
+
+TEST(MatchAdmmTest, SolvesAsTheMatrixFormedAndFactorised) {
+    const ExposureTable table(random_samples(12, {8, 8, 1}));
+    const std::array lists = matches_of(table);
+    MatchOperator k(table, lists, 0.5F);
+    const MatchAdmmOptions options{
+        .iterations = 1, .rho = 2, .cg_iterations = 1000, .cg_tolerance = 1e-6F};
+    std::vector<float> x(k.voxels(), 0.5F), v(k.rows()), d(k.voxels());
+    k.start_duals(x, v);
+    k.right_side(v, 1 / options.rho, d);
+    minimise_by_admm(
+        k, options, [](int, double) { return true; }, [] { return true; }, x);
+
+    const auto vector = [](std::vector<float>& from) -> Eigen::VectorXd {
+        return Eigen::Map<Eigen::VectorXf>(from.data(), std::ssize(from)).cast<double>();
+    };
+    const SparseMatrix m = normal_matrix(k);
+    const Eigen::SimplicialLDLT<SparseMatrix> factors(m);
+    ASSERT_EQ(factors.info(), Eigen::Success);
+    const Eigen::VectorXd solution = factors.solve(vector(d));
+    // |x - M^-1 d| <= |M x - d| / the least eigenvalue of M.
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(m), Eigen::EigenvaluesOnly)
+            .eigenvalues()[0];
+    const double bound = 1e-6 * vector(d).norm() / least;
+    EXPECT_LT(bound, 0.01 * solution.norm());
+    EXPECT_LE((vector(x) - solution).norm(), bound);
 }
 
 TEST(MatchAdmmTest, StopsWhenTold) {

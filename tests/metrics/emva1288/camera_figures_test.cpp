@@ -80,6 +80,23 @@ TEST(CameraFiguresTest, LinearityErrorIsTheMeanDistanceToTheBestLine) {
                 5e-4);
 }
 
+TEST(CameraFiguresTest, LinearityErrorTakesTwoPointsBetween5And95PercentOfSaturation) {
+    Camera camera;
+    for (int i = 1; i <= 9; ++i) camera.add(0.005 * i * kWell / kEfficiency, 2);
+    camera.add(kWell / kEfficiency, 2);
+    camera.add(0, 2);
+    camera.add(0, 100);
+    camera.add(0.5 * kWell / kEfficiency, 100);
+    const auto error = [&] {
+        return evaluate(camera.series, camera.statistics, "a").figures.linearity_error;
+    };
+    EXPECT_TRUE(std::isnan(error()));
+    camera.add(0.2 * kWell / kEfficiency, 2);
+    EXPECT_TRUE(std::isnan(error()));
+    camera.add(0.7 * kWell / kEfficiency, 2);
+    EXPECT_NEAR(error(), 0, 1e-12);
+}
+
 TEST(CameraFiguresTest, SaysWhatTheSeriesLacks) {
     const auto refuse = [](const Camera& camera, const std::vector<std::string>& parts) {
         expect_parts(message_of<InputError>(
