@@ -35,7 +35,7 @@ TEST(ScheduleFiguresTest, MemoryIsThatOfTheCompiledSchedule) {
                   compile_schedule(schedule).bits());
 }
 
-TEST(ScheduleFiguresTest, PixelsThatAreNeverReadCount) {
+TEST(ScheduleFiguresTest, PixelsThatAreNeverReadHaveNoExposures) {
     const auto figures = schedule_figures({1, 2, 4, {0, 1, 1}, {{0, 1}}}, kShape);
     EXPECT_EQ(figures.least_exposures, 0);
     EXPECT_EQ(figures.least_due, 0U);
