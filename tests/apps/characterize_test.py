@@ -4,9 +4,11 @@ import json
 import os
 import resource
 import shutil
+import struct
 import tempfile
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
 
@@ -57,13 +59,21 @@ class CharacterizeTest(ProgramTest):
         self.assertEqual(lines[:3], ["v 4.0", "n 12 320 240", "d 5000000"])
         self.assertEqual(sum(line.startswith("i ") for line in lines), 302)
         self.assertEqual(sum(line.startswith("b ") for line in lines), 51)
-        for name in ("photon_transfer.png", "photon_transfer.svg", "image_0302.png"):
-            self.assertGreater((self.folder / "series" / name).stat().st_size, 1000, name)
+        head = (self.folder / "series/image_0302.png").read_bytes()[:25]
+        self.assertEqual(struct.unpack_from(">IIB", head, 16), (320, 240, 16))
+        self.expect_charts("series")
         again = self.figures("characterize", "--evaluate", "series/emva1288_data.txt")
         self.assertEqual(again["measured"], figures["measured"])
         self.assertNotIn("configured", again)
         self.succeed("characterize", "--evaluate", "series/emva1288_data.txt", "-o", "charts")
-        self.assertTrue((self.folder / "charts/photon_transfer.svg").exists())
+        self.expect_charts("charts")
+
+    def expect_charts(self, folder):
+        """Of each point of the series a mark."""
+        drawn = ElementTree.parse(self.folder / folder / "photon_transfer.svg").getroot()
+        self.assertTrue(drawn.tag.endswith("svg"), drawn.tag)
+        png = (self.folder / folder / "photon_transfer.png").read_bytes()
+        self.assertEqual((png[:8], png[-8:-4]), (b"\x89PNG\r\n\x1a\n", b"IEND"))
 
     def test_a_noisy_chip_is_what_it_is_configured_to(self):
         settings = ["prnu=0.01", "dsnu_e=20", "dead_pixel_fraction=0"]

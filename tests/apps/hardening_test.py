@@ -22,7 +22,7 @@ class HardeningTest(unittest.TestCase):
         self.assertRegex(readelf("--file-header", PROGRAM), r"Type: +DYN ")
         self.assertRegex(readelf("--dynamic", PROGRAM), r"\(FLAGS_1\).*\bPIE\b")
 
-    def test_addresses_of_functions_are_bound_at_the_start_and_read_only_then(self):
+    def test_addresses_of_functions_become_read_only_at_the_start(self):
         for file in (PROGRAM, LIBRARY):
             with self.subTest(file):
                 self.assertRegex(readelf("--dynamic", file), r"\(FLAGS_1\).*\bNOW\b")

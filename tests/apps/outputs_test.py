@@ -31,7 +31,7 @@ class OutputsTest(ProgramTest):
         self.fails(INPUT, ["figures.json", "exists already"], "emulate", "light.npy", "-o",
                    "other.stipple", "--json", "figures.json")
 
-    def test_an_output_that_is_an_input_or_another_output_is_refused_even_if_forced(self):
+    def test_an_output_that_is_an_input_is_refused_even_if_forced(self):
         self.write_stream("clip.stipple")
         self.write_flat("light.npy")
         (self.folder / "linked.npy").symlink_to("light.npy")

@@ -78,13 +78,15 @@ class FollowTest(ProgramTest):
         folder = self.folder / "out"
         return len(list(folder.glob("frame_*.exr"))) if folder.exists() else 0
 
-    def test_finds_what_a_run_is_writing_under_the_name_that_it_is_going_to_have(self):
+    def test_a_stream_is_followed_before_it_has_its_name(self):
         np.lib.format.open_memmap(self.folder / "light.npy", "w+", np.uint8, (100000, 32, 32))
         writer = self.start_program("emulate", "light.npy", "-o", "live.stipple")
         self.addCleanup(writer.kill)
         program = self.follow()
+        deadline = time.monotonic() + 100
         while self.frames() < CORE:
             self.assertIsNone(program.poll())
+            self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
         self.assertFalse(self.live.exists())
         writer.send_signal(signal.SIGINT)  # it completes a shorter stream

@@ -75,7 +75,7 @@ class ScheduleCheckTest(ProgramTest):
         self.assertIn("cannot tell", warning)
         self.assertIn("saturated", warning)
 
-    def test_another_schedule_is_refused_and_a_plain_decode_says_where_to_look(self):
+    def test_another_schedule_is_refused_with_where_to_look(self):
         self.record("stated.stipple", self.lengths)
         self.record("run.stipple", self.lengths[::-1])
         stream = self.exchange_headers("stated.stipple", "run.stipple", "clip.stipple")

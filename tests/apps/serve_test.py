@@ -218,7 +218,7 @@ class ServeTest(ProgramTest):
                            "camera.GevSCPSPacketSize=576")
         report = json.loads(done.stdout)
         self.assertEqual(report["slots"], 24)
-        self.assertGreater(report["missing_slots"], 0)
+        self.assertGreaterEqual(report["missing_slots"], 3)
         self.assertEqual(self.figures("info", "clip.stipple")["slots"], 24)
 
     def test_a_full_disk_leaves_the_slots_of_a_coded_stream_before(self):

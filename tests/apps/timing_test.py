@@ -2,11 +2,13 @@
 
 import re
 import shutil
+import struct
 import subprocess
 import unittest
 
 import numpy as np
 from program import INPUT, USAGE, ProgramTest
+from sample_stream import parts
 
 SENSORS = ("cmv4000", "imx273", "imx296", "lux1310", "lux2100", "plc720", "sp5000", "vita")
 SMALL = ["--roi", "64x32"]
@@ -34,8 +36,9 @@ class TimingTest(ProgramTest):
             self.assertEqual(it["schedule_memory_bits"], 64 * 32 * 15)
             for share in ("row_utilisation", "adc_utilisation", "link_utilisation"):
                 self.assertTrue(0 < it[share] <= 1, (sensor, share))
-            for energy in ("full_energy_uj", "slot_energy_uj"):
-                self.assertGreater(it[energy], 0)
+            for readout, samples in (("full", 64 * 32), ("slot", it["samples_per_slot"])):
+                self.assertAlmostEqual(it[f"{readout}_energy_uj"] * 1e6,
+                                       it[f"{readout}_sample_energy_pj"] * samples, places=3)
 
     def test_a_chip_that_is_not_for_sale_is_called_hypothetical(self):
         text = self.succeed("timing", "--sensor", "lux1310", "--schedule", "hardware_tiled")
@@ -129,7 +132,10 @@ class ReadoutOfARecordingTest(ProgramTest):
         cut = self.emulate("--set", "sensor.timing.code_load_clocks=0", "--set", "sensor.slot_us=6",
                            "--overrun", "drop")
         readout = cut["readout"]
-        self.assertGreater(readout["overrun_slots"], 0)
+        packets = parts((self.folder / "clip.stipple").read_bytes())[1][:-1]  # without the index
+        dropped = [struct.unpack_from("<Q", packet, 8) for packet in packets if packet[5] & 2]
+        self.assertEqual(readout["overrun_slots"], len(set(dropped)))
+        self.assertEqual(readout["overrun_slots"], 20)
         self.assertEqual(readout["clocks"], 20 * 540)
         self.assertEqual(cut["samples"] + readout["dropped_samples"], whole["samples"])
         self.assertEqual(cut["payload_bits"], 12 * cut["samples"])
@@ -137,7 +143,7 @@ class ReadoutOfARecordingTest(ProgramTest):
         report = self.figures("info", "clip.stipple")
         self.assertEqual(report["samples"], cut["samples"])
         self.assertEqual((report["slots"], report["missing_slots"], report["damage"]), (20, 0, []))
-        self.assertGreater(report["packets"], 20)
+        self.assertEqual(report["packets"], len(packets))
         for method in ("naive", "fast"):
             self.succeed("decode", "clip.stipple", "-o", "out.npy", "--method", method, "--force",
                          "--strict")

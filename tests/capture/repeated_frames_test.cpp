@@ -66,7 +66,7 @@ RandomScript random_script(std::mt19937& random, bool stamps, bool restarts) {
     return script;
 }
 
-TEST(RepeatedFramesTest, FramesThatComeAgainAreLeftOutAndCountersThatBeginAnewAreNot) {
+TEST(RepeatedFramesTest, FramesThatComeAgainAreLeftOutUnlessTheCounterRestarts) {
     constexpr unsigned kSeed = 20261122;
     SCOPED_TRACE(kSeed);
     std::mt19937 random(kSeed);

@@ -81,7 +81,7 @@ class RunTestsTest(unittest.TestCase):
         ran, printed = self.run_tests()
         self.assertEqual(ran, ["check"])
         self.assertIn("1 test cases in 1 entries, 0 skipped\n2 of 3 entries skipped", printed)
-        self.assertTrue(printed.endswith(": test_{one,two}\n"), printed)
+        self.assertIn(": test_{one,two}\nfootage: ", printed)
         for name, again in {"pages/other.md": [], "bin/test_one": ["test_one"], "golden/one/a": ["test_one"],
                             "golden/one/deep/b": ["test_one"], "golden/one/new": ["test_one"],
                             "pages/page.md": ["test_two"], "config/c": ["test_one", "test_two"]}.items():
@@ -118,6 +118,22 @@ class RunTestsTest(unittest.TestCase):
         self.configure()
         self.assertEqual(self.run_tests()[0], ["test_one"])
         self.assertEqual(self.run_tests()[0], [])
+
+    def test_footage_beside_the_project_has_to_be_there(self):
+        """The program stands for a test of footage: it fails where STIPPLE_FOOTAGE is wrong."""
+        del self.environment["STIPPLE_FOOTAGE"]
+        self.entry("of_footage", status='$([ -d "${STIPPLE_FOOTAGE-/}" ]; echo $?)')
+        self.configure()
+        self.assertIn("footage: tests of it were skipped", self.run_tests("--all")[1])
+        self.assertEqual(self.run_tests()[0], [])
+        shared = self.root.parent / "shared"
+        shared.mkdir()
+        ran, printed = self.run_tests()
+        self.assertEqual(ran, ["of_footage"])
+        self.assertIn("0% tests passed", printed)
+        self.assertIn(f"footage: tests of it read {shared}/footage", printed)
+        (shared / "footage").mkdir()
+        self.assertIn("100% tests passed", self.run_tests()[1])
 
     def test_old_notes_are_removed(self):
         self.entry("test_one")

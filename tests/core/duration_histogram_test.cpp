@@ -11,7 +11,7 @@
 namespace stipple {
 namespace {
 
-TEST(DurationHistogramTest, QuantilesAreThoseOfTheSortedDurationsWithinSixTenthsOfAPercent) {
+TEST(DurationHistogramTest, QuantilesAreWithinSixTenthsOfAPercent) {
     std::mt19937 random(1);
     std::lognormal_distribution<double> durations(std::log(300.0), 3);
     DurationHistogram histogram;

@@ -78,7 +78,7 @@ TEST(ExposureScheduleTest, RandomScheduleCoversEachSlotOnceAtCompression15To4) {
     EXPECT_EQ(schedule.light_throughput(), 1.0);
 }
 
-TEST(ExposureScheduleTest, RandomScheduleChoosesEveryPermutationAndOffsetAboutEquallyOften) {
+TEST(ExposureScheduleTest, RandomPermutationsAndOffsetsAreEquallyFrequent) {
     // 24 permutations x 15 offsets, of which 4 each (the rotations) are the same schedule, make 90
     // equally likely ones: the slot of the shortest exposure and the order of the other three.
     const auto schedule = random_schedule(256, 256, kPaperExposureSlots, 7);

@@ -1,11 +1,10 @@
-// What no scene gives: each method must refuse it with a message, or deliver sane light.
+// What no scene gives: each method decodes it to light that its samples can mean.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "core/error.h"
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
 #include "decoder/schedule_check/schedule_shift.h"
@@ -18,13 +17,14 @@
 namespace stipple {
 namespace {
 
-/// Frames, or the message of a refusal.
 struct Outcome {
     std::vector<float> light;
     std::int64_t slots = 0;
-    std::string refusal;
     StreamReport report;
 };
+
+/// Full scale of a sample is 2.0 of light in one slot; the priors may overshoot.
+constexpr float kBrightest = 2.6F;
 
 class BadRecordingsTest : public testing::TestWithParam<NamedDecodeMethod> {
   protected:
@@ -47,30 +47,24 @@ class BadRecordingsTest : public testing::TestWithParam<NamedDecodeMethod> {
         StreamReader reader(folder / "clip.stipple");
         if (stated) reader.use_schedule(*stated);
         Outcome outcome;
-        try {
-            outcome.slots =
-                decode(reader, options(), [&](std::int64_t, std::span<const float> frame) {
-                    outcome.light.insert(outcome.light.end(), frame.begin(), frame.end());
-                    return true;
-                }).slots;
-        } catch (const InputError& e) {
-            outcome.refusal = e.what();
-        }
+        outcome.slots = decode(reader, options(), [&](std::int64_t, std::span<const float> frame) {
+                            outcome.light.insert(outcome.light.end(), frame.begin(), frame.end());
+                            return true;
+                        }).slots;
         outcome.report = reader.report();
         return outcome;
     }
-    /// Finite light, not negative, in as many slots; or a message.
-    static void expect_sane(const Outcome& outcome, const Recorded& recorded) {
-        if (!outcome.refusal.empty()) {
-            EXPECT_GT(outcome.refusal.size(), 20U);
-            return;
-        }
+    /// As many slots as were recorded, of light from 0 to `brightest`.
+    static void expect_light(const Outcome& outcome, const Recorded& recorded,
+                             float brightest = kBrightest) {
         EXPECT_EQ(outcome.slots, static_cast<std::int64_t>(recorded.packets.size()));
         ASSERT_EQ(outcome.light.size(), recorded.packets.size() * recorded.header.shape.sites());
         for (const float light : outcome.light)
-            ASSERT_TRUE(light >= 0 && light <= std::numeric_limits<float>::max()) << light;
+            ASSERT_TRUE(light >= 0 && light <= brightest) << light;
     }
-    void decode_sanely(const Recorded& recorded) const { expect_sane(decoded(recorded), recorded); }
+    void expect_decoded(const Recorded& recorded, float brightest = kBrightest) const {
+        expect_light(decoded(recorded), recorded, brightest);
+    }
 };
 
 FluxVideo flat(int slots, FrameShape shape, float light) {
@@ -85,7 +79,7 @@ ExposureSchedule paper(FrameShape shape) {
 
 constexpr FrameShape kShape{17, 24, 1};
 
-TEST_P(BadRecordingsTest, SensorsOfOneRowOrOneColumn) {
+TEST_P(BadRecordingsTest, ASensorOfOneRowOrColumnIsDecoded) {
     for (const FrameShape shape : {FrameShape{1, 1, 1},
                                    {1, 40, 1},
                                    {40, 1, 1},
@@ -95,81 +89,71 @@ TEST_P(BadRecordingsTest, SensorsOfOneRowOrOneColumn) {
                                    {3, 17, 1},
                                    {7, 40, 1},
                                    {40, 7, 1}})
-        decode_sanely(record(random_video(20, shape, 1), paper(shape)));
+        expect_decoded(record(random_video(20, shape, 1), paper(shape)));
 }
 
-TEST_P(BadRecordingsTest, RecordingsOfAFewSlots) {
+TEST_P(BadRecordingsTest, AFewSlotsAreDecoded) {
     for (const int slots : {1, 2, 3, 4, 7})
         for (const ExposureSchedule& schedule : {paper(kShape), full_schedule(1, 1)})
-            decode_sanely(record(random_video(slots, kShape, 1), schedule));
+            expect_decoded(record(random_video(slots, kShape, 1), schedule));
 }
 
-TEST_P(BadRecordingsTest, PixelsThatAreNeverRead) {
+TEST_P(BadRecordingsTest, PixelsThatAreNeverReadAreDecoded) {
     const FluxVideo video = random_video(20, kShape, 1);
-    decode_sanely(record(video, {1, 2, 3, {0, 1, 1}, {{0, 1}}}));  // each other column
-    const Recorded never = record(video, {1, 1, 3, {0, 0}, {}});
-    const Outcome outcome = decoded(never);
-    expect_sane(outcome, never);
-    for (const float light : outcome.light) EXPECT_EQ(light, 0);
+    expect_decoded(record(video, {1, 2, 3, {0, 1, 1}, {{0, 1}}}));  // each other column
+    expect_decoded(record(video, {1, 1, 3, {0, 0}, {}}), 0);
 }
 
-TEST_P(BadRecordingsTest, AllSamplesDropped) {
+TEST_P(BadRecordingsTest, WithoutSamplesFramesAreBlack) {
     Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     for (SamplePacket& packet : recorded.packets) {
         packet.flags = SamplePacket::kDropped;
         packet.dn.clear();
     }
-    const Outcome outcome = decoded(recorded);
-    expect_sane(outcome, recorded);
-    for (const float light : outcome.light) EXPECT_EQ(light, 0);
+    expect_decoded(recorded, 0);
 }
 
 // Full scale is 2.0 of light in a sample: the light is known to be that or more, in exposures of
 // one slot at least.
-TEST_P(BadRecordingsTest, EverythingSaturated) {
+TEST_P(BadRecordingsTest, SaturatedFramesAreBright) {
     const Recorded recorded = record(flat(20, kShape, 50), paper(kShape));
     const Outcome outcome = decoded(recorded);
-    expect_sane(outcome, recorded);
+    expect_light(outcome, recorded);
     double sum = 0;
-    for (const float light : outcome.light) {
-        EXPECT_LT(light, 100);
-        sum += static_cast<double>(light);
-    }
-    EXPECT_GE(sum, 0.25 * static_cast<double>(outcome.light.size()));
+    for (const float light : outcome.light) sum += static_cast<double>(light);
+    EXPECT_GE(sum, 1.8 * static_cast<double>(outcome.light.size()));  // ends of clips say less
 }
 
-TEST_P(BadRecordingsTest, Darkness) {
+TEST_P(BadRecordingsTest, DarkFramesStayDark) {
     const Recorded recorded = record(flat(20, kShape, 0), paper(kShape));
-    const Outcome outcome = decoded(recorded);
-    expect_sane(outcome, recorded);
-    for (const float light : outcome.light) EXPECT_LT(light, 0.1);
+    expect_decoded(recorded, 0.04F);  // four standard deviations of the read noise
 }
 
-TEST_P(BadRecordingsTest, NumbersThatAreNoPicture) {
+TEST_P(BadRecordingsTest, NoiseIsDecoded) {
     Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     std::mt19937 random(1);
     for (SamplePacket& packet : recorded.packets)
         for (std::uint16_t& dn : packet.dn) dn = static_cast<std::uint16_t>(random() >> 24U);
-    decode_sanely(recorded);
+    expect_decoded(recorded);
 }
 
-TEST_P(BadRecordingsTest, AHeaderWhoseScheduleContradictsTheNumbersOfSamples) {
+TEST_P(BadRecordingsTest, AScheduleThatTheSamplesContradictCostsSlots) {
     const Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     const Outcome outcome =
         decoded(recorded, random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 2));
-    expect_sane(outcome, recorded);
+    expect_light(outcome, recorded, 0);
     EXPECT_GE(outcome.report.missing_slots, 15);
     EXPECT_NE(outcome.report.damage.at(0).cause.find("not what is due"), std::string::npos);
 }
 
-TEST_P(BadRecordingsTest, AHeaderWhoseScheduleIsWrongUnnoticed) {
+TEST_P(BadRecordingsTest, AWrongScheduleThatFitsTheCountsIsDecoded) {
     const ExposureSchedule schedule = tiled_schedule(8, 8, kPaperExposureSlots, 1);
     const Recorded recorded = record(random_video(20, kShape, 1), schedule);
-    expect_sane(decoded(recorded, shifted_schedule(schedule, {0, 3, 5})), recorded);
+    expect_light(decoded(recorded, shifted_schedule(schedule, {0, 3, 5})), recorded);
 }
 
 // The limits of the stream format, where squares leave the range of a float.
-TEST_P(BadRecordingsTest, CalibrationsThatNoSensorHas) {
+TEST_P(BadRecordingsTest, CalibrationsAtTheLimitsGiveFiniteLight) {
     const Recorded honest = record(random_video(10, {16, 16, 1}, 1), paper({16, 16, 1}));
     for (const double gain : {1e-12, 1e12})
         for (const double noise : {0.0, 1e12})
@@ -180,11 +164,12 @@ TEST_P(BadRecordingsTest, CalibrationsThatNoSensorHas) {
                 calibration.read_noise_e = noise;
                 calibration.electrons_per_unit = unit;
                 SCOPED_TRACE(testing::Message() << gain << ' ' << noise << ' ' << unit);
-                decode_sanely(recorded);
+                expect_decoded(recorded, std::numeric_limits<float>::max());
             }
     Recorded recorded = honest;
-    recorded.header.calibration.black_level_dn = 65535;
-    decode_sanely(recorded);
+    recorded.header.calibration.black_level_dn = 65535;  // all samples say less than no light
+    const bool stops_early = GetParam().method == DecodeMethod::kPortz2013;  // see options()
+    expect_decoded(recorded, stops_early ? std::numeric_limits<float>::max() : 0);
 }
 
 // A prior that is switched off divides by no weight.

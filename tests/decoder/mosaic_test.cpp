@@ -15,6 +15,7 @@
 #include "decoder/reconstruct.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"
+#include "tests/support/expect_quality.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -165,9 +166,8 @@ TEST(MosaicTest, AGreySceneIsNearlyAsGoodAsThatOfAMonoSensor) {
     const FluxVideo start = decode_mosaic(one, DecodeMethod::kNaive);
     one.header.cfa = ColourFilter::kNone;
     const double expected = error_of(decode_mosaic(one, DecodeMethod::kFast), mono);
-    RecordProperty("error", std::to_string(error_of(x, grey) / expected));
-    EXPECT_LT(error_of(x, grey), 2 * expected);
-    EXPECT_LT(error_of(x, grey), error_of(start, grey) / 4);
+    expect_quality("beside_mono", gain_db(error_of(x, grey), expected), -2.58);
+    expect_quality("beside_start", gain_db(error_of(x, grey), error_of(start, grey)), 8.39);
 }
 
 using Colour = std::array<float, 3>;
@@ -212,8 +212,7 @@ TEST(MosaicTest, BestHasLessThanHalfTheErrorOfFastOnColouredEdges) {
         record_mosaic(video, ColourFilter::kRggb, random_schedule(30, 34, kPaperExposureSlots, 1));
     const double fast = error_of(decode_mosaic(recorded, DecodeMethod::kFast), video);
     const double best = error_of(decode_mosaic(recorded, DecodeMethod::kBest), video);
-    RecordProperty("share", std::to_string(best / fast));
-    EXPECT_LT(best, fast / 2);
+    expect_quality("beside_fast", gain_db(best, fast), 5.33);
 }
 
 TEST(MosaicTest, TilesFitTogetherAndThreadsDoNotShow) {

@@ -70,7 +70,7 @@ TEST(PixelCalibrationTest, AFlatSceneWithoutNoiseDecodesToItsLight) {
     }
 }
 
-TEST(PixelCalibrationTest, AFlatSceneWithoutNoiseDecodesToItsLightByTotalVariationToo) {
+TEST(PixelCalibrationTest, TotalVariationDecodesAFlatSceneToItsLight) {
     const Recorded recorded =
         record(flat(30), random_schedule(12, 10, kPaperExposureSlots, 1), mosaic(false));
     Measurements m = collect_measurements(recorded.header, recorded.packets, window(30));

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
 
 #include "tests/io/npy_bytes.h"
 #include "tests/io/test_images.h"
@@ -129,21 +132,68 @@ TEST(FootageReaderTest, KeepsReturningFalseAtTheEnd) {
     EXPECT_FALSE(reader.read(frame));
 }
 
-TEST(FootageReaderTest, ReadsRealClips) {
-    const fs::path footage = footage_folder();
-    if (!fs::is_directory(footage)) GTEST_SKIP() << "no footage in " << footage;
+/// A number of a clip's meta.json.
+int described(const fs::path& clip, const std::string& key) {
+    const std::string text = read_text(clip / "meta.json");
+    return std::stoi(text.substr(text.find('"' + key + "\":") + key.size() + 3));
+}
+
+TEST(FootageReaderTest, ReadsRealClipsAsTheyAreDescribed) {
+    const auto footage = footage_clip("");
+    if (!footage) GTEST_SKIP() << "no footage in " << footage_folder();
     int clips = 0;
-    for (const auto& entry : fs::directory_iterator(footage)) {
+    for (const auto& entry : fs::directory_iterator(*footage)) {
         if (!entry.is_directory()) continue;
+        SCOPED_TRACE(entry.path());
         FootageReader reader(entry.path());
+        EXPECT_EQ(reader.shape(),
+                  (FrameShape{described(entry.path(), "height"), described(entry.path(), "width"),
+                              described(entry.path(), "channels")}));
         Floats frame(reader.shape().sites());
         int slots = 0;
         while (reader.read(frame)) ++slots;
-        EXPECT_EQ(reader.slots(), slots) << entry.path();
-        EXPECT_GT(*std::max_element(frame.begin(), frame.end()), 0.05F) << entry.path();
+        EXPECT_EQ(reader.slots(), slots);
+        EXPECT_EQ(slots, described(entry.path(), "frames"));
+        EXPECT_GT(*std::max_element(frame.begin(), frame.end()), 0.05F);
         ++clips;
     }
-    if (clips == 0) GTEST_SKIP() << "no clips in " << footage;
+    EXPECT_GT(clips, 0) << "no clips in " << *footage;
+}
+
+/// Sets STIPPLE_FOOTAGE, or takes it away, while it lives.
+class FootageSetting {
+  public:
+    explicit FootageSetting(const char* folder) {
+        if (const char* const before = std::getenv(kName)) before_ = before;
+        set(folder);
+    }
+    ~FootageSetting() { set(before_ ? before_->c_str() : nullptr); }
+    FootageSetting(const FootageSetting&) = delete;
+    FootageSetting& operator=(const FootageSetting&) = delete;
+
+  private:
+    static constexpr const char* kName = "STIPPLE_FOOTAGE";
+    static void set(const char* folder) {
+        if (folder != nullptr)
+            setenv(kName, folder, 1);
+        else
+            unsetenv(kName);
+    }
+    std::optional<std::string> before_;
+};
+
+TEST(FootageFolderTest, AClipThatIsMissingWhereTheSettingSaysIsAnError) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "clip");
+    const FootageSetting setting(folder.path().c_str());
+    EXPECT_EQ(footage_clip("clip"), folder / "clip");
+    expect_parts(message_of<std::runtime_error>([] { return footage_clip("renamed"); }),
+                 {(folder / "renamed").string(), "STIPPLE_FOOTAGE"});
+}
+
+TEST(FootageFolderTest, WithoutTheSettingAMissingClipIsNone) {
+    const FootageSetting none(nullptr);
+    EXPECT_EQ(footage_clip("no such clip"), std::nullopt);
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ constexpr double kBrightest = 2;  // full scale / photons per unit
 constexpr std::uint64_t kSeed = 1;
 
 std::optional<FluxVideo> read_clip(const std::string& name, bool luminance) {
-    const auto folder = footage_folder() / name;
-    if (!std::filesystem::exists(folder)) return {};
+    const auto folder = footage_clip(name);
+    if (!folder) return {};
     FootageReader reader(
-        folder, {.transfer = Transfer::kLinear, .luminance = luminance, .max_value = kBrightest});
+        *folder, {.transfer = Transfer::kLinear, .luminance = luminance, .max_value = kBrightest});
     std::vector<std::vector<float>> frames;
     std::vector<float> frame(reader.shape().sites());
     while (reader.read(frame)) frames.push_back(frame);

@@ -16,7 +16,8 @@
 namespace stipple {
 
 /// All frames of a clip of the footage folder, colour as luminance, light clipped at 2.0: what the
-/// shortest exposure of the paper's sensor can hold. Nothing if the clip is absent.
+/// shortest exposure of the paper's sensor can hold. Nothing if the clip is absent, or an error as
+/// of footage_clip.
 [[nodiscard]] std::optional<FluxVideo> luminance_clip(const std::string& name);
 
 /// The same in its three colours. Nothing if the clip is absent or has no colour.

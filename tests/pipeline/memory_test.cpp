@@ -62,7 +62,7 @@ std::uint64_t decode_scene(int slots, FrameShape shape, DecodeMethod method) {
 
 class MemoryTest : public testing::TestWithParam<DecodeMethod> {};
 
-TEST_P(MemoryTest, IsAtMost64BytesAVoxelOfABlockWhateverTheLengthOfTheClip) {
+TEST_P(MemoryTest, AVoxelOfABlockTakesAtMost64BytesInAnyClip) {
     if (!reset_peak()) GTEST_SKIP() << "/proc/self/clear_refs cannot be written here";
     return_freed_arrays();
     decode_scene(8, {64, 64, 3}, GetParam());  // so that the program code it takes is in memory

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/npy_writer.h"
+#include "tests/support/expect_quality.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -44,15 +45,18 @@ TEST(SciTest, AStillPictureIsExactButForRounding) {
     // A pixel whose masks are all 0 (1 in 256) is unknown to `naive`.
     NpyVolume masks = random_masks(kShape, 1);
     std::fill_n(masks.values.begin(), kShape.pixels(), 1.0);
-    EXPECT_GT(sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kNaive}), 80);
-    EXPECT_GT(sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kFast}), 50);
+    expect_quality("naive", sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kNaive}),
+                   100.37);
+    expect_quality("fast", sci_psnr_db(video, masks, {}, {.method = DecodeMethod::kFast}), 58.34);
 }
 
 TEST(SciTest, FastIsFarBetterThanNaive) {
     const FluxVideo video = sci_stand_in("roll", 16, {128, 128, 1});
     const double naive = psnr_of(video, DecodeMethod::kNaive);
-    EXPECT_GT(naive, 15);
-    EXPECT_GT(psnr_of(video, DecodeMethod::kFast), naive + 2.5);  // found: 3.2
+    const double fast = psnr_of(video, DecodeMethod::kFast);
+    expect_quality("naive", naive, 24.41);
+    expect_quality("fast", fast, 27.07);
+    EXPECT_GT(fast, naive + 2.5);
 }
 
 TEST(SciTest, ReadsWholeMeasurementsOfAClip) {

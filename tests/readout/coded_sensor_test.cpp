@@ -228,7 +228,7 @@ TEST(CodedSensorTest, KeepsTheRecordedBits) {
     EXPECT_EQ(hash.hash(), golden) << std::hex << hash.hash();
 }
 
-TEST(CodedSensorTest, RefusesSchedulesThatTakeMoreChargeStoresThanItsPixelsHave) {
+TEST(CodedSensorTest, RefusesSchedulesOfMoreChargeStoresThanItHas) {
     const ExposureSchedule two(1, 2, 6, {0, 1, 3}, {{0, 1}, {0, 0b101}, {1, 0b101}});
     expect_parts(message_of<InputError>([&] { CodedSensor({}, kShape, two, kSeed); }),
                  {"pixel (0, 1) slot 1", "interleave", "charge_stores=2"});

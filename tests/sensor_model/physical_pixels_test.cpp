@@ -185,7 +185,7 @@ TEST(PhysicalPixelsTest, SharesRowNoiseWithinARowAndTap) {
     EXPECT_NE(expose(pixels, dark, 4, 0), electrons);
 }
 
-TEST(PhysicalPixelsTest, HoldsNoMoreThanTheFullWellAndKeepsInfiniteLightOutOfDeadPixels) {
+TEST(PhysicalPixelsTest, APixelHoldsAFullWellAndADeadOneNothing) {
     SensorParams params = physical({.dead_pixel_fraction = 0.2, .gain_map = {0.5}});
     params.read_noise_e = 0;
     const PhysicalPixels pixels(params, kShape, kSeed);

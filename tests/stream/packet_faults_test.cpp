@@ -59,18 +59,18 @@ TEST(PacketFaultsTest, TheUnchangedPacketIsGood) {
     EXPECT_EQ(s.with(framed(s.good(), s.good_payload(), s.stream.seed())), s.stream.bytes);
 }
 
-TEST(PacketFaultsTest, ReservedBytesAndUnknownFlags) {
+TEST(PacketFaultsTest, ReservedBytesAndUnknownFlagsAreRefused) {
     expect_refused([](auto& packet, auto&) { packet.reserved = 0x100; },
                    "reserved bytes are not zero");
     expect_refused([](auto& packet, auto&) { packet.flags = 4; }, "unknown flags 0x4");
 }
 
-TEST(PacketFaultsTest, ASlotBeyondTheLimit) {
+TEST(PacketFaultsTest, ASlotBeyondTheLimitIsRefused) {
     expect_refused([](auto& packet, auto&) { packet.slot = kMaxSlot + 1; },
                    "slot 9007199254740992 is not below 2^53");
 }
 
-TEST(PacketFaultsTest, RowsOutsideTheArray) {
+TEST(PacketFaultsTest, RowsOutsideTheArrayAreRefused) {
     expect_refused([](auto& packet, auto&) { packet.rows = 0; },
                    "rows 0+0 are outside the 4 rows of the array");
     expect_refused([](auto& packet, auto&) { packet.rows = 5; },
@@ -79,7 +79,7 @@ TEST(PacketFaultsTest, RowsOutsideTheArray) {
                    "rows 65535+4 are outside the 4 rows of the array");
 }
 
-TEST(PacketFaultsTest, SamplesThatTheScheduleDoesNotPredict) {
+TEST(PacketFaultsTest, SamplesThatAreNotDueAreRefused) {
     expect_refused(
         [](PacketHeader& packet, std::string& payload) {
             ++packet.samples;
@@ -96,12 +96,12 @@ TEST(PacketFaultsTest, SamplesThatTheScheduleDoesNotPredict) {
                    "2 samples are not what is due");
 }
 
-TEST(PacketFaultsTest, APayloadThatDoesNotFitItsSamples) {
+TEST(PacketFaultsTest, APayloadThatDoesNotFitItsSamplesIsRefused) {
     expect_refused([](auto&, std::string& payload) { payload += '\0'; },
                    "2 samples of 10 bits in 4 bytes");
 }
 
-TEST(PacketFaultsTest, UnusedBitsThatAreSet) {
+TEST(PacketFaultsTest, UnusedBitsThatAreSetAreRefused) {
     expect_refused(
         [](auto&, std::string& payload) {
             payload.back() = static_cast<char>(payload.back() | 0x40);

@@ -31,19 +31,19 @@ void expect_round_trip(const StreamHeader& header, const std::vector<SamplePacke
     EXPECT_TRUE(report.damage.empty());
 }
 
-TEST(RoundTripTest, MonoAtEachBitDepth) {
+TEST(RoundTripTest, MonoComesBackAtEachBitDepth) {
     for (int bit_depth = 1; bit_depth <= 16; ++bit_depth) {
         const StreamHeader header = varied_header({4, 8, 1}, bit_depth);
         expect_round_trip(header, random_packets(header, 12, 4), 12);
     }
 }
 
-TEST(RoundTripTest, StackedColour) {
+TEST(RoundTripTest, StackedColourComesBack) {
     const StreamHeader header = varied_header({5, 7, 3}, 12);
     expect_round_trip(header, random_packets(header, 7, 5), 7);
 }
 
-TEST(RoundTripTest, BandsOfRows) {
+TEST(RoundTripTest, BandsOfRowsComeBack) {
     const StreamHeader header = varied_header({7, 4, 1}, 10);
     expect_round_trip(header, random_packets(header, 6, 3), 6);
 }
@@ -53,16 +53,16 @@ TEST(RoundTripTest, ARandomScheduleIsStoredByItsSeed) {
     expect_round_trip(header, random_packets(header, 40, 9), 40);
 }
 
-TEST(RoundTripTest, SlotsFarBeyondTheFirstPeriod) {
+TEST(RoundTripTest, SlotsFarBeyondTheFirstPeriodComeBack) {
     const StreamHeader header = varied_header({2, 3, 1}, 8);
     expect_round_trip(header, random_packets(header, 200, 2), 200);
 }
 
-TEST(RoundTripTest, NoSlotAtAll) {
+TEST(RoundTripTest, AStreamWithoutSlotsComesBack) {
     expect_round_trip(varied_header(), {}, 0);
 }
 
-TEST(RoundTripTest, FlagsOfOverrunAndDrop) {
+TEST(RoundTripTest, FlagsOfOverrunAndDropComeBack) {
     const StreamHeader header = varied_header();
     std::vector<SamplePacket> packets = random_packets(header, 4, 2);
     packets[1].flags = SamplePacket::kOverrun;

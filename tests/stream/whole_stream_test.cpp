@@ -43,7 +43,7 @@ void expect_told_by_the_checksum_alone(const std::string& bytes) {
                  {": byte " + std::to_string(bytes.size() - kEndMarkerBytes), kOtherPackets});
 }
 
-TEST(WholeStreamTest, WhereverAFileIsTornBetweenTwoRecordingsNothingOfTheSecondIsRead) {
+TEST(WholeStreamTest, OfATornFileNothingOfTheSecondRecordingIsRead) {
     const StreamHeader header = even_header("footage = \"a.npy\"\n");
     const Packets packets = packets_of(header);
     const StreamBytes a = bytes_of(header, packets);
@@ -79,7 +79,7 @@ TEST(WholeStreamTest, ATearBetweenRecordingsWithTheSameHeaderIsToldAtTheEnd) {
               "");
 }
 
-TEST(WholeStreamTest, SamplesThatAreExchangedLeftOutOrRepeatedAreToldByTheChecksum) {
+TEST(WholeStreamTest, TheChecksumTellsExchangedAndRepeatedSamples) {
     const StreamHeader header = even_header("");
     const Packets packets = packets_of(header);
     const StreamBytes original = bytes_of(header, packets);

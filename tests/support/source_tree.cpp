@@ -36,4 +36,12 @@ std::filesystem::path footage_folder() {
                              : std::filesystem::path(STIPPLE_SOURCE_DIR) / "../shared/footage";
 }
 
+std::optional<std::filesystem::path> footage_clip(const std::string& name) {
+    const std::filesystem::path clip = footage_folder() / name;
+    if (std::filesystem::exists(clip)) return clip;
+    if (std::getenv("STIPPLE_FOOTAGE") == nullptr) return {};
+    throw std::runtime_error("there is no footage " + clip.string() +
+                             ", although STIPPLE_FOOTAGE names its folder");
+}
+
 }  // namespace stipple

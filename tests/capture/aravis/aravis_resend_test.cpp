@@ -61,7 +61,7 @@ class AravisResendTest : public testing::Test {
     }
 };
 
-TEST_F(AravisResendTest, PacketsThatWereDroppedOnceAreAskedForAgainAndEveryFrameIsWhole) {
+TEST_F(AravisResendTest, PacketsThatWereDroppedOnceAreSentAgain) {
     NoiseFrames source(320, 240, {"Mono16"}, kFrames);
     const Outcome outcome = capture(source, {.faults = {.drop = 0.01}}, 60);
     EXPECT_GT(outcome.transport.packets_resent, 0U);

@@ -19,7 +19,7 @@ TEST(NetworkDoctorTest, AReceiveBufferIsJudgedOnlyWhereItIsUsed) {
     EXPECT_EQ(judge_receive_buffer(0, false).level, Level::kWarning);
 }
 
-TEST(NetworkDoctorTest, AnMtuWithoutJumboFramesIsWarnedOfWithTheCommandThatRaisesIt) {
+TEST(NetworkDoctorTest, ASmallMtuIsWarnedOfWithTheCommandThatRaisesIt) {
     EXPECT_EQ(judge_mtu("eth0", 9000).level, Level::kGood);
     const DoctorFinding finding = judge_mtu("eth0", 1500);
     EXPECT_EQ(finding.level, Level::kWarning);

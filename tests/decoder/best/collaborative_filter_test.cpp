@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "tests/decoder/recordings.h"
+#include "tests/support/expect_quality.h"
 
 namespace stipple {
 namespace {
@@ -53,7 +54,8 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
     FluxVideo filtered(6, kShape);
     filter_groups(seen, video, groups, kSigma, filtered);
     // Stripes have some ten coefficients of 576 that are not 0, and every voxel is in many groups.
-    EXPECT_LT(mean_square(filtered, video), 0.05 * mean_square(seen, video));
+    expect_quality("filtered", gain_db(mean_square(filtered, video), mean_square(seen, video)),
+                   16.73);
 }
 
 TEST(CollaborativeFilterTest, TheSameBitsForAnyNumberOfThreads) {

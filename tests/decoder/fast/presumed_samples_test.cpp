@@ -105,7 +105,7 @@ TEST(PresumedSamplesTest, ClosedSlotsInWhichOthersAreOpenAreLeftToThePrior) {
 }
 
 // Light to twice what a sample of one slot holds, so that all kinds of bounds are met.
-TEST(PresumedSamplesTest, NothingOfItStays) {
+TEST(PresumedSamplesTest, TheMeasurementsAreRestoredAtTheEnd) {
     const FrameShape shape{.rows = 20, .cols = 24, .planes = 1};
     FluxVideo video(40, shape);
     for (std::size_t i = 0; i < video.voxels(); ++i)

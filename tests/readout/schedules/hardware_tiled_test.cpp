@@ -148,31 +148,29 @@ TEST(HardwareTiledTest, WholeTilesLoadEveryChannelAlike) {
     }
 }
 
-// The busiest channel of a row reads at least ceil(mean) columns if slots are alike; a chip that
-// transfers 10 % more than that still reaches 90 % of the frame rate.
+// The busiest channel of a row reads at least ceil(mean) columns if slots are alike. The loads are
+// the highest that were measured with these seeds.
 TEST(HardwareTiledTest, ChannelsStayEvenWhereTheArrayEndsWithinATile) {
     struct Chip {
         int channels;
         int cols;
+        double load;
     };
-    for (const Chip chip : {Chip{16, 1280},
-                            {8, 1408},
-                            {4, 1280},
-                            {1, 1280},
-                            {16, 640},
-                            {7, 1001},
-                            {20, 2560},
-                            {10, 640},
-                            {3, 1000},
-                            {12, 1920},
-                            {16, 1279}})
+    for (const Chip chip : {Chip{16, 1280, 23},
+                            {8, 1408, 48},
+                            {4, 1280, 86.534},
+                            {1, 1280, 341.334},
+                            {16, 640, 12},
+                            {7, 1001, 39.467},
+                            {20, 2560, 36},
+                            {10, 640, 19},
+                            {3, 1000, 89.467},
+                            {12, 1920, 44},
+                            {16, 1279, 23}})
         for (const std::uint64_t seed : kSeeds) {
             const auto schedule = hardware_tiled_schedule(skip_channel(chip.channels, chip.cols),
                                                           kPaperExposureSlots, seed);
-            const int in_channel = (chip.cols + chip.channels - 1) / chip.channels;
-            const int even = (in_channel * 4 + 14) / 15;
-            EXPECT_LE(mean_load(schedule, chip.cols, chip.channels),
-                      std::max(even + 1.0, 1.1 * even))
+            EXPECT_LE(mean_load(schedule, chip.cols, chip.channels), chip.load)
                 << chip.channels << " channels, " << chip.cols << " columns, seed " << seed;
         }
 }
@@ -186,7 +184,7 @@ TEST(HardwareTiledTest, ATileOfAnySizeIsAsEvenAsASearchFinds) {
     const auto schedule = hardware_tiled_schedule(tile, kPaperExposureSlots, 1);
     EXPECT_EQ(schedule.tile_rows(), 64);
     EXPECT_EQ(schedule.tile_cols(), 64);
-    EXPECT_LE(mean_load(schedule, 1280, 16), 80 * 4 / 15.0 * 1.1);
+    EXPECT_NEAR(mean_load(schedule, 1280, 16), 80 * 4 / 15.0, 1e-9);
     const auto random = random_schedule(64, 1280, kPaperExposureSlots, 1);
     EXPECT_GE(mean_load(random, 1280, 16), 80 * 4 / 15.0 * 1.3);
 }
@@ -205,7 +203,7 @@ TEST(HardwareTiledTest, NoRowIsInPhaseForTheSakeOfEvenChannels) {
                 std::ranges::sort(slots);
                 reads.insert(slots);
             }
-            EXPECT_GE(reads.size(), 8U) << "row " << row << " of " << side;
+            EXPECT_GE(reads.size(), side == 16 ? 12U : 40U) << "row " << row << " of " << side;
         }
     }
 }
@@ -231,7 +229,7 @@ TEST(HardwareTiledTest, ChannelsAreEvenUnderSmallGroups) {
     tile.array_cols = 1280;
     for (const std::uint64_t seed : kSeeds) {
         const auto schedule = hardware_tiled_schedule(tile, kPaperExposureSlots, seed);
-        EXPECT_LE(mean_load(schedule, 1280, 16), 23);  // mean 21.33
+        EXPECT_LE(mean_load(schedule, 1280, 16), 22.534);  // mean 21.33
     }
 }
 
@@ -246,8 +244,8 @@ TEST(HardwareTiledTest, NeighboursShareLessLightThanInTiledAndRandomTiles) {
         const double lattice = shared(hardware_tiled_schedule(tile, kPaperExposureSlots, seed));
         tile.arrangement = TileArrangement::kScatter;
         const double scatter = shared(hardware_tiled_schedule(tile, kPaperExposureSlots, seed));
-        EXPECT_LT(lattice, 0.9 * std::min(tiled, random)) << "seed " << seed;
-        EXPECT_LT(scatter, 0.9 * std::min(tiled, random)) << "seed " << seed;
+        EXPECT_LT(lattice, 0.876 * std::min(tiled, random)) << "seed " << seed;
+        EXPECT_LT(scatter, 0.882 * std::min(tiled, random)) << "seed " << seed;
     }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr FrameShape kShape{.rows = 32, .cols = 48, .planes = 3};
 
-TEST(ScheduleFiguresTest, AreThoseOfTheClosedFormForAnEvenTile) {
+TEST(ScheduleFiguresTest, AnEvenTileHasTheFiguresOfTheClosedForm) {
     // 6 tiles of 16 x 16, 1024 exposures in 15 slots: 68 or 69 are read in each
     // (docs/schedules.md).
     const auto figures = schedule_figures(tiled_schedule(16, 16, kPaperExposureSlots, 1), kShape);
@@ -27,7 +27,7 @@ TEST(ScheduleFiguresTest, AreThoseOfTheClosedFormForAnEvenTile) {
     EXPECT_EQ(figures.code_memory_bits, 16U * 16 * 15);
 }
 
-TEST(ScheduleFiguresTest, CountTheMemoryOfTheCompiledSchedule) {
+TEST(ScheduleFiguresTest, MemoryIsThatOfTheCompiledSchedule) {
     for (const auto& schedule :
          {tiled_schedule(8, 8, kPaperExposureSlots, 1), gapped_schedule(3, 5, 29, 1),
           full_schedule(1, 4), interleaved_schedule(3, 5, 9, 1)})
@@ -35,7 +35,7 @@ TEST(ScheduleFiguresTest, CountTheMemoryOfTheCompiledSchedule) {
                   compile_schedule(schedule).bits());
 }
 
-TEST(ScheduleFiguresTest, KnowPixelsThatAreNeverRead) {
+TEST(ScheduleFiguresTest, PixelsThatAreNeverReadHaveNoExposures) {
     const auto figures = schedule_figures({1, 2, 4, {0, 1, 1}, {{0, 1}}}, kShape);
     EXPECT_EQ(figures.min_exposures, 0);
     EXPECT_EQ(figures.min_due, 0U);

@@ -57,7 +57,7 @@ TEST(PublishedTimingTest, Lux1310IsRightToTheClock) {
                           {192, 96, 40413, 1}});
 }
 
-TEST(PublishedTimingTest, Lux2100) {
+TEST(PublishedTimingTest, Lux2100IsAsFastAsPublished) {
     expect_rates(sensor_timing("lux2100"), {{1920, 1080, 1000.1, 0.1},
                                             {1280, 720, 2142, 1},
                                             {640, 480, 5407, 1},
@@ -107,7 +107,7 @@ TEST(PublishedTimingTest, CamerasOfFullRowsAreNoFasterWithFewerColumns) {
 
 // 6.32 and 2.45 us are quoted for the class, rounded: (1280 + 8) / 4 + 70 = 392 clocks of 1/62 us
 // are 6.3226 us, 152 clocks are 2.4516 us.
-TEST(PublishedTimingTest, RowsOfVita) {
+TEST(PublishedTimingTest, RowsOfVitaTakeThePublishedTime) {
     const auto four_outputs = sensor_timing("vita");
     EXPECT_EQ(full_readout(four_outputs, {1024, 1280, 1}).row, (1280 + 8) / 4 + 70);
     EXPECT_NEAR(1e6 * seconds(four_outputs, 392), 6.32, 0.005);
@@ -117,7 +117,7 @@ TEST(PublishedTimingTest, RowsOfVita) {
     EXPECT_EQ(full_readout(eight, {1024, 1280, 1}).row, (1280 + 8) / 8 + 70);
 }
 
-TEST(PublishedTimingTest, RowsOfPlC720) {
+TEST(PublishedTimingTest, RowsOfPlC720TakeThePublishedTime) {
     const auto timing = sensor_timing("plc720");
     for (const int cols : {1280, 640, 8})
         EXPECT_NEAR(1e6 * seconds(timing, full_readout(timing, {1024, cols, 1}).row),

@@ -7,7 +7,9 @@
 
 #include "core/error.h"
 #include "readout/schedules/full_schedule.h"
+#include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/schedule_catalogue.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "sensor_model/sensor_config.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"
@@ -31,7 +33,7 @@ TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
 
 // docs/readout_timing.md: per-pixel random codes on a LUX1310 with channels that skip columns take
 // about 31 of the 82 clocks of a row, evenly spread ones 23.3.
-TEST(ReadoutRateTest, RandomCodesOnLux1310) {
+TEST(ReadoutRateTest, RandomCodesOnLux1310TakeTheDocumentedTime) {
     const auto timing = sensor_timing("lux1310");
     const FrameShape shape{256, 1280, 1};
     const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
@@ -39,6 +41,41 @@ TEST(ReadoutRateTest, RandomCodesOnLux1310) {
     EXPECT_NEAR(rate.speedup, 82 / 31.0, 0.1);
     EXPECT_GT(rate.balanced_speedup, 3.3);
     EXPECT_LT(rate.speedup, rate.balanced_speedup);
+}
+
+// docs/hardware_schedules.md: gains of whole arrays, rounded there to two digits.
+TEST(ReadoutRateTest, GainsAreThoseOfTheDocumentedTable) {
+    struct Row {
+        const char* sensor;
+        const char* addressing;
+        double random, tiled, hardware_tiled, bound;
+    };
+    for (const Row& row : {Row{"lux1310", "skip_channel", 2.67, 1.00, 3.27, 3.50},
+                           {"lux1310", "group", 1.00, 1.00, 3.50, 3.50},
+                           {"lux2100", "skip_channel", 2.43, 1.00, 2.45, 2.45},
+                           {"lux2100", "group", 1.00, 1.00, 2.45, 2.45},
+                           {"imx273", "skip_channel", 1.51, 1.17, 1.51, 1.51},
+                           {"imx273", "group", 1.00, 1.00, 1.51, 1.51},
+                           {"vita", "skip_channel", 2.36, 1.59, 2.47, 2.49},
+                           {"vita", "group", 1.30, 1.24, 2.49, 2.49},
+                           {"plc720", "skip_channel", 2.53, 2.53, 2.54, 2.54},
+                           {"plc720", "group", 1.07, 1.00, 2.54, 2.54}}) {
+        SCOPED_TRACE(testing::Message() << row.sensor << ' ' << row.addressing);
+        const auto timing =
+            sensor_timing(row.sensor, {std::string("timing.addressing=") + row.addressing});
+        const FrameShape shape{timing.rows, timing.cols, 1};
+        const HardwareTile tile{.addressing = timing.addressing, .array_cols = timing.cols};
+        const auto gain = [&](const ExposureSchedule& schedule) {
+            const ReadoutRate rate = rate_of(timing, schedule, shape);
+            EXPECT_NEAR(rate.balanced_speedup, row.bound, 0.005);
+            return rate.speedup;
+        };
+        EXPECT_NEAR(gain(random_schedule(256, shape.cols, kPaperExposureSlots, 1)), row.random,
+                    0.005);
+        EXPECT_NEAR(gain(tiled_schedule(16, 16, kPaperExposureSlots, 1)), row.tiled, 0.005);
+        EXPECT_NEAR(gain(hardware_tiled_schedule(tile, kPaperExposureSlots, 1)), row.hardware_tiled,
+                    0.005);
+    }
 }
 
 // With groups of 16 x 2 pixels, nearly every group has some pixel due: all is transferred.
