@@ -123,7 +123,7 @@ TEST(StreamRecorderTest, TheHeaderSaysHowToMakeTheStreamAgain) {
     const SensorSetup setup =
         set_up_sensor({.schedule = "tiled", .settings = {"read_noise_e=5"}, .seed = 7}, kShape);
     EXPECT_EQ(command_of(provenance_of(setup, origin)),
-              "stipple emulate clip -o again.stipple --schedule tiled --set read_noise_e=5 "
+              "stipple emulate clip -o again.stipple --schedule tiled --set sensor.read_noise_e=5 "
               "--seed 7");
 }
 
