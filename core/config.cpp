@@ -127,7 +127,8 @@ void Config::Impl::set(const std::string& assignment) {
 
 const toml::node* Config::Impl::find(std::string_view key, std::string fallback,
                                      std::string range) {
-    asked.try_emplace(std::string(key), std::string(key), std::move(fallback), std::move(range));
+    asked.try_emplace(std::string(key),
+                      KnownKey{std::string(key), std::move(fallback), std::move(range)});
     const auto found = entries.find(key);
     if (found == entries.end()) return nullptr;
     found->second.known = true;
