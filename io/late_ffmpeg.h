@@ -19,12 +19,14 @@ namespace stipple {
 
 /// In a source: the function of FFmpeg's that has this name, in place of the one that would be
 /// linked. An object that converts to the function is called as the function is.
+// NOLINTBEGIN(bugprone-macro-parentheses): it is a name, no value
 #define STIPPLE_LATE(name)                                                                         \
     const struct {                                                                                 \
         using Function = decltype(::name);                                                         \
         operator Function*() const { return reinterpret_cast<Function*>(ffmpeg_function(#name)); } \
     } name {                                                                                       \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 /// Ends what FFmpeg has made.
 struct FfmpegDeleter {
