@@ -76,8 +76,10 @@ class FilmTest(ProgramTest):
 
     def test_a_frame_that_no_encoder_takes_is_refused(self):
         light = self.write_array("light.npy", np.zeros((1, 2, 20000)))
+        # libx264 does not free what it has taken for an encoder that it then refuses.
         self.fails(DEVICE, ["a.mp4: no video of 20000 x 2 pixels at 30 frames per second can be encoded"],
-                   "emulate", light, "-o", "clip.stipple", "--truth", "a.mp4")
+                   "emulate", light, "-o", "clip.stipple", "--truth", "a.mp4",
+                   env=os.environ | {"ASAN_OPTIONS": "detect_leaks=0"})
 
     def test_libraries_that_cannot_be_loaded_are_named(self):
         (self.folder / "broken").mkdir()
