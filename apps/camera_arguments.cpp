@@ -1,8 +1,8 @@
 #include "apps/camera_arguments.h"
 
 #include <fmt/format.h>
-#include "apps/number_check.h"
 
+#include "apps/number_check.h"
 #include "capture/camera_kind.h"
 #include "capture/open_camera.h"
 #include "core/config.h"
