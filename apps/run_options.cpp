@@ -35,7 +35,7 @@ void add_run_options(Command& command, RunOptions& run) {
                                      "\"" + size + "\" is not a size like 512M or 2G, from 1M on");
                 run.max_memory = *bytes;
             },
-            "refuse inputs that need more memory (half of the machine's)")
+            "refuse inputs that need more memory (a quarter of the machine's)")
         .type_name("SIZE");
     command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
 }

@@ -62,8 +62,8 @@ std::uint64_t input_bytes(const fs::path& file) {
 
 std::uint64_t max_memory(std::uint64_t input_bytes) {
     if (told_bytes > 0) return told_bytes;
-    static const std::uint64_t half = machine_memory() / 2;  // asked for at each picture
-    return input_bytes < kSmallInput ? std::min(half, kMaxOfSmallInputs) : half;
+    static const std::uint64_t quarter = machine_memory() / 4;  // asked for at each picture
+    return input_bytes < kSmallInput ? std::min(quarter, kMaxOfSmallInputs) : quarter;
 }
 
 void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
@@ -72,7 +72,7 @@ void check_memory(std::uint64_t bytes, std::string_view place, std::string_view 
     if (bytes <= most) return;
     const char* const whose = told_bytes > 0 ? "--max-memory says"
                               : most == max_memory()
-                                  ? "a run may take, half of this machine's memory"
+                                  ? "a run may take, a quarter of this machine's memory"
                                   : "a file of less than 1 MB may take";
     throw InputError(place,
                      fmt::format("needs {} of memory for {}, more than the {} that {}; "

@@ -31,7 +31,7 @@ inline constexpr std::uint64_t kSmallInput = 1'000'000;
 [[nodiscard]] std::uint64_t input_bytes(const std::filesystem::path& file);
 
 /// Bytes that may be taken at a time for an input of `input_bytes`: those of the living
-/// MemoryLimit, else half of `machine_memory`, of inputs below 1 MB no more than 256 MiB.
+/// MemoryLimit, else a quarter of `machine_memory`, of inputs below 1 MB no more than 256 MiB.
 [[nodiscard]] std::uint64_t max_memory(std::uint64_t input_bytes = kEndlessInput);
 
 /// Before memory is taken. \throws InputError at `place` if `bytes` for `what` are more than

@@ -49,7 +49,7 @@ TEST(MemoryLimitTest, TheLowestLimitOfTheControlGroupsIsTheMemory) {
 }
 
 TEST(MemoryLimitTest, SmallInputsHaveALimitOfTheirOwnUnlessOneIsTold) {
-    EXPECT_EQ(max_memory(), machine_memory() / 2);
+    EXPECT_EQ(max_memory(), machine_memory() / 4);
     EXPECT_EQ(max_memory(kSmallInput), max_memory());
     EXPECT_LE(max_memory(kSmallInput - 1), 256 * kMiB);
     {
@@ -58,7 +58,7 @@ TEST(MemoryLimitTest, SmallInputsHaveALimitOfTheirOwnUnlessOneIsTold) {
         EXPECT_NO_THROW(check_memory(300 * kMiB, "a", "b", 1));
         EXPECT_THROW(check_memory(300 * kMiB + 1, "a", "b"), InputError);
     }
-    EXPECT_EQ(max_memory(), machine_memory() / 2);
+    EXPECT_EQ(max_memory(), machine_memory() / 4);
 }
 
 TEST(MemoryLimitTest, AllMessagesNameWhatIsNeededAndAnOptionThatIsEnough) {
