@@ -19,10 +19,11 @@ std::vector<fs::path> config_folders() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
     if (!program.empty()) {
-        folders.push_back((program / "../../config").lexically_normal());  // build/release/stipple
         folders.push_back((program / "../share/stipple/config").lexically_normal());
+        folders.push_back((program / "../../config").lexically_normal());  // build/release/stipple
     }
-    folders.emplace_back(STIPPLE_CONFIG_DIR);
+    folders.emplace_back(STIPPLE_SOURCE_CONFIG_DIR);
+    folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);
     return folders;
 }
 

@@ -18,13 +18,15 @@ TvL1Flow* load() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
     std::string why;
-    for (const fs::path& folder : {program, fs::path(STIPPLE_BUILD_DIR)}) {
+    for (const fs::path& folder : {program, program / STIPPLE_LIBRARY_FROM_PROGRAM,
+                                   fs::path(STIPPLE_BUILD_DIR), fs::path(STIPPLE_LIBRARY_DIR)}) {
         void* const library = dlopen((folder / kName).c_str(), RTLD_LAZY);
         void* const flow = library ? dlsym(library, "stipple_tv_l1_flow") : nullptr;
         if (flow != nullptr) return reinterpret_cast<TvL1Flow*>(flow);
         why += fmt::format("{}{}", why.empty() ? "" : "; ", dlerror());
     }
-    throw DeviceError(kName, "cannot be loaded; it belongs beside the program: " + why);
+    throw DeviceError(
+        kName, "cannot be loaded; it belongs beside the program, or into lib/stipple: " + why);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@ from tree import report
 
 LIST = "scripts/packages.txt"
 FIND = re.compile(r"^\s*find_package\((\w+)|IMPORTED_TARGET (\w+)\)", re.M)
-OF_CMAKE = {"Threads"}  # comes with the compiler
-INCLUDE = re.compile(r"\s*#\s*include\s*<((?!(?:sys|arpa|net|netinet)/)[^>]+/[^>]+)>")
+OWN = {"Threads", "stipple"}  # of the compiler; of what examples/ is built against
+INCLUDE = re.compile(r"\s*#\s*include\s*<((?!(?:sys|arpa|net|netinet|stipple)/)[^>]+/[^>]+)>")
 IN_TEXT = re.compile(r"\blib[a-z0-9-]+-dev\b")
 
 
@@ -29,7 +29,7 @@ def wrong_finds(tree, listed):
     for name in tree.ending("CMakeLists.txt"):
         for words in FIND.findall(tree.text(name)):
             used.update(word for word in words if word)
-    for name in sorted(used - OF_CMAKE - listed.keys()):
+    for name in sorted(used - OWN - listed.keys()):
         yield f"{LIST}: the build looks for {name}; name the Debian package that holds it"
     for name in sorted(listed.keys() - used - {"-"}):
         yield f"{LIST}:{listed[name]}: no find_package({name}) in the build"

@@ -1,0 +1,41 @@
+# cmake --install: the program, its configurations, and each module as a library with its headers for other
+# projects (docs/library.md): find_package(stipple COMPONENTS decoder), stipple::decoder; pkg-config stipple.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stipple)
+set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/stipple)
+
+install(TARGETS stipple COMPONENT program)
+install(TARGETS stipple_opencv LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stipple COMPONENT program)
+install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/stipple/config COMPONENT program)
+
+# An export set for each module, so that who asks for one needs the packages of that one only.
+foreach(module IN LISTS STIPPLE_MODULES)
+    set_target_properties(stipple_${module} PROPERTIES EXPORT_NAME ${module})
+    target_compile_features(stipple_${module} INTERFACE cxx_std_20)
+    target_include_directories(stipple_${module} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    install(TARGETS stipple_${module} EXPORT stipple_${module} COMPONENT libraries
+            FILE_SET HEADERS DESTINATION ${header_dir} COMPONENT libraries
+            FILE_SET headers_without_source DESTINATION ${header_dir} COMPONENT libraries)
+    install(EXPORT stipple_${module} NAMESPACE stipple:: FILE ${module}.cmake DESTINATION ${package_dir}
+            COMPONENT libraries)
+endforeach()
+
+configure_package_config_file(cmake/stippleConfig.cmake.in ${CMAKE_BINARY_DIR}/stippleConfig.cmake
+    INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/stippleConfig.cmake ${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake
+              cmake/FindOpenCV.cmake
+        DESTINATION ${package_dir} COMPONENT libraries)
+
+# What stipple.pc.in names: libraries, users before used, and the way from its folder to the prefix.
+list(TRANSFORM STIPPLE_MODULES PREPEND "-lstipple_" OUTPUT_VARIABLE stipple_libraries)
+list(REVERSE stipple_libraries)
+list(JOIN stipple_libraries " " stipple_libraries)
+string(REGEX REPLACE "[^/]+" ".." stipple_up "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+set(stipple_aravis "")
+if(STIPPLE_ARAVIS)
+    set(stipple_aravis aravis-0.8)
+endif()
+configure_file(cmake/stipple.pc.in stipple.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/stipple.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT libraries)

@@ -1,0 +1,114 @@
+"""Stipple as a library: installed, moved to another folder, and used from outside the tree."""
+
+import os
+import shlex
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+class ExamplesTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="stipple_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.run_command(os.environ["CMAKE"], "--install", os.environ["BUILD"], "--prefix", cls.folder / "first")
+        cls.prefix = (cls.folder / "first").rename(cls.folder / "moved")
+        cls.environment = os.environ | {"STIPPLE_CONFIG_DIR": str(cls.prefix / "share/stipple/config")}
+        cls.configure(EXAMPLES, cls.folder / "build")
+        cls.run_command(os.environ["CMAKE"], "--build", cls.folder / "build")
+        cls.clip = (np.arange(40 * 24 * 32).reshape(40, 24, 32) % 97 / 97).astype(np.float32)
+        np.save(cls.folder / "clip.npy", cls.clip)
+
+    @classmethod
+    def run_command(cls, *command, code=0, **options):
+        done = subprocess.run([*map(str, command)], cwd=cls.folder, capture_output=True, text=True, timeout=300,
+                              **options)
+        if done.returncode != code:
+            raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}\n{done.stderr}")
+        return done.stdout + done.stderr
+
+    @classmethod
+    def configure(cls, source, build, code=0):
+        return cls.run_command(os.environ["CMAKE"], "-S", source, "-B", build, f"-DCMAKE_PREFIX_PATH={cls.prefix}",
+                               "-DCMAKE_BUILD_TYPE=Release", code=code)
+
+    def example(self, name, *arguments):
+        return self.run_command(self.folder / "build" / name, *arguments, env=self.environment)
+
+    def program(self, *arguments):
+        return self.run_command(self.prefix / "bin/stipple", *arguments)
+
+    def test_the_installed_program_finds_its_configurations_and_libraries(self):
+        sensors = self.prefix / "share/stipple/config/sensors"
+        shutil.copy(sensors / "paper.toml", sensors / "installed_only.toml")
+        self.program("emulate", "clip.npy", "-o", "flow.stipple", "--sensor", "installed_only")
+        loaded = self.run_command(self.prefix / "bin/stipple", "decode", "flow.stipple", "-o", "flow.npy",
+                                  "--method", "portz2013", env=os.environ | {"LD_DEBUG": "files"})
+        self.assertRegex(loaded, f"calling init: {self.prefix}/.*/stipple/libstipple_opencv.so")
+
+    def test_emulate_and_decode_are_those_of_the_program(self):
+        self.example("emulate_decode", "clip.npy", "light.npy")
+        self.program("emulate", "clip.npy", "-o", "program.stipple", "--sensor", "lux1310")
+        self.program("decode", "program.stipple", "-o", "program.npy", "--method", "fast")
+        np.testing.assert_array_equal(np.load(self.folder / "light.npy"), np.load(self.folder / "program.npy"))
+
+    def test_a_stream_is_read(self):
+        lines = self.read_stream(self.folder / "build/read_stream", "mean.stipple")
+        self.assertEqual(len(lines), 40)
+
+    def read_stream(self, reader, name):
+        """Of light 0.5 on the ideal sensor, half of its full scale of 1.0 a slot: as many DN a slot."""
+        np.save(self.folder / "grey.npy", np.full((40, 24, 32), 0.5, np.float32))
+        self.program("emulate", "grey.npy", "-o", name, "--sensor", "ideal", "--schedule", "tiled", "--force")
+        lines = self.run_command(reader, name).splitlines()
+        means = [float(line.split()[4]) for line in lines]
+        np.testing.assert_allclose(means, means[0], atol=0.5)
+        return lines
+
+    def test_a_schedule_of_ones_own(self):
+        """Slots 0 to 15 of a pair of pixels: 16 samples and 8 of 8 light slots each."""
+        said = self.example("own_schedule", "own.stipple")
+        self.assertIn(f"{48 * 32 * (16 + 8)} samples, light throughput 1", said)
+        self.assertIn("fast_and_slow", self.program("info", "own.stipple"))
+
+    def test_pkg_config(self):
+        places = [path.parent for path in self.prefix.rglob("stipple.pc")]
+        environment = os.environ | {"PKG_CONFIG_PATH": str(places[0])}
+        flags = shlex.split(self.run_command("pkg-config", "--cflags", "--libs", "stipple", env=environment))
+        self.run_command(os.environ["CXX"], EXAMPLES / "read_stream.cpp", "-o", "by_hand", *flags)
+        self.read_stream(self.folder / "by_hand", "by_hand.stipple")
+
+    def project(self, name, *lines):
+        """A folder with a project of these lines of CMake."""
+        folder = self.folder / name
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text("\n".join(
+            ("cmake_minimum_required(VERSION 3.25)", f"project({name} LANGUAGES CXX)", *lines)))
+        return folder
+
+    def test_without_components_all_are_there(self):
+        """The last one links all others but three."""
+        source = self.project("whole", "find_package(stipple REQUIRED)", "add_executable(whole main.cpp)",
+                              "target_link_libraries(whole PRIVATE stipple::decoder stipple::metrics"
+                              " stipple::scenes stipple::capture)")
+        (source / "main.cpp").write_text("#include <stipple/capture/camera_listing.h>\n"
+                                         "int main() { return stipple::list_cameras().cameras.empty() ? 0 : 1; }\n")
+        self.configure(source, "whole_build")
+        self.run_command(os.environ["CMAKE"], "--build", "whole_build")
+
+    def test_an_unknown_component_is_named(self):
+        source = self.project("wrong", "find_package(stipple REQUIRED COMPONENTS lens)")
+        said = self.configure(source, "wrong_build", code=1)
+        self.assertIn("it has no component lens, but: core", " ".join(said.split()))
+
+
+if __name__ == "__main__":
+    unittest.main()
