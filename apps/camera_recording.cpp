@@ -11,12 +11,12 @@
 #include <optional>
 
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/number_text.h"
-#include "apps/progress.h"
-#include "apps/session_report.h"
-#include "apps/standard_error.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/session_report.h"
+#include "apps/report/standard_error.h"
 #include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"

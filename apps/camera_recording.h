@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/camera_arguments.h"
-#include "apps/capture_limits.h"
-#include "apps/run_options.h"
+#include "apps/arguments/camera.h"
+#include "apps/arguments/run_options.h"
 #include "capture/capture_session.h"
 
 namespace stipple {

@@ -1,10 +1,9 @@
-
+#include "apps/arguments/camera.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/settings.h"
 #include "apps/camera_recording.h"
-#include "apps/capture_commands.h"
 #include "apps/coded_recording.h"
-#include "apps/output_names.h"
-#include "apps/session_arguments.h"
-#include "apps/settings_argument.h"
+#include "apps/subcommands.h"
 
 namespace stipple {
 namespace {

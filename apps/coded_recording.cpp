@@ -10,11 +10,11 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/number_text.h"
-#include "apps/progress.h"
-#include "apps/standard_error.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/standard_error.h"
 #include "capture/open_camera.h"
 #include "capture/serve/coded_payload.h"
 #include "capture/setting_value.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "apps/arguments/run_options.h"
 #include "apps/camera_recording.h"
-#include "apps/run_options.h"
 
 namespace stipple {
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <vector>
 
-#include "apps/text_file.h"
+#include "apps/report/text_file.h"
 #include "core/error.h"
 #include "io/dn_image.h"
 #include "readout/coded_sensor.h"
