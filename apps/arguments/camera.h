@@ -1,13 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/arguments/command_line.h"
 #include "capture/camera.h"
+#include "capture/capture_limits.h"
 #include "capture/capture_session.h"
 
 namespace stipple {
@@ -47,21 +46,6 @@ void add_session_arguments(Command& command, SessionOptions& options);
 
 /// \throws UsageError for those that do nothing with a replay.
 void check_session_arguments(const Command& command, const CameraArguments& camera);
-
-/// How long to capture; 0: until stopped.
-struct CaptureLimits {
-    std::uint64_t frames = 0;
-    double seconds = 0;
-
-    /// Whether so many frames in so many seconds are enough.
-    [[nodiscard]] bool reached(std::uint64_t taken_frames, double elapsed_s) const {
-        return (frames > 0 && taken_frames >= frames) || (seconds > 0 && elapsed_s >= seconds);
-    }
-    /// The frames that there will be, if that is known.
-    [[nodiscard]] std::optional<std::int64_t> total() const {
-        return frames == 0 ? std::nullopt : std::optional(static_cast<std::int64_t>(frames));
-    }
-};
 
 /// `--frames` and `--seconds`.
 void add_capture_limits(Command& command, CaptureLimits& limits);
