@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "metrics/emva1288/camera_figures.h"
+#include "sensor_model/sensor_params.h"
 
 namespace stipple {
 
@@ -14,6 +15,10 @@ struct CameraReport {
     emva1288::Evaluation evaluation;
     std::optional<emva1288::CameraFigures> configured;
 };
+
+/// The figures that an evaluation of this sensor would find without noise of its own. Defects
+/// count: dead pixels lower the quantum efficiency and raise the PRNU, hot ones raise the DSNU.
+[[nodiscard]] emva1288::CameraFigures configured_figures(const SensorParams& params);
 
 /// The keys of `characterize` in docs/cli.md.
 [[nodiscard]] nlohmann::ordered_json camera_json(const CameraReport& report);
