@@ -1,5 +1,3 @@
-
-#include "apps/capture_commands.h"
 #include "apps/subcommands.h"
 
 namespace stipple {

@@ -4,9 +4,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "apps/capture_commands.h"
-#include "apps/json_file.h"
-#include "apps/number_text.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/subcommands.h"
 #include "capture/camera_kind.h"
 #include "core/error.h"
 

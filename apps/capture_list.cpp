@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/capture_commands.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
+#include "apps/report/json_file.h"
+#include "apps/subcommands.h"
 #include "capture/camera_listing.h"
 
 namespace stipple {

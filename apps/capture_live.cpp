@@ -1,12 +1,12 @@
 #include <nlohmann/json.hpp>
 
-#include "apps/capture_commands.h"
-#include "apps/json_file.h"
+#include "apps/arguments/camera.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/sensor.h"
 #include "apps/live_emulation.h"
-#include "apps/number_check.h"
-#include "apps/output_names.h"
-#include "apps/sensor_arguments.h"
-#include "apps/session_arguments.h"
+#include "apps/report/json_file.h"
+#include "apps/subcommands.h"
 
 namespace stipple {
 namespace {

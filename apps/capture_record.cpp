@@ -1,15 +1,157 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 
-#include "apps/camera_recording.h"
-#include "apps/capture_commands.h"
-#include "apps/coded_recording.h"
-#include "apps/output_names.h"
-#include "apps/session_arguments.h"
-#include "apps/settings_argument.h"
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "apps/arguments/camera.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/settings.h"
+#include "apps/interrupt.h"
+#include "apps/leftovers.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/session_report.h"
+#include "apps/report/standard_error.h"
+#include "apps/subcommands.h"
+#include "capture/open_camera.h"
+#include "capture/recording/camera_recorder.h"
+#include "capture/recording/coded_recorder.h"
+#include "core/error.h"
 
 namespace stipple {
 namespace {
 
-void record(const CameraRecordingArguments& arguments, const RunOptions& run) {
+struct RecordArguments {
+    CameraArguments camera;
+    SessionOptions session;
+    std::string output;  ///< file, or a folder in which a file named by the time is made
+    CaptureLimits limits;
+    bool coded = false;  ///< the samples of a camera of `capture serve --mode coded`
+};
+
+/// `output`, or a file in it that is named by the time.
+std::filesystem::path file_for(const std::string& output) {
+    std::filesystem::path path(output);
+    if (!std::filesystem::is_directory(path)) return path;
+    // Cameras that a script starts together share the second.
+    const auto now = std::chrono::system_clock::now();
+    const auto ms =
+        std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count();
+    return path / fmt::format("{:%Y%m%d_%H%M%S}_{:03}.strec",
+                              fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms % 1000);
+}
+
+nlohmann::ordered_json recording_json(const std::string& file, const CameraRecording& recording) {
+    const auto& hz = recording.frames_per_s;
+    return {{"file", file},
+            {"frames", recording.end.frames},
+            {"incomplete", recording.end.incomplete},
+            {"repeated", recording.session.repeated},
+            {"lost", lost_json(recording.session)},
+            {"outages", recording.session.outages},
+            {"transport", transport_json(recording.transport)},
+            {"payload_bytes", recording.end.payload_bytes},
+            {"seconds", recording.seconds},
+            {"frames_per_s", hz ? nlohmann::ordered_json(*hz) : nullptr}};
+}
+
+std::string recording_text(const std::string& file, const CameraRecording& recording) {
+    const auto& hz = recording.frames_per_s;
+    std::string text =
+        fmt::format("{}: {}{}, {:.1f} MB", file, counted(recording.end.frames, "frame"),
+                    hz ? fmt::format(", {:.1f} per second", *hz) : "",
+                    static_cast<double>(recording.end.payload_bytes) * 1e-6);
+    if (recording.end.incomplete > 0)
+        text += fmt::format(", {} incomplete", recording.end.incomplete);
+    if (recording.session.repeated > 0)
+        text += fmt::format(", {} repeated and left out", recording.session.repeated);
+    return fmt::format("{}\nlost: {}", text, lost_text(recording.session));
+}
+
+/// \throws what ended a recording too early, once it is said what was kept of it.
+void check_end(const CameraRecording& recording, const std::string& file,
+               const std::string& address) {
+    if (!recording.kept) throw_if_stopped();
+    const auto& lost = recording.lost;
+    if (recording.kept && (recording.failure || (lost && lost->bad_file)))
+        say_kept(file.c_str(), [&] { return counted(recording.end.frames, "frame"); });
+    if (recording.failure) std::rethrow_exception(recording.failure);
+    if (lost && lost->bad_file) throw InputError(*lost->bad_file);
+    if (lost && !lost->at_end) throw DeviceError(address, "camera lost: " + lost->reason);
+    if (!recording.kept)
+        throw DeviceError(address,
+                          "no frame came; record for longer, or see \"stipple capture doctor\"");
+}
+
+void say_event(const SessionEvent& event) {
+    if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
+    if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
+}
+
+void record_camera(const RecordArguments& arguments, const RunOptions& run) {
+    JsonFile json(run);
+    const CameraSettings settings = camera_settings(arguments.camera);
+    CameraRecorder recorder([&] { return open_picture_camera(arguments.camera, settings); },
+                            settings, file_for(arguments.output),
+                            {.session = session_options(arguments.camera, arguments.session),
+                             .limits = arguments.limits,
+                             .force = run.force,
+                             .tell = say_event});
+    say_warnings(recorder.description());
+    say_leftover(recorder.file());
+    const CameraRecording recording = [&] {
+        Progress progress(run, "recording", arguments.limits.total());
+        return recorder.record([&](std::uint64_t frames, const SessionTotals& totals) {
+            progress.reach(static_cast<double>(frames));
+            progress.note(losses_text(totals));
+            return stop_signal() == 0;
+        });
+    }();
+    const std::string file = recorder.file().string();
+    check_end(recording, file, arguments.camera.address);
+    json.write(recording_json(file, recording));
+    run.say(recording_text(file, recording));
+}
+
+void record_coded_stream(const RecordArguments& arguments, const RunOptions& run) {
+    const std::string& address = arguments.camera.address;
+    auto camera = open_camera(address, camera_settings(arguments.camera), arguments.camera.buffers);
+    JsonFile json(run);
+    CodedRecorder recorder(std::move(camera), arguments.output, run.force, arguments.limits);
+    say_leftover(arguments.output);
+    const CodedRecording recording = [&] {
+        Progress progress(run, "recording", recorder.slots());
+        return recorder.record([&](const CodedRecording& now) {
+            progress.reach(static_cast<double>(now.slots));
+            if (now.missing_slots > 0) progress.note(fmt::format("{} missing", now.missing_slots));
+            return stop_signal() == 0;
+        });
+    }();
+    if (recording.failure) {
+        if (recording.kept) say_kept(arguments.output.c_str());
+        std::rethrow_exception(recording.failure);
+    }
+    if (!recording.kept) {
+        throw_if_stopped();
+        throw DeviceError(address, "no slot of the coded stream arrived");
+    }
+    json.write({{"slots", recording.slots},
+                {"missing_slots", recording.missing_slots},
+                {"damaged_frames", recording.damaged_frames}});
+    run.say(fmt::format("{}: {}, {} of them missing, {} damaged", arguments.output,
+                        counted(recording.slots, "slot"), recording.missing_slots,
+                        counted(recording.damaged_frames, "frame")));
+}
+
+void record(const RecordArguments& arguments, const RunOptions& run) {
     arguments.coded ? record_coded_stream(arguments, run) : record_camera(arguments, run);
 }
 
@@ -17,7 +159,7 @@ void record(const CameraRecordingArguments& arguments, const RunOptions& run) {
 
 void add_capture_record(Command& capture, Action& action) {
     Command command = capture.add_command("record", "Record a camera, every frame accounted for");
-    const auto options = std::make_shared<CameraRecordingArguments>();
+    const auto options = std::make_shared<RecordArguments>();
     add_camera_arguments(command, options->camera);
     add_settings(command, {{"camera", &options->camera.settings}},
                  "set a feature or control of the camera, over --config");

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/capture_commands.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/number_check.h"
-#include "apps/number_text.h"
-#include "apps/output_names.h"
-#include "apps/progress.h"
-#include "apps/standard_error.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/standard_error.h"
+#include "apps/subcommands.h"
 #include "capture/recording/recording_footage.h"
 #include "core/error.h"
 #include "io/frame_writer.h"

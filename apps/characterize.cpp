@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -5,22 +9,27 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
-#include "apps/camera_report.h"
-#include "apps/chart.h"
-#include "apps/flat_field_series.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/number_check.h"
-#include "apps/progress.h"
-#include "apps/session_report.h"
-#include "apps/settings_argument.h"
-#include "apps/standard_error.h"
+#include "apps/report/camera_report.h"
+#include "apps/report/chart.h"
+#include "apps/report/json_file.h"
+#include "apps/report/progress.h"
+#include "apps/report/session_report.h"
+#include "apps/report/standard_error.h"
+#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
-#include "apps/text_file.h"
 #include "core/error.h"
+#include "core/input_file.h"
+#include "io/dn_image.h"
 #include "io/pending_output.h"
+#include "metrics/emva1288/series_evaluation.h"
+#include "readout/flat_field.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
@@ -32,21 +41,73 @@ struct CharacterizeOptions {
     std::string output;      ///< folder; may be empty if there is a descriptor
 };
 
+/// Name of the descriptor in the folder of a series.
+constexpr auto kDescriptorName = "emva1288_data.txt";
+
+std::string image_name(int number) {
+    return fmt::format("image_{:04}.png", number);
+}
+
+/// image_0001.png ...
+bool is_image_name(std::string_view name) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(name.data() + std::min<std::size_t>(name.size(), 6),
+                                              name.data() + name.size(), number);
+    return error == std::errc() && name == image_name(number);
+}
+
 bool is_chart_name(std::string_view name) {
     return name == "photon_transfer.png" || name == "photon_transfer.svg";
 }
 
 bool is_series_name(std::string_view name) {
-    return is_chart_name(name) || name == kDescriptorName || is_series_image_name(name);
+    return is_chart_name(name) || name == kDescriptorName || is_image_name(name);
 }
 
+/// Leaves images of the emulated sensor, 16-bit PNG with the DN as they are, and their descriptor.
+void photograph(const SensorChoice& sensor, const SensorParams& params,
+                const std::filesystem::path& folder, const RunOptions& run) {
+    FlatField field(params, sensor.seed);
+    const auto exposures = flat_field_exposures(params);
+    int images = 0;
+    for (const FlatFieldExposure& exposure : exposures) images += exposure.images;
+    Progress progress(run, "photographing", images);
+    emva1288::Series series{.bits = params.bit_depth,
+                            .cols = FlatField::kShape.cols,
+                            .rows = FlatField::kShape.rows,
+                            .groups = {}};
+    int number = 0;
+    for (const auto& [photons, count] : exposures) {
+        emva1288::ImageGroup& group =
+            series.groups.emplace_back(emva1288::ImageGroup{.exposure_ns = params.slot_us * 1000,
+                                                            .photons = photons,
+                                                            .dark = photons == 0,
+                                                            .files = {}});
+        for (int i = 0; i < count; ++i) {
+            throw_if_stopped();
+            group.files.push_back(image_name(++number));
+            write_dn_png(folder / group.files.back(), FlatField::kShape, field.photograph(photons));
+            progress.advance();
+        }
+    }
+    const auto descriptor = folder / kDescriptorName;
+    write_whole(descriptor, descriptor.string(), series_text(series));
+}
+
+/// Reads the images that a descriptor names and evaluates them; messages call it `place`.
 emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std::string& place,
                               const RunOptions& run) {
     Progress progress(run, "evaluating", {});
-    return evaluate_series(descriptor, place, [&] {
+    const auto bytes = read_file(descriptor);
+    const emva1288::Series series =
+        emva1288::parse_series({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, place);
+    const auto read = [&](const std::filesystem::path& file) -> emva1288::SeriesImage {
         throw_if_stopped();
+        DnImage image = read_dn_image(file);
         progress.advance();
-    });
+        return {image.shape.rows, image.shape.cols, std::move(image.dn)};
+    };
+    return emva1288::evaluate(series, descriptor.parent_path(), read, place);
 }
 
 /// Draws the charts into the folder, as far as they can be. Returns how many there are; `failure`
@@ -77,18 +138,11 @@ void report(const CameraReport& camera, const std::optional<DeviceError>& failur
 }
 
 void characterize_sensor(const CharacterizeOptions& options, const RunOptions& run) {
-    SensorParams params = set_up_params(options.sensor);
-    params.physical.cfa = ColourFilter::kNone;
+    const SensorParams params = set_up_params(options.sensor);
     JsonFile json(run);
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
     say_leftover(options.output);
-    {
-        Progress progress(run, "photographing", kSeriesImages);
-        capture_flat_fields(params, options.sensor.seed, folder.partial(), [&] {
-            throw_if_stopped();
-            progress.advance();
-        });
-    }
+    photograph(options.sensor, params, folder.partial(), run);
     const auto place = (folder.final_path() / kDescriptorName).string();
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, place, run),
                               configured_figures(params)};

@@ -6,14 +6,14 @@
 #include <string>
 #include <tuple>
 
-#include "apps/footage_arguments.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
-#include "apps/number_check.h"
-#include "apps/number_text.h"
-#include "apps/progress.h"
-#include "apps/quality_json.h"
-#include "apps/session_report.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/quality_json.h"
+#include "apps/report/session_report.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"

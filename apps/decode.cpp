@@ -4,11 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/settings.h"
 #include "apps/decode_file.h"
-#include "apps/names_of.h"
-#include "apps/number_check.h"
-#include "apps/output_names.h"
-#include "apps/settings_argument.h"
 #include "apps/subcommands.h"
 #include "core/joined.h"
 #include "decoder/reconstruct.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/run_options.h"
+#include "apps/arguments/run_options.h"
 
 namespace stipple {
 

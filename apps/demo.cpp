@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/arguments/checks.h"
+#include "apps/arguments/footage.h"
 #include "apps/demo_trials.h"
-#include "apps/json_file.h"
-#include "apps/names_of.h"
-#include "apps/scene_arguments.h"
+#include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "apps/trial.h"
 #include "core/error.h"

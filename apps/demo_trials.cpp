@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "apps/side_by_side.h"
+#include "apps/report/side_by_side.h"
 #include "apps/trial.h"
 #include "io/frame_writer.h"
 

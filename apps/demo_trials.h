@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/demo_report.h"
-#include "apps/run_options.h"
+#include "apps/arguments/run_options.h"
+#include "apps/report/demo_report.h"
 #include "core/flux_video.h"
 
 namespace stipple {

@@ -5,21 +5,21 @@
 #include <optional>
 #include <string>
 
-#include "apps/emulation_text.h"
-#include "apps/footage_arguments.h"
+#include "apps/arguments/footage.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/sensor.h"
 #include "apps/footage_origin.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/output_names.h"
-#include "apps/progress.h"
-#include "apps/rate_warning.h"
-#include "apps/recording_faults.h"
-#include "apps/sensor_arguments.h"
-#include "apps/session_report.h"
+#include "apps/report/emulation_text.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/rate_warning.h"
+#include "apps/report/session_report.h"
 #include "apps/subcommands.h"
-#include "apps/timing_arguments.h"
 #include "capture/recording/read_ahead.h"
+#include "core/joined.h"
 #include "io/frame_writer.h"
 #include "readout/stream_recorder.h"
 #include "readout/timing/waveform_file.h"
@@ -35,6 +35,18 @@ struct EmulateOptions {
     FootageOptions reading;
     SensorChoice sensor;
 };
+
+/// What is wrong with a recording named `file` that was read to its end: damage, no end, frames
+/// that are missing or incomplete. Empty if nothing is.
+std::string recording_faults(const std::string& file, const RecordingFootage& footage) {
+    auto faults = footage.recording().faults();
+    if (footage.missing_frames() > 0)
+        faults.push_back(
+            fmt::format("lacks {}, missing or incomplete (the one before stands in for {})",
+                        counted(footage.missing_frames(), "frame"), footage.held_slots()));
+    if (faults.empty()) return {};
+    return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
+}
 
 void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage = read_footage(options.footage, options.reading);

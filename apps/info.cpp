@@ -4,10 +4,10 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
 #include "apps/recording_info.h"
-#include "apps/stream_text.h"
+#include "apps/report/json_file.h"
+#include "apps/report/stream_text.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

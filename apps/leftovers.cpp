@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "apps/interrupt.h"
-#include "apps/standard_error.h"
+#include "apps/report/standard_error.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "io/disk_sync.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/json_file.h"
+#include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"

@@ -8,15 +8,15 @@
 #include <string>
 #include <utility>
 
-#include "apps/emulation_text.h"
 #include "apps/footage_origin.h"
 #include "apps/interrupt.h"
 #include "apps/leftovers.h"
-#include "apps/number_text.h"
-#include "apps/progress.h"
-#include "apps/rate_warning.h"
-#include "apps/session_report.h"
-#include "apps/standard_error.h"
+#include "apps/report/emulation_text.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/rate_warning.h"
+#include "apps/report/session_report.h"
+#include "apps/report/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/error.h"
 #include "core/gap_limit.h"

@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/camera_arguments.h"
-#include "apps/capture_limits.h"
+#include "apps/arguments/camera.h"
+#include "apps/arguments/preview.h"
+#include "apps/arguments/run_options.h"
 #include "apps/live_preview.h"
-#include "apps/preview_arguments.h"
-#include "apps/run_options.h"
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
 #include "capture/live_camera.h"

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "apps/interrupt.h"
-#include "apps/preview_picture.h"
-#include "apps/standard_error.h"
+#include "apps/report/preview_picture.h"
+#include "apps/report/standard_error.h"
 #include "capture/host_clock.h"
 #include "core/parallel.h"
 #include "io/disk_sync.h"

@@ -12,10 +12,10 @@
 #include <system_error>
 #include <typeinfo>
 
-#include "apps/command_line.h"
+#include "apps/arguments/command_line.h"
+#include "apps/arguments/run_options.h"
 #include "apps/interrupt.h"
-#include "apps/run_options.h"
-#include "apps/standard_error.h"
+#include "apps/report/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"

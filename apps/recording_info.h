@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/run_options.h"
+#include "apps/arguments/run_options.h"
 
 namespace stipple {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <system_error>
 
-#include "apps/json_file.h"
+#include "apps/arguments/output_names.h"
 #include "apps/leftovers.h"
-#include "apps/output_names.h"
+#include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/json_file.h"
-#include "apps/schedule_choice.h"
-#include "apps/schedule_commands.h"
+#include "apps/arguments/schedule.h"
+#include "apps/report/json_file.h"
+#include "apps/subcommands.h"
 #include "core/error.h"
 #include "readout/schedules/schedule_check.h"
 #include "readout/sensor_file.h"

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/json_file.h"
-#include "apps/output_names.h"
-#include "apps/schedule_choice.h"
-#include "apps/schedule_commands.h"
-#include "apps/text_file.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/schedule.h"
+#include "apps/report/json_file.h"
+#include "apps/report/text_file.h"
+#include "apps/subcommands.h"
 #include "readout/program/program_text.h"
 
 namespace stipple {

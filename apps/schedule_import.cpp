@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/json_file.h"
-#include "apps/number_check.h"
-#include "apps/output_names.h"
-#include "apps/schedule_commands.h"
-#include "apps/schedule_text.h"
-#include "apps/text_file.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "apps/report/json_file.h"
+#include "apps/report/schedule_text.h"
+#include "apps/report/text_file.h"
+#include "apps/subcommands.h"
 #include "core/error.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/json_file.h"
-#include "apps/number_check.h"
-#include "apps/output_names.h"
-#include "apps/schedule_chart.h"
-#include "apps/schedule_choice.h"
-#include "apps/schedule_commands.h"
-#include "apps/schedule_text.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "apps/arguments/schedule.h"
+#include "apps/report/json_file.h"
+#include "apps/report/schedule_chart.h"
+#include "apps/report/schedule_text.h"
+#include "apps/subcommands.h"
 
 namespace stipple {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "apps/footage_arguments.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/footage.h"
 #include "apps/footage_origin.h"
-#include "apps/names_of.h"
-#include "apps/session_report.h"
+#include "apps/report/session_report.h"
 #include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"

@@ -1,9 +1,31 @@
 #pragma once
 
-#include "apps/action.h"
-#include "apps/command_line.h"
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "apps/arguments/command_line.h"
+#include "apps/arguments/run_options.h"
 
 namespace stipple {
+
+/// What the command line asks for.
+struct Action {
+    std::function<void(const RunOptions&)> run;  ///< what the subcommand that it names does
+    RunOptions options;
+};
+
+/// If the command line names `command` and `check` does not refuse it (UsageError), `run` is what
+/// is done, with `options`.
+template <typename Options>
+void set_action(
+    Command& command, Action& action, const std::shared_ptr<Options>& options,
+    void (*run)(const Options&, const RunOptions&), std::function<void()> check = [] {}) {
+    command.callback([&action, options, run, check = std::move(check)] {
+        check();
+        action.run = [options, run](const RunOptions& told) { run(*options, told); };
+    });
+}
 
 // Each function adds one subcommand to `app`. If the command line names it, parsing sets `action`.
 
@@ -20,5 +42,22 @@ void add_characterize(Command& app, Action& action);
 void add_capture(Command& app, Action& action);  ///< cameras: its own subcommands
 void add_demo(Command& app, Action& action);     ///< all of it on an embedded scene
 void add_list(Command& app, Action& action);     ///< names that options take, a line each
+
+// Those of `stipple capture`.
+
+void add_capture_list(Command& capture, Action& action);    ///< cameras that can be opened
+void add_capture_doctor(Command& capture, Action& action);  ///< what would cost frames, its fix
+void add_capture_live(Command& capture, Action& action);    ///< a camera to a sample stream
+void add_capture_record(Command& capture, Action& action);  ///< a camera to a recording
+void add_capture_replay(Command& capture, Action& action);  ///< a recording as footage
+void add_capture_serve(Command& capture, Action& action);   ///< a source as a GigE camera
+
+// Those of `stipple schedule`.
+
+void add_schedule_make(Command& schedule, Action& action);     ///< any schedule, written out
+void add_schedule_show(Command& schedule, Action& action);     ///< timing diagram and figures
+void add_schedule_check(Command& schedule, Action& action);    ///< can a sensor do it
+void add_schedule_compile(Command& schedule, Action& action);  ///< the chip's sequencer program
+void add_schedule_import(Command& schedule, Action& action);   ///< from a volume in a .npy
 
 }  // namespace stipple

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/arguments/checks.h"
+#include "apps/arguments/footage.h"
+#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
 #include "apps/leftovers.h"
-#include "apps/names_of.h"
-#include "apps/number_text.h"
-#include "apps/output_names.h"
-#include "apps/progress.h"
-#include "apps/scene_arguments.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
 #include "apps/subcommands.h"
 #include "io/frame_writer.h"
 #include "io/video_reader.h"

@@ -4,14 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/account_text.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
-#include "apps/json_file.h"
-#include "apps/number_check.h"
-#include "apps/sensor_arguments.h"
-#include "apps/size_argument.h"
+#include "apps/report/account_text.h"
+#include "apps/report/json_file.h"
 #include "apps/subcommands.h"
-#include "apps/timing_arguments.h"
 #include "core/error.h"
 #include "readout/sensor_file.h"
 

@@ -6,7 +6,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/leftovers.h"
-#include "apps/progress.h"
+#include "apps/report/progress.h"
 #include "readout/provenance.h"
 #include "readout/sensor_file.h"
 #include "readout/stream_recorder.h"

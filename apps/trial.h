@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/run_options.h"
+#include "apps/arguments/run_options.h"
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"

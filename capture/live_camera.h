@@ -1,17 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <exception>
 #include <functional>
-#include <mutex>
 #include <optional>
-#include <string>
+#include <stop_token>
 #include <thread>
 
 #include "capture/capture_session.h"
+#include "capture/frame_queue.h"
 
 namespace stipple {
 
@@ -46,7 +45,7 @@ class LiveCamera {
     /// Why no frame will come any more; nothing while one may.
     [[nodiscard]] std::optional<DeviceLost> end() const;
     /// Frames that waited at most.
-    [[nodiscard]] std::size_t peak() const;
+    [[nodiscard]] std::size_t peak() const { return frames_.peak(); }
     /// Stops the camera. What became of its frames.
     SessionTotals stop();
     /// Precondition: it is stopped.
@@ -54,21 +53,17 @@ class LiveCamera {
 
   private:
     void run(const std::stop_token& stop) noexcept;
-    void take(CapturedFrame frame);
+    void take(SessionEvent event);
 
     LiveCameraOptions options_;
     CaptureSession session_;
     FrameLayout layout_;
     CameraDescription description_;
-    std::size_t most_;
-    mutable std::mutex mutex_;
-    std::condition_variable_any changed_;
-    std::deque<CapturedFrame> frames_;
-    std::size_t peak_ = 0;
-    bool begun_ = false;
-    std::optional<DeviceLost> end_;
-    std::exception_ptr failure_;  ///< of the thread
-    std::jthread thread_;         ///< last: starts when all else is there
+    FrameQueue frames_;
+    std::atomic<bool> begun_ = false;
+    std::optional<DeviceLost> end_;  ///< the thread's, until the frames have ended
+    std::exception_ptr failure_;     ///< the same
+    std::jthread thread_;            ///< last: starts when all else is there
 };
 
 }  // namespace stipple

@@ -79,6 +79,12 @@ double SensorParams::dark_e_per_slot() const {
            (slot_us * 1e-6);
 }
 
+double SensorParams::saturation_e() const {
+    const int max_dn = (1 << bit_depth) - 1;
+    const double range_e = (max_dn - physical.black_level_dn) * gain_e_per_dn();
+    return std::min(full_well_e, range_e) - dark_e_per_slot();
+}
+
 double SensorParams::temporal_read_noise_e() const {
     if (mode == SensorMode::kPaper) return read_noise_e;
     double row2 = 0;

@@ -54,6 +54,8 @@ struct SensorParams {
     }
     /// Mean dark electrons of an ordinary pixel in one open slot.
     [[nodiscard]] double dark_e_per_slot() const;
+    /// Mean electrons of light that fill the well or the converter of an ordinary pixel.
+    [[nodiscard]] double saturation_e() const;
     /// Temporal noise of one reading, standard deviation: read, reset and row noise (rms of taps).
     [[nodiscard]] double temporal_read_noise_e() const;
 

@@ -12,9 +12,8 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/command_line.h"
-#include "apps/names_of.h"
-#include "apps/number_check.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/command_line.h"
 #include "decoder/decode_options.h"
 #include "io/npy_writer.h"
 #include "scenes/scene.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/chart.h"
+#include "apps/report/chart.h"
 #include "core/config.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/tiled_schedule.h"

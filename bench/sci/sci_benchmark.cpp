@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/command_line.h"
-#include "apps/number_check.h"
+#include "apps/arguments/checks.h"
+#include "apps/arguments/command_line.h"
 #include "bench/sci/sci_trial.h"
 #include "core/config.h"
 #include "core/error.h"

@@ -40,22 +40,22 @@ ArvDevice* open_gige(const std::string& address, const std::string& ip) {
         throw InputError(address,
                          "is no IPv4 address: write gige:192.168.0.5 (\"stipple capture "
                          "list\" shows the cameras that answer)");
-    GlibError complaint;
+    GlibError error;
     ArvDevice* device =
-        arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), complaint.slot());
+        arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), error.slot());
     if (device == nullptr)
         throw DeviceError(address,
                           fmt::format("no camera answers ({}): check power, cable and that the "
                                       "address is in the subnet of an interface of this machine "
                                       "(\"stipple capture doctor\")",
-                                      complaint.text()));
+                                      error.text()));
     return device;
 }
 
 ArvDevice* open_usb(const std::string& address, const std::string& serial) {
     ArvInterface* usb = arv_uv_interface_get_instance();
     arv_interface_update_device_list(usb);
-    GlibError complaint;
+    GlibError error;
     for (unsigned i = 0; i < arv_interface_get_n_devices(usb); ++i) {
         const char* found = arv_interface_get_device_serial_nbr(usb, i);
         if (found == nullptr || serial != found) continue;
@@ -63,12 +63,12 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
         if (usb_camera_is_taken(serial))
             throw DeviceError(address, "another program has the camera: stop it");
         ArvDevice* device =
-            arv_interface_open_device(usb, arv_interface_get_device_id(usb, i), complaint.slot());
+            arv_interface_open_device(usb, arv_interface_get_device_id(usb, i), error.slot());
         if (device != nullptr) return device;
         throw DeviceError(address,
                           fmt::format("cannot be opened ({}): another program may have it, "
                                       "or this user may not (\"stipple capture doctor\")",
-                                      complaint.text()));
+                                      error.text()));
     }
     throw DeviceError(address,
                       "no USB3 Vision camera has this serial number: check the cable, and "
@@ -117,10 +117,10 @@ constexpr std::array<NumberFeature, 4> kNumbers{{
 
 /// The values that an integer feature takes.
 std::string range_of(ArvDevice* device, const char* feature) {
-    GlibError complaint;
+    GlibError error;
     gint64 least = 0, most = 0;
-    arv_device_get_integer_feature_bounds(device, feature, &least, &most, complaint.slot());
-    if (complaint.any()) return {};
+    arv_device_get_integer_feature_bounds(device, feature, &least, &most, error.slot());
+    if (error.any()) return {};
     const gint64 step = arv_device_get_integer_feature_increment(device, feature, nullptr);
     return fmt::format("; it takes {} to {}{}", least, most,
                        step > 1 ? fmt::format(" in steps of {}", step) : "");
@@ -153,10 +153,10 @@ AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
     const std::unique_ptr<void, void (*)(void*)> opened(device, g_object_unref);
     check_genicam(device, address_);
-    GlibError complaint;
-    impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), complaint.slot());
+    GlibError error;
+    impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), error.slot());
     if (impl_->camera == nullptr)
-        throw DeviceError(address_, fmt::format("is no usable camera: {}", complaint.text()));
+        throw DeviceError(address_, fmt::format("is no usable camera: {}", error.text()));
     impl_->device = arv_camera_get_device(impl_->camera);
     arv_device_set_range_check_policy(impl_->device, ARV_RANGE_CHECK_POLICY_ENABLE);
 }
@@ -199,9 +199,9 @@ std::optional<std::string> AravisDevice::read(const std::string& feature) const 
     auto* named = ARV_GC_FEATURE_NODE(node);
     if (arv_gc_feature_node_get_actual_access_mode(named) == ARV_GC_ACCESS_MODE_WO)
         return std::nullopt;
-    GlibError complaint;
-    const char* value = arv_gc_feature_node_get_value_as_string(named, complaint.slot());
-    if (complaint.any() || value == nullptr) return std::nullopt;
+    GlibError error;
+    const char* value = arv_gc_feature_node_get_value_as_string(named, error.slot());
+    if (error.any() || value == nullptr) return std::nullopt;
     return std::string(value);
 }
 
@@ -222,19 +222,19 @@ void AravisDevice::Impl::set_number(const std::string& place, const NumberFeatur
     if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
         throw InputError(place,
                          fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
-    GlibError complaint;
-    feature.set(camera, *number, complaint.slot());
-    if (complaint.any())
-        throw InputError(place, fmt::format("{} cannot be set ({})", value, complaint.text()));
+    GlibError error;
+    feature.set(camera, *number, error.slot());
+    if (error.any())
+        throw InputError(place, fmt::format("{} cannot be set ({})", value, error.text()));
 }
 
 void AravisDevice::Impl::set_choice(const std::string& place, const char* feature,
                                     const std::string& value) const {
-    GlibError complaint;
-    arv_device_set_string_feature_value(device, feature, value.c_str(), complaint.slot());
-    if (complaint.any())
+    GlibError error;
+    arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
+    if (error.any())
         throw InputError(place, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
-                                            complaint.text(), choices_of(device, feature)));
+                                            error.text(), choices_of(device, feature)));
     const char* back = arv_device_get_string_feature_value(device, feature, nullptr);
     if (back == nullptr || value != back)
         throw DeviceError(place, fmt::format("asked for {}, the camera stays at {}", value,
@@ -245,10 +245,10 @@ void AravisDevice::Impl::set_integer(const std::string& place, const char* featu
                                      const std::string& value) const {
     const auto number = parsed<gint64>(value);
     if (!number) throw InputError(place, fmt::format("needs an integer, but is \"{}\"", value));
-    GlibError complaint;
-    arv_device_set_integer_feature_value(device, feature, *number, complaint.slot());
-    if (complaint.any())
-        throw InputError(place, fmt::format("{} cannot be set ({}){}", value, complaint.text(),
+    GlibError error;
+    arv_device_set_integer_feature_value(device, feature, *number, error.slot());
+    if (error.any())
+        throw InputError(place, fmt::format("{} cannot be set ({}){}", value, error.text(),
                                             range_of(device, feature)));
     const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
     if (back != *number)
@@ -259,23 +259,23 @@ void AravisDevice::Impl::set_integer(const std::string& place, const char* featu
 
 void AravisDevice::Impl::set_other(const std::string& place, const char* feature,
                                    const std::string& value) const {
-    GlibError complaint;
+    GlibError error;
     ArvGcNode* node = arv_device_get_feature(device, feature);
     if (ARV_IS_GC_BOOLEAN(node)) {
         const bool on = value == "true" || value == "1";
         if (!on && value != "false" && value != "0")
             throw InputError(place, fmt::format("needs true or false, but is \"{}\"", value));
-        arv_device_set_boolean_feature_value(device, feature, on ? TRUE : FALSE, complaint.slot());
+        arv_device_set_boolean_feature_value(device, feature, on ? TRUE : FALSE, error.slot());
     } else if (ARV_IS_GC_COMMAND(node)) {
-        arv_device_execute_command(device, feature, complaint.slot());
+        arv_device_execute_command(device, feature, error.slot());
     } else if (ARV_IS_GC_FLOAT(node)) {
         const auto number = parsed<double>(value);
         if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
-        arv_device_set_float_feature_value(device, feature, *number, complaint.slot());
+        arv_device_set_float_feature_value(device, feature, *number, error.slot());
     } else {
-        arv_device_set_string_feature_value(device, feature, value.c_str(), complaint.slot());
+        arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
     }
-    if (complaint.any()) throw InputError(place, complaint.text());
+    if (error.any()) throw InputError(place, error.text());
 }
 
 std::string AravisDevice::nearest_feature(const std::string& name) const {

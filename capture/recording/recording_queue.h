@@ -1,12 +1,12 @@
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <exception>
-#include <mutex>
 #include <thread>
 
+#include "capture/frame_queue.h"
 #include "capture/recording/recording_writer.h"
 
 namespace stipple {
@@ -16,8 +16,8 @@ namespace stipple {
 /// the record of the next one (CaptureSession::count_own_drop).
 class RecordingQueue {
   public:
-    /// `writer` must outlive the queue and belongs to it until `drain` has returned. The queue
-    /// holds frames of `max_bytes` in all, and one at least.
+    /// `writer` must outlive the queue and belongs to it until `drain` has returned. Frames
+    /// of `max_bytes` in all, and one at least, wait beside the one that is being written.
     RecordingQueue(RecordingWriter& writer, std::size_t max_bytes);
     /// Writes what waits, as far as it can be written.
     ~RecordingQueue();
@@ -27,30 +27,23 @@ class RecordingQueue {
     /// Never waits for the disk. False if the frame was dropped.
     bool push(CapturedFrame&& frame);
     /// True once a write has failed: all further frames are dropped, `drain` tells why.
-    [[nodiscard]] bool failed() const;
+    [[nodiscard]] bool failed() const { return failed_; }
     /// Writes what waits and stops. \throws what a write that failed has thrown, now or before:
     /// DeviceError, std::bad_alloc.
     void drain();
 
-    [[nodiscard]] std::uint64_t dropped() const;
-    /// The most bytes that ever waited.
-    [[nodiscard]] std::size_t peak_bytes() const;
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
   private:
     void run();
     void stop();
 
     RecordingWriter& writer_;
-    std::size_t max_bytes_;
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<CapturedFrame> frames_;
-    std::size_t bytes_ = 0;  ///< waiting, and the frame that is being written
-    std::size_t peak_bytes_ = 0;
-    std::uint64_t dropped_ = 0;
-    bool stopping_ = false;
-    std::exception_ptr failure_;
-    std::thread thread_;  ///< last: starts when all else is there
+    FrameQueue frames_;
+    std::atomic<std::uint64_t> dropped_ = 0;
+    std::atomic<bool> failed_ = false;
+    std::exception_ptr failure_;  ///< the thread's, until it has ended
+    std::thread thread_;          ///< last: starts when all else is there
 };
 
 }  // namespace stipple

@@ -47,5 +47,18 @@ TEST(SensorParamsTest, RefusesWhatIsNotAPositiveFiniteNumber) {
     EXPECT_NO_THROW(validate({.read_noise_e = 0}));
 }
 
+TEST(SensorParamsTest, SaturationIsThatOfTheWellOrOfTheConverterLessTheDark) {
+    SensorParams params;
+    EXPECT_DOUBLE_EQ(params.saturation_e(), 2000);  // the converter
+    params.full_well_e = 1500;
+    EXPECT_DOUBLE_EQ(params.saturation_e(), 1500);
+    params.full_well_e = 20000;
+    params.mode = SensorMode::kPhysical;
+    params.physical.black_level_dn = 51;          // of 255: 400 of 2000 electrons
+    params.physical.dark_current_e_per_s = 2000;  // 10 in a slot of 5 ms
+    params.physical.temperature_c = params.physical.dark_reference_c;
+    EXPECT_NEAR(params.saturation_e(), 1600 - 10, 1e-9);
+}
+
 }  // namespace
 }  // namespace stipple

@@ -1,0 +1,67 @@
+#include "apps/arguments/checks.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+namespace stipple {
+namespace {
+
+template <typename Number>
+std::optional<Number> number_of(const std::string& text, bool* too_large = nullptr) {
+    Number value{};
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (too_large != nullptr) *too_large = parsed.ec == std::errc::result_out_of_range;
+    if (parsed.ec != std::errc() || parsed.ptr != end) return {};
+    return value;
+}
+
+template <typename Number>
+ValueCheck range_check(std::string kind, Number least, Number most) {
+    return [=](const std::string& text) -> std::string {
+        bool too_large = false;
+        const auto value = number_of<Number>(text, &too_large);
+        if (value && *value >= least && *value <= most) return {};
+        if (too_large) return fmt::format("\"{}\" is too large; {} is the most", text, most);
+        if (most == std::numeric_limits<Number>::max())
+            return fmt::format("\"{}\" is not {} of {} or more", text, kind, least);
+        return fmt::format("\"{}\" is not {} from {} to {}", text, kind, least, most);
+    };
+}
+
+}  // namespace
+
+ValueCheck number_check(double least, double most) {
+    return range_check("a number", least, most);
+}
+
+ValueCheck positive_check() {
+    return [](const std::string& text) {
+        const auto value = number_of<double>(text);
+        const bool usable = value && *value > 0 && *value <= std::numeric_limits<double>::max();
+        return usable ? std::string() : fmt::format("\"{}\" is not a number above 0", text);
+    };
+}
+
+ValueCheck whole_check(std::uint64_t least, std::uint64_t most) {
+    return range_check("a whole number", least, most);
+}
+
+void parse_size(const std::string& option, const std::string& text, int least, int most,
+                FrameShape& shape) {
+    const char* const end = text.data() + text.size();
+    const auto cols = std::from_chars(text.data(), end, shape.cols);
+    const bool crossed = cols.ptr != end && *cols.ptr == 'x';
+    const auto rows = std::from_chars(crossed ? cols.ptr + 1 : end, end, shape.rows);
+    if (cols.ec != std::errc() || rows.ec != std::errc() || rows.ptr != end)
+        throw UsageError(option, "\"" + text + "\" is not a size like 640x480");
+    for (const int side : {shape.cols, shape.rows})
+        if (side < least || side > most)
+            throw UsageError(option,
+                             fmt::format("{}: sides are {} to {} pixels", text, least, most));
+}
+
+}  // namespace stipple

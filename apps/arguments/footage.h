@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/arguments/command_line.h"
+#include "capture/recording/read_ahead.h"
+
+namespace stipple {
+
+struct SceneOptions;
+
+/// `--transfer`, of the footage that its help names, and `--luminance`.
+void add_footage_arguments(Command& command, FootageOptions& options,
+                           const std::string& footage = "the footage");
+
+/// `--max-value V`: positive and finite.
+void add_max_value(Command& command, std::optional<double>& max_value);
+
+/// Footage or a recording. What its reader warns of goes to standard error. \throws InputError as
+/// ReadAhead and check_recording_options.
+[[nodiscard]] ReadAhead read_footage(const std::string& source, const FootageOptions& options);
+
+/// \throws InputError for a recording if any of these options was given: its numbers are linear.
+void check_recording_options(const std::string& recording, const FootageOptions& options);
+
+/// `--frames`, `--size` and `--seed` of an embedded scene. `options` must outlive the parsing.
+void add_scene_arguments(Command& command, SceneOptions& options);
+
+}  // namespace stipple

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "apps/arguments/command_line.h"
+
+namespace stipple {
+
+// What the outputs of the subcommands are called.
+
+constexpr OutputName kStreamName{"a sample stream is a .stipple, or has a name without extension",
+                                 {".stipple"}};
+constexpr OutputName kRecordingName{"a recording is a .strec, or has a name without extension",
+                                    {".strec"}};
+constexpr OutputName kRecoveredName{
+    "a stream is a .stipple, a recording a .strec, or either has a name without extension",
+    {".stipple", ".strec"}};
+constexpr OutputName kVideoName{
+    "a video is a .npy, .mp4 or .mkv, or by a name without extension a folder of EXR files",
+    {".npy", ".mp4", ".mkv"}};
+constexpr OutputName kPreviewName{"a preview is a .png or a .npy", {".png", ".npy"}, false};
+constexpr OutputName kWaveformName{"a waveform is a .vcd, or has a name without extension",
+                                   {".vcd"}};
+constexpr OutputName kScheduleName{"a schedule is a .toml, or has a name without extension",
+                                   {".toml"}};
+constexpr OutputName kProgramName{"a memory image is a .mem or a .hex", {".mem", ".hex"}, false};
+constexpr OutputName kDiagramName{"a diagram is a .png or a .svg", {".png", ".svg"}, false};
+
+}  // namespace stipple

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/arguments/command_line.h"
+#include "decoder/preview.h"
+
+namespace stipple {
+
+/// The preview of `stipple capture live`.
+struct PreviewArguments {
+    std::string file;                ///< .png or .npy; empty: none
+    std::string method = "naive";    ///< or "fast"
+    std::optional<FrameShape> size;  ///< rows and columns of the middle of the frame
+};
+
+/// `--preview`, `--preview-method` and `--preview-size`.
+void add_preview_arguments(Command& command, PreviewArguments& arguments);
+
+[[nodiscard]] PreviewOptions preview_options(const PreviewArguments& arguments);
+
+/// \throws InputError if `file` cannot become the preview of a recording named `output`: another
+/// file of that name, no folder, or the recording itself.
+void check_preview_file(const PreviewArguments& arguments, bool force);
+
+}  // namespace stipple

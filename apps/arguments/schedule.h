@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/arguments/command_line.h"
+#include "apps/arguments/settings.h"
+#include "core/geometry.h"
+#include "readout/schedules/schedule_catalogue.h"
+
+namespace stipple {
+
+/// A schedule as the commands `stipple schedule ...` are told it.
+struct ScheduleChoice {
+    std::string schedule;                    ///< name, file, or compiled file (.mem, .hex)
+    std::vector<std::string> settings = {};  ///< "key=value" of the schedule
+    FrameShape shape = {.rows = 480, .cols = 640, .planes = 1};  ///< of the array
+    std::uint64_t seed = 1;
+};
+
+/// NAME|FILE, --size and --seed.
+void add_schedule_choice(Command& command, ScheduleChoice& choice);
+
+/// What `--set schedule.KEY=VALUE` changes.
+[[nodiscard]] SettingsSection schedule_section(ScheduleChoice& choice);
+
+/// \throws InputError naming file, line and key of what cannot be used.
+[[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);
+
+}  // namespace stipple

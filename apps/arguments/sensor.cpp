@@ -1,0 +1,55 @@
+#include "apps/arguments/sensor.h"
+
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "core/error.h"
+
+namespace stipple {
+
+void add_sensor_arguments(Command& command, SensorChoice& sensor) {
+    command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\" (paper)")
+        .type_name("NAME|FILE")
+        .input();
+    command
+        .add_option("--schedule", sensor.schedule,
+                    "who exposes when, of \"stipple list schedules\" (random)")
+        .type_name("NAME|FILE")
+        .input();
+    command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
+        .check(whole_check(0))
+        .type_name("S");
+    add_overrun(command, sensor.overrun);
+}
+
+void add_overrun(Command& command, OverrunPolicy& policy) {
+    command
+        .add_choice("--overrun", policy,
+                    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}},
+                    "what a readout that exceeds its slot does: stretch it, or drop rows (stretch)")
+        .type_name("POLICY");
+}
+
+std::vector<SettingsSection> sensor_sections(SensorChoice& sensor) {
+    return {{"sensor", &sensor.settings}, {"schedule", &sensor.schedule_settings}};
+}
+
+void add_waveform_arguments(Command& command, WaveformOptions& options) {
+    constexpr int kMaxSlots = 1'000'000;
+    const auto file =
+        command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
+            .type_name("FILE")
+            .output(kWaveformName);
+    command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
+        .check(whole_check(1, kMaxSlots))
+        .type_name("N")
+        .needs(file);
+}
+
+std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
+                                          bool has_timing) {
+    if (options.file.empty()) return {};
+    if (!has_timing) throw InputError("--vcd", "the sensor " + no_timing_text());
+    return std::optional<WaveformFile>(std::in_place, options.file, force);
+}
+
+}  // namespace stipple

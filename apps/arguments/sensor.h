@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/arguments/command_line.h"
+#include "apps/arguments/settings.h"
+#include "readout/sensor_file.h"
+#include "readout/timing/readout_account.h"
+#include "readout/timing/waveform_file.h"
+
+namespace stipple {
+
+/// `--sensor`, `--schedule`, `--seed` and `--overrun`.
+void add_sensor_arguments(Command& command, SensorChoice& sensor);
+
+/// `--overrun stretch|drop`.
+void add_overrun(Command& command, OverrunPolicy& policy);
+
+/// What `--set sensor.KEY=VALUE` and `--set schedule.KEY=VALUE` change.
+[[nodiscard]] std::vector<SettingsSection> sensor_sections(SensorChoice& sensor);
+
+/// `--vcd` and `--vcd-slots`.
+struct WaveformOptions {
+    std::string file;  ///< empty: none
+    int slots = 16;
+};
+void add_waveform_arguments(Command& command, WaveformOptions& options);
+
+/// The waveform file that is asked for, if any. \throws InputError as WaveformFile, or if the
+/// sensor has no timing to show.
+[[nodiscard]] std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
+                                                        bool has_timing);
+
+}  // namespace stipple

@@ -1,0 +1,55 @@
+#include "apps/report/emulation_text.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/report/account_text.h"
+#include "apps/report/number_text.h"
+
+namespace stipple {
+
+nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
+                                      std::optional<double> slots_per_s) {
+    const ReadoutStats& stats = recorder.stats();
+    nlohmann::ordered_json json{{"slots", stats.slots},
+                                {"samples", recorder.samples()},
+                                {"payload_bits", recorder.payload_bits()},
+                                {"compression_ratio", recorder.compression_ratio()},
+                                {"light_throughput", recorder.light_throughput()},
+                                {"light_read", recorder.light_read()},
+                                {"saturated_fraction", recorder.saturated_fraction()},
+                                {"slots_per_second", nullptr},
+                                {"samples_per_second", nullptr}};
+    if (slots_per_s) {
+        json["slots_per_second"] = *slots_per_s;
+        json["samples_per_second"] =
+            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
+    }
+    if (const ReadoutAccount* account = recorder.account())
+        json["readout"] = account_json(*account, recorder.light_throughput());
+    return json;
+}
+
+std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_s) {
+    const SensorSetup& setup = recorder.setup();
+    const ReadoutStats& stats = recorder.stats();
+    const std::string per_sample =
+        fmt::format(", 1 for {:.2f} values of light", recorder.compression_ratio());
+    const std::string saturated =
+        fmt::format(", {:.2f} % of the samples saturated", 100 * recorder.saturated_fraction());
+    const bool any = stats.samples > 0;
+    std::string text = fmt::format(
+        "{} of {} x {} x {}, {} of {} bits{}\n"
+        "light throughput {:.1f} %, {:.1f} % read within the clip{}{}",
+        counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
+        counted(recorder.samples(), "sample"), setup.params.bit_depth,
+        any ? per_sample : ": no exposure ended within the footage",
+        100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
+        slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
+    if (const ReadoutAccount* account = recorder.account())
+        text.append(1, '\n').append(account_text(*account));
+    return text;
+}
+
+}  // namespace stipple

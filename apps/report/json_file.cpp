@@ -1,0 +1,27 @@
+#include "apps/report/json_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/report/text_file.h"
+#include "stream/plain_text.h"
+
+namespace stipple {
+
+JsonFile::JsonFile(const RunOptions& run) : to_stdout_(run.json == "-") {
+    if (!run.json.empty() && !to_stdout_) output_.emplace(run.json, run.force);
+}
+
+void JsonFile::write(const nlohmann::ordered_json& figures) {
+    using nlohmann::ordered_json;
+    // Bytes of a damaged file that are no UTF-8 must not stop the report.
+    const std::string text =
+        terminal_text(figures.dump(2, ' ', false, ordered_json::error_handler_t::replace)) + "\n";
+    if (to_stdout_) fmt::print("{}", text);
+    if (output_) write_text(*output_, text);
+}
+
+}  // namespace stipple

@@ -1,0 +1,121 @@
+#include "apps/report/progress.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string_view>
+#include <utility>
+
+#include "apps/report/number_text.h"
+#include "apps/report/standard_error.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::chrono::milliseconds kBarEvery{100};
+constexpr std::chrono::seconds kLineEvery{5};
+constexpr std::size_t kShortestBar = 8;
+constexpr std::size_t kLongestBar = 24;
+
+/// Whether standard error is a terminal on which a line can be written over.
+bool can_show_bar() {
+    const char* const terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) != 0 &&
+           (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
+}
+
+/// Characters that a line of the terminal takes without a break.
+std::size_t terminal_columns() {
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 79;
+    return size.ws_col - std::size_t{1};
+}
+
+}  // namespace
+
+Progress::Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total)
+    : task_(std::move(task)), total_(total), terminal_(can_show_bar()), start_(Clock::now()) {
+    if (!run.quiet) display_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
+}
+
+Progress::~Progress() {
+    if (!display_.joinable()) return;
+    display_.request_stop();
+    display_.join();
+    if (terminal_) show_bar("");
+}
+
+double Progress::seconds() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void Progress::reach(double frames, std::int64_t complete) {
+    done_ = frames;
+    complete_ = complete;
+    done_at_s_ = seconds();
+}
+
+void Progress::note(std::string text) {
+    const std::lock_guard lock(note_mutex_);
+    note_ = std::move(text);
+}
+
+void Progress::show(const std::stop_token& stop) const {
+    const std::chrono::milliseconds interval = terminal_ ? kBarEvery : kLineEvery;
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any stopped;
+    const auto never = [] { return false; };
+    while (stopped.wait_for(lock, stop, interval, never), !stop.stop_requested()) {
+        try {
+            terminal_ ? show_bar(line(terminal_columns())) : write_error_text(line(1000) + '\n');
+        } catch (const std::bad_alloc&) {  // no memory: no line
+        }
+    }
+}
+
+std::string Progress::line(std::size_t columns) const {
+    const std::int64_t complete = complete_;
+    const bool known = total_ && *total_ >= complete;
+    const std::string counter =
+        known ? fmt::format("{}/{} frames", complete, *total_) : counted(complete, "frame");
+    const std::string noted = counter + note_behind();
+    const std::string text = noted + pace();
+    const std::size_t length = task_.size() + 1 + text.size();
+    if (length > columns) return (noted.size() <= columns ? noted : counter).substr(0, columns);
+    const std::size_t room = columns - length;
+    if (!terminal_ || !known || room < kShortestBar + 3) return task_ + ' ' + text;
+    return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kLongestBar)), text);
+}
+
+std::string Progress::note_behind() const {
+    const std::lock_guard lock(note_mutex_);
+    return note_.empty() ? "" : ", " + note_;
+}
+
+std::string Progress::bar(std::size_t width) const {
+    const double part = std::min(done_ / static_cast<double>(*total_), 1.0);
+    const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
+    return fmt::format("{:-<{}}", std::string(filled, '#'), width);
+}
+
+std::string Progress::pace() const {
+    const double done = done_;
+    if (done <= 0) return {};
+    const double rate = done / done_at_s_;
+    std::string text = fmt::format(", {} frames/s", rounded(rate));
+    if (!total_) return text;
+    const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();
+    if (left_s < 0) return text;  // this step takes longer than those before it
+    return text +
+           fmt::format(", {:%T} left", std::chrono::seconds(static_cast<std::int64_t>(left_s)));
+}
+
+}  // namespace stipple

@@ -1,0 +1,60 @@
+#include "apps/report/rate_warning.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stipple {
+namespace {
+
+constexpr std::uint64_t kMinPeriods = 8;
+/// Clocks of cameras agree to 0.01 %; arrivals of frames jitter by several ms in a second.
+constexpr double kTolerance = 0.02;
+
+bool agree(double frames_hz, const SensorParams& sensor) {
+    return std::abs(frames_hz * sensor.slot_us * 1e-6 - 1) <= kTolerance;
+}
+
+/// The rate, if it is known and not that of the slots.
+std::optional<double> other_rate(const FrameRate& frames, const SensorParams& sensor) {
+    if (frames.periods() < kMinPeriods) return std::nullopt;
+    const auto hz = frames.hz();
+    return hz && !agree(*hz, sensor) ? hz : std::nullopt;
+}
+
+std::string slot_text(const SensorParams& sensor) {
+    return fmt::format("a slot of sensor \"{}\" takes {:g} us ({:.4g} a second)", sensor.name,
+                       sensor.slot_us, 1e6 / sensor.slot_us);
+}
+
+}  // namespace
+
+std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sensor) {
+    const auto hz = other_rate(frames, sensor);
+    if (!hz) return {};
+    return fmt::format(
+        "the camera sends {:.4g} frames/s, but {}: times in the stream are wrong. Set "
+        "AcquisitionFrameRate={:.4g} of the camera, or slot_us={:.5g} of the sensor",
+        *hz, slot_text(sensor), 1e6 / sensor.slot_us, 1e6 / *hz);
+}
+
+std::string recording_rate_warning(const std::string& file, const FrameRate& frames,
+                                   const SensorParams& sensor) {
+    const auto hz = other_rate(frames, sensor);
+    if (!hz) return {};
+    return fmt::format(
+        "{}: the camera sent {:.4g} frames/s, but {}: times in the stream are wrong. Set "
+        "slot_us={:.5g} of the sensor",
+        file, *hz, slot_text(sensor), 1e6 / *hz);
+}
+
+std::string film_rate_warning(const std::string& file, double frames_hz,
+                              const SensorParams& sensor) {
+    if (agree(frames_hz, sensor)) return {};
+    return fmt::format(
+        "{}: plays {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "
+        "slot_us={:.5g} of the sensor keeps the speed",
+        file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
+}
+
+}  // namespace stipple

@@ -1,0 +1,59 @@
+#include "apps/report/session_report.h"
+
+#include "apps/report/standard_error.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace stipple {
+
+nlohmann::ordered_json lost_json(const SessionTotals& totals) {
+    auto json = nlohmann::ordered_json::object();  // [] of null aborts where memory runs out
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        json[std::string(kGapCauseNames[i])] = totals.lost[i];
+    return json;
+}
+
+std::string lost_text(const SessionTotals& totals) {
+    std::string text;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        if (const auto frames = totals.lost[i]; frames > 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", frames, kGapCauseNames[i]);
+    return text.empty() ? "none" : text;
+}
+
+nlohmann::ordered_json transport_json(const TransportCounts& counts) {
+    return {{"underruns", counts.underruns},
+            {"packets_resent", counts.packets_resent},
+            {"packets_missing", counts.packets_missing},
+            {"socket_drops", counts.socket_drops},
+            {"link_faults", counts.link_faults},
+            {"size_mismatches", counts.size_mismatches}};
+}
+
+std::string losses_text(const SessionTotals& totals) {
+    const auto lost = std::accumulate(totals.lost.begin(), totals.lost.end(), std::uint64_t{0});
+    if (lost + totals.incomplete == 0) return {};
+    return fmt::format("{} lost, {} incomplete", lost, totals.incomplete);
+}
+
+void say(const Outage& outage) {
+    say_error("the camera is gone ({}); opening it anew", outage.reason);
+}
+
+void say(const Recovery& recovery) {
+    say_error("the camera is back after {:.1f} s", recovery.gone_s);
+}
+
+void say_warning(const std::string& warning) {
+    if (!warning.empty()) say_error(warning);
+}
+
+void say_warnings(const CameraDescription& camera) {
+    for (const std::string& warning : camera.warnings) say_warning(warning);
+}
+
+}  // namespace stipple

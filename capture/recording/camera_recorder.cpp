@@ -1,0 +1,160 @@
+#include "capture/recording/camera_recorder.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "capture/frame_rate.h"
+#include "capture/host_clock.h"
+#include "capture/recording/recording_queue.h"
+#include "capture/recording/recording_writer.h"
+#include "core/version.h"
+#include "io/pending_output.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::chrono::milliseconds kPollInterval{100};
+
+SessionRecord session_record(const CameraDescription& camera, const CameraSettings& settings) {
+    SessionRecord record;
+    record.camera = camera;
+    record.settings = settings;
+    record.host = host_facts();
+    record.host["stipple"] = version();
+    record.started_realtime_ns = realtime_ns();
+    return record;
+}
+
+std::string text_of(const std::exception_ptr& failure) {
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+        return "not enough memory";
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+}
+
+}  // namespace
+
+struct CameraRecorder::Impl {
+    Impl(CaptureSession::Opener open, const CameraSettings& settings,
+         const std::filesystem::path& file, CameraRecorderOptions given)
+        : options(std::move(given)),
+          output(file, options.force),
+          session(std::move(open), options.session),
+          writer(output.partial(), session_record(session.description(), settings),
+                 output.final_path().string()),
+          queue(writer, options.queue_bytes) {}
+
+    void run(const GoesOn& goes_on);
+    void take(SessionEvent event);
+    void take(CapturedFrame frame);
+    void note_failure();
+    [[nodiscard]] std::string end_reason() const;
+    void finish();
+
+    CameraRecorderOptions options;
+    PendingOutput output;
+    CaptureSession session;
+    RecordingWriter writer;
+    RecordingQueue queue;
+    std::uint64_t taken = 0;    ///< frames that the queue took
+    std::uint64_t refused = 0;  ///< frames that it had no room for
+    FrameRate rate;
+    CameraRecording result;
+};
+
+void CameraRecorder::Impl::run(const GoesOn& goes_on) {
+    const std::int64_t start_ns = monotonic_ns();
+    const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
+    try {
+        while (goes_on(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
+               !result.lost && !queue.failed())
+            take(session.next(kPollInterval));
+    } catch (...) {
+        note_failure();
+    }
+    result.seconds = elapsed_s();
+}
+
+void CameraRecorder::Impl::take(SessionEvent event) {
+    if (auto* const frame = std::get_if<CapturedFrame>(&event)) return take(std::move(*frame));
+    if (std::holds_alternative<NoFrame>(event)) return;
+    if (options.tell) options.tell(event);
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) result.lost = *lost;
+}
+
+void CameraRecorder::Impl::take(CapturedFrame frame) {
+    const FrameRecord record = frame.record;
+    if (queue.push(std::move(frame))) {
+        rate.add(record);
+        ++taken;
+    } else {
+        ++refused;
+        session.count_own_drop(record);
+    }
+}
+
+/// Of what is being thrown; the first one counts.
+void CameraRecorder::Impl::note_failure() {
+    if (!result.failure) result.failure = std::current_exception();
+}
+
+std::string CameraRecorder::Impl::end_reason() const {
+    if (result.failure) return text_of(result.failure);
+    if (!result.lost) return "stopped";
+    const bool gone = !result.lost->at_end && !result.lost->bad_file;
+    return gone ? fmt::format("camera lost: {}", result.lost->reason) : result.lost->reason;
+}
+
+void CameraRecorder::Impl::finish() {
+    try {
+        queue.drain();
+    } catch (...) {
+        note_failure();
+    }
+    result.transport = session.transport();
+    try {
+        RecordingEnd end;
+        end.reason = end_reason();
+        end.lost = session.totals().lost;
+        // Frames that the queue took and could not write after all.
+        end.lost[static_cast<std::size_t>(GapCause::kOwnDrop)] += queue.dropped() - refused;
+        end.transport = result.transport;
+        writer.finish(end);
+    } catch (...) {
+        note_failure();
+    }
+    if (writer.frames() > 0) output.commit();
+    result.kept = output.committed();
+    result.end = writer.totals();
+    result.session = session.totals();
+    result.frames_per_s = rate.hz();
+}
+
+CameraRecorder::CameraRecorder(CaptureSession::Opener open, const CameraSettings& settings,
+                               const std::filesystem::path& file, CameraRecorderOptions options)
+    : impl_(std::make_unique<Impl>(std::move(open), settings, file, std::move(options))) {}
+
+CameraRecorder::~CameraRecorder() = default;
+
+const CameraDescription& CameraRecorder::description() const {
+    return impl_->session.description();
+}
+
+const std::filesystem::path& CameraRecorder::file() const {
+    return impl_->output.final_path();
+}
+
+CameraRecording CameraRecorder::record(const GoesOn& goes_on) {
+    impl_->run(goes_on);
+    impl_->finish();
+    return std::move(impl_->result);
+}
+
+}  // namespace stipple

@@ -1,0 +1,47 @@
+#include "metrics/emva1288/series_evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace stipple::emva1288 {
+namespace {
+
+void check(const SeriesImage& image, const Series& series, const std::string& place) {
+    if (image.rows != series.rows || image.cols != series.cols)
+        throw InputError(place, fmt::format("is {} x {}, but the descriptor says {} x {}",
+                                            image.cols, image.rows, series.cols, series.rows));
+    const int most = *std::ranges::max_element(image.dn);
+    if (most >> series.bits != 0)
+        throw InputError(place, fmt::format("holds the DN {}, but the descriptor says {} bits",
+                                            most, series.bits));
+}
+
+GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
+                              const std::filesystem::path& folder, const ReadImage& read) {
+    ImageStack stack;
+    std::int64_t zeros = 0, values = 0;
+    for (const std::string& file : group.files) {
+        const SeriesImage image = read(folder / file);
+        check(image, series, (folder / file).string());
+        stack.add(image.dn);
+        zeros += std::ranges::count(image.dn, 0);
+        values += std::ssize(image.dn);
+    }
+    return {.images = stack.statistics(),
+            .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};
+}
+
+}  // namespace
+
+Evaluation evaluate(const Series& series, const std::filesystem::path& folder,
+                    const ReadImage& read, const std::string& place) {
+    std::vector<GroupStatistics> statistics;
+    for (const ImageGroup& group : series.groups)
+        statistics.push_back(statistics_of(group, series, folder, read));
+    return evaluate(series, statistics, place);
+}
+
+}  // namespace stipple::emva1288

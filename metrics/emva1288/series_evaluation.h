@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "metrics/emva1288/camera_figures.h"
+
+namespace stipple::emva1288 {
+
+/// DN by row and column.
+struct SeriesImage {
+    int rows = 0;
+    int cols = 0;
+    std::vector<std::uint16_t> dn;
+};
+
+/// Reads an image.
+using ReadImage = std::function<SeriesImage(const std::filesystem::path& file)>;
+
+/// Evaluates a series whose images lie in `folder`; `read` is called for each, in their order.
+/// \throws InputError naming an image of another size or with a DN beyond the bits of the series,
+/// and as evaluate of their statistics, which calls the series `place`.
+[[nodiscard]] Evaluation evaluate(const Series& series, const std::filesystem::path& folder,
+                                  const ReadImage& read, const std::string& place);
+
+}  // namespace stipple::emva1288

@@ -1,0 +1,62 @@
+#include "readout/flat_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "readout/coded_sensor.h"
+
+namespace stipple {
+namespace {
+
+SensorParams checked(SensorParams params) {
+    if (!params.physical.transmittance.empty() || !params.physical.gain_map.empty())
+        throw InputError(fmt::format("sensor \"{}\"", params.name),
+                         "has pixels of unequal transmittance or gain, which EMVA 1288 does not "
+                         "know; set transmittance=[] and gain_map=[]");
+    params.physical.cfa = ColourFilter::kNone;
+    return params;
+}
+
+}  // namespace
+
+std::vector<FlatFieldExposure> flat_field_exposures(const SensorParams& params) {
+    constexpr int kPairs = 50;
+    constexpr int kStack = 100;
+    constexpr double kMaxSaturation = 1.15;
+    const double saturation = params.saturation_e() / params.physical.quantum_efficiency;
+    std::vector<FlatFieldExposure> exposures{{.photons = 0, .images = 2}};
+    for (int i = 1; i <= kPairs; ++i)
+        exposures.push_back({.photons = kMaxSaturation * saturation * i / kPairs, .images = 2});
+    exposures.push_back({.photons = saturation / 2, .images = kStack});
+    exposures.push_back({.photons = 0, .images = kStack});
+    return exposures;
+}
+
+struct FlatField::Impl {
+    Impl(SensorParams given, std::uint64_t seed)
+        : params(checked(std::move(given))),
+          sensor(params, kShape, every_slot, seed),
+          light(kShape.pixels()) {}
+
+    SensorParams params;
+    ExposureSchedule every_slot{1, 1, 1, {0, 1}, {{.first_slot = 0, .open_slots = 1}}};
+    CodedSensor sensor;
+    std::vector<float> light;
+    SamplePacket packet;
+};
+
+FlatField::FlatField(SensorParams params, std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(std::move(params), seed)) {}
+
+FlatField::~FlatField() = default;
+
+const std::vector<std::uint16_t>& FlatField::photograph(double photons) {
+    std::ranges::fill(impl_->light, static_cast<float>(photons / impl_->params.photons_per_unit));
+    impl_->sensor.expose(impl_->light, impl_->packet);
+    return impl_->packet.dn;
+}
+
+}  // namespace stipple

@@ -1,0 +1,101 @@
+#include "capture/recording/coded_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "capture/serve/coded_payload.h"
+#include "core/error.h"
+#include "tests/capture/scripted_camera.h"
+#include "tests/stream/stream_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+class CodedRecorderTest : public ::testing::Test {
+  protected:
+    /// A frame with the packets of a slot.
+    [[nodiscard]] ScriptedStep slot(std::int64_t number, bool damaged = false) const {
+        CapturedFrame frame;
+        frame.payload = coded_payload(packets_of(number), coded_header(header_), image_);
+        if (damaged) frame.payload.front() ^= 1U;
+        return arrives(frame);
+    }
+    [[nodiscard]] std::vector<SamplePacket> packets_of(std::int64_t number) const {
+        return {random_packet(header_, number, 0, header_.shape.rows)};
+    }
+    [[nodiscard]] SamplePacket dropped(std::int64_t number) const {
+        return {number, 0, header_.shape.rows, SamplePacket::kDropped, {}};
+    }
+
+    CodedRecording record(std::deque<ScriptedStep> steps, CaptureLimits limits = {},
+                          const std::string& frame_count = {}) {
+        CameraDescription camera;
+        camera.features["CodedStreamHeader"] = image_.coded_header;
+        if (!frame_count.empty()) camera.features["SourceFrameCount"] = frame_count;
+        steps.push_back(is_lost("end of the script"));
+        CodedRecorder recorder(std::make_unique<ScriptedCamera>(std::move(steps), camera), file_,
+                               false, limits);
+        slots_ = recorder.slots();
+        return recorder.record([](const CodedRecording&) { return true; });
+    }
+    [[nodiscard]] std::vector<SamplePacket> recorded() const {
+        StreamReader reader(file_);
+        EXPECT_EQ(reader.header(), header_);
+        std::vector<SamplePacket> packets;
+        for (SamplePacket packet; reader.next(packet);) packets.push_back(packet);
+        EXPECT_TRUE(reader.report().complete);
+        return packets;
+    }
+
+    StreamHeader header_ = varied_header();
+    ServedImage image_ = coded_image(header_);
+    TemporaryFolder folder_;
+    std::filesystem::path file_ = folder_ / "clip.stipple";
+    std::optional<std::int64_t> slots_;
+};
+
+TEST_F(CodedRecorderTest, SlotsThatDoNotArriveAreDroppedPackets) {
+    const CodedRecording recording = record({slot(0), slot(1), slot(4), slot(5, true)}, {}, "7");
+    EXPECT_EQ(slots_, 7);
+    EXPECT_TRUE(recording.kept);
+    EXPECT_FALSE(recording.failure);
+    EXPECT_EQ(recording.slots, 7);
+    EXPECT_EQ(recording.missing_slots, 4);
+    EXPECT_EQ(recording.damaged_frames, 1);
+    const std::vector<SamplePacket> expected{packets_of(0)[0], packets_of(1)[0], dropped(2),
+                                             dropped(3),       packets_of(4)[0], dropped(5),
+                                             dropped(6)};
+    EXPECT_EQ(recorded(), expected);
+}
+
+TEST_F(CodedRecorderTest, TheLimitEndsItBeforeTheSource) {
+    const CodedRecording recording = record({slot(0), slot(1), slot(2)}, {.frames = 2}, "7");
+    EXPECT_EQ(slots_, 2);
+    EXPECT_EQ(recording.slots, 2);
+    EXPECT_EQ(recording.missing_slots, 0);
+    EXPECT_EQ(recorded().size(), 2U);
+}
+
+TEST_F(CodedRecorderTest, AStreamThatJumpsTooFarIsKeptUpToThere) {
+    const CodedRecording recording = record({slot(0), slot(5'000'000)});
+    EXPECT_EQ(slots_, std::nullopt);
+    EXPECT_THROW(std::rethrow_exception(recording.failure), InputError);
+    EXPECT_TRUE(recording.kept);
+    EXPECT_EQ(recording.slots, 1);
+}
+
+TEST_F(CodedRecorderTest, WithoutASlotThereIsNoFile) {
+    const CodedRecording recording = record({});
+    EXPECT_FALSE(recording.kept);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(CodedRecorderTest, ACameraOfPicturesIsRefused) {
+    EXPECT_THROW(CodedRecorder(std::make_unique<ScriptedCamera>(std::deque<ScriptedStep>{}), file_,
+                               false, {}),
+                 InputError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+}  // namespace
+}  // namespace stipple
