@@ -175,6 +175,7 @@ void add_characterize(Command& app, Action& action) {
     const auto options = std::make_shared<CharacterizeOptions>();
     const auto sensor = command.add_option("--sensor", options->sensor.sensor, "sensor (paper)")
                             .type_name("NAME|FILE")
+                            .listed("sensors")
                             .input();
     const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
                                   "change a key of the sensor");

@@ -96,6 +96,7 @@ CommandLine::Parsed run(int argc, char** argv) {
           add_timing, add_characterize, add_capture, add_demo, add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, action.options);
+    add_manual(root, action, [&line] { return line.description(); });
     const auto parsed = line.parse(argc, argv);
     if (parsed == CommandLine::Parsed::kAction) run(action);
     if (std::fflush(stdout) != 0)

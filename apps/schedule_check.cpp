@@ -57,6 +57,7 @@ void add_schedule_check(Command& schedule, Action& action) {
                  "change a key of the schedule or of the sensor");
     command.add_option("--sensor", options->sensor, "sensor (paper)")
         .type_name("NAME|FILE")
+        .listed("sensors")
         .input();
     command.footer(
         "Examples:\n"

@@ -60,10 +60,12 @@ void add_timing(Command& app, Action& action) {
     const auto options = std::make_shared<TimingOptions>();
     command.add_option("--sensor", options->sensor.sensor, "sensor with a section [timing]")
         .type_name("NAME|FILE")
+        .listed("sensors")
         .required()
         .input();
     command.add_option("--schedule", options->sensor.schedule, "who is read when (random)")
         .type_name("NAME|FILE")
+        .listed("schedules")
         .input();
     command
         .add_parsed(

@@ -9,6 +9,22 @@ install(TARGETS stipple COMPONENT program)
 install(TARGETS stipple_opencv LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/stipple COMPONENT program)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/stipple/config COMPONENT program)
 
+# Manual pages and completions come from the program itself, which knows its options.
+install(CODE "
+    set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
+    file(MAKE_DIRECTORY \"\${share}/man\")
+    execute_process(COMMAND ${CMAKE_BINARY_DIR}/stipple manual --force \"\${share}/man/man1\"
+                    COMMAND_ERROR_IS_FATAL ANY)
+    foreach(shell bash:bash-completion/completions/stipple zsh:zsh/vendor-completions/_stipple
+                  fish:fish/vendor_completions.d/stipple.fish)
+        string(REGEX MATCH \"^[^:]+\" name \"\${shell}\")
+        string(REGEX REPLACE \"^[^:]+:\" \"\" file \"\${shell}\")
+        cmake_path(GET file PARENT_PATH folder)
+        file(MAKE_DIRECTORY \"\${share}/\${folder}\")
+        execute_process(COMMAND ${CMAKE_BINARY_DIR}/stipple completion \${name}
+                        OUTPUT_FILE \"\${share}/\${file}\" COMMAND_ERROR_IS_FATAL ANY)
+    endforeach()" COMPONENT program)
+
 # An export set for each module, so that who asks for one needs the packages of that one only.
 foreach(module IN LISTS STIPPLE_MODULES)
     set_target_properties(stipple_${module} PROPERTIES EXPORT_NAME ${module})

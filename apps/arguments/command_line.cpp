@@ -48,7 +48,7 @@ std::vector<std::pair<std::string, fs::path>> named_files(
 }
 
 /// \throws UsageError for words that name no file where one is wanted.
-void check_names(const FileOptions& files) {
+void check_names(const DeclaredOptions& declared) {
     const auto check = [](const CLI::Option* option, const char* standard_stream) {
         for (const std::string& name : option->results()) {
             if (name.empty()) throw UsageError(option->get_name(), "is empty; name a file");
@@ -56,9 +56,9 @@ void check_names(const FileOptions& files) {
                 throw UsageError(option->get_name(), standard_stream);
         }
     };
-    for (const CLI::Option* option : files.inputs)
+    for (const CLI::Option* option : declared.inputs)
         check(option, "\"-\" is no file; write /dev/stdin where a stream comes from a pipe");
-    for (const CLI::Option* option : files.outputs)
+    for (const CLI::Option* option : declared.outputs)
         check(option, option->get_name() == "--json"
                           ? nullptr
                           : "\"-\" is no file; standard output does not take it, give it a name");
@@ -87,6 +87,34 @@ bool same_file(const fs::path& a, const fs::path& b) {
         return fs::weakly_canonical(whole.has_filename() ? whole : whole.parent_path(), error);
     };
     return place(a) == place(b);
+}
+
+OptionDescription described(const CLI::Option& option, const DeclaredOptions& declared) {
+    OptionDescription out;
+    for (const std::string& name : option.get_snames()) out.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) out.names.push_back("--" + name);
+    out.argument = option.get_positional();
+    if (out.argument) out.names.push_back(option.get_name());
+    if (!out.argument && option.get_type_size() > 0) out.value = option.get_type_name();
+    out.text = option.get_description();
+    out.required = option.get_required();
+    out.repeats = option.get_items_expected_max() > 1;
+    if (const auto values = declared.values.find(&option); values != declared.values.end()) {
+        out.choices = values->second.choices;
+        out.list = values->second.list;
+    }
+    return out;
+}
+
+CommandDescription described(const CLI::App& app, const std::string& before,
+                             const DeclaredOptions& declared) {
+    CommandDescription out{
+        before + app.get_name(), app.get_description(), app.get_footer(), {}, {}};
+    for (const CLI::Option* option : app.get_options())
+        out.options.push_back(described(*option, declared));
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        out.commands.push_back(described(*command, out.name + " ", declared));
+    return out;
 }
 
 }  // namespace
@@ -121,11 +149,17 @@ CommandOption& CommandOption::split_at_commas() {
 }
 
 CommandOption& CommandOption::one_of(const std::vector<std::string>& values) {
+    declared_->values[option_].choices = values;
     option_->check([values](const std::string& value) {
         return std::ranges::find(values, value) != values.end()
                    ? std::string()
                    : fmt::format("\"{}\" is unknown; {}", value, suggestion(value, values));
     });
+    return *this;
+}
+
+CommandOption& CommandOption::listed(const std::string& list) {
+    declared_->values[option_].list = list;
     return *this;
 }
 
@@ -145,19 +179,19 @@ CommandOption& CommandOption::excludes(const CommandOption& other) {
 }
 
 CommandOption& CommandOption::input() {
-    files_->inputs.push_back(option_);
+    declared_->inputs.push_back(option_);
     return *this;
 }
 
 CommandOption& CommandOption::output(const OutputName& name) {
-    files_->outputs.push_back(option_);
-    files_->output_names.push_back(name);
+    declared_->outputs.push_back(option_);
+    declared_->output_names.push_back(name);
     return *this;
 }
 
 Command Command::add_command(const std::string& name, const std::string& text) {
     app_->require_subcommand(1);
-    return {*app_->add_subcommand(name, text), *files_};
+    return {*app_->add_subcommand(name, text), *declared_};
 }
 
 void Command::footer(const std::string& text) {
@@ -231,7 +265,7 @@ std::vector<Command> Command::leaves() {
     if (below.empty()) return {*this};
     std::vector<Command> found;
     for (CLI::App* command : below)
-        for (const Command& leaf : Command(*command, *files_).leaves()) found.push_back(leaf);
+        for (const Command& leaf : Command(*command, *declared_).leaves()) found.push_back(leaf);
     return found;
 }
 
@@ -243,10 +277,14 @@ CommandLine::CommandLine(const std::string& program, const std::string& text,
 
 CommandLine::~CommandLine() = default;
 
+CommandDescription CommandLine::description() const {
+    return described(*app_, {}, declared_);
+}
+
 void CommandLine::check_files() const {
-    check_names(files_);
-    const auto inputs = named_files(files_.inputs);
-    const auto outputs = named_files(files_.outputs);
+    check_names(declared_);
+    const auto inputs = named_files(declared_.inputs);
+    const auto outputs = named_files(declared_.outputs);
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
         for (const auto& [option, input] : inputs)
             // What is no file is the name of a sensor or schedule.
@@ -262,9 +300,9 @@ void CommandLine::check_files() const {
                     fmt::format("{} is the output of {} too; give one of them another name",
                                 output->second.string(), other->first));
     }
-    for (std::size_t i = 0; i < files_.outputs.size(); ++i)
-        for (const std::string& file : files_.outputs[i]->results())
-            check_extension(files_.outputs[i]->get_name(), file, files_.output_names[i]);
+    for (std::size_t i = 0; i < declared_.outputs.size(); ++i)
+        for (const std::string& file : declared_.outputs[i]->results())
+            check_extension(declared_.outputs[i]->get_name(), file, declared_.output_names[i]);
 }
 
 CommandLine::Parsed CommandLine::parse(int argc, char** argv) {

@@ -2,12 +2,15 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "apps/arguments/command_description.h"
 
 namespace CLI {
 class App;
@@ -46,17 +49,25 @@ struct OutputName {
 /// no file, as a folder, a pipe or a device, may have any name.
 void check_extension(const std::string& option, const std::string& file, const OutputName& name);
 
-/// The options of a command line that name files.
-struct FileOptions {
+/// The values that an option takes.
+struct OptionValues {
+    std::vector<std::string> choices;  ///< all of them, if they have names
+    std::string list;                  ///< of `stipple list`, or empty
+};
+
+/// What is known of the options of a command line beyond CLI11.
+struct DeclaredOptions {
     std::vector<CLI::Option*> inputs;
     std::vector<CLI::Option*> outputs;
     std::vector<OutputName> output_names;  ///< of each output
+    std::map<const CLI::Option*, OptionValues> values;
 };
 
 /// An option or a positional argument while it is declared.
 class CommandOption {
   public:
-    CommandOption(CLI::Option& option, FileOptions& files) : option_(&option), files_(&files) {}
+    CommandOption(CLI::Option& option, DeclaredOptions& declared)
+        : option_(&option), declared_(&declared) {}
 
     CommandOption& type_name(const std::string& name);
     CommandOption& required();
@@ -64,6 +75,8 @@ class CommandOption {
     /// Of a list: one value may hold several, "a,b".
     CommandOption& split_at_commas();
     CommandOption& one_of(const std::vector<std::string>& values);
+    /// It takes the names that `stipple list LIST` prints, for one.
+    CommandOption& listed(const std::string& list);
     /// The heading of the help under which it stands.
     CommandOption& group(const std::string& heading);
     CommandOption& needs(const CommandOption& other);
@@ -76,13 +89,13 @@ class CommandOption {
 
   private:
     CLI::Option* option_;
-    FileOptions* files_;
+    DeclaredOptions* declared_;
 };
 
 /// A subcommand. Copies stand for the same one. What options write to must outlive the parsing.
 class Command {
   public:
-    Command(CLI::App& app, FileOptions& files) : app_(&app), files_(&files) {}
+    Command(CLI::App& app, DeclaredOptions& declared) : app_(&app), declared_(&declared) {}
 
     /// A subcommand of this one, which then asks for one of them.
     [[nodiscard]] Command add_command(const std::string& name, const std::string& text);
@@ -135,10 +148,10 @@ class Command {
     [[nodiscard]] std::vector<Command> leaves();
 
   private:
-    [[nodiscard]] CommandOption handle(CLI::Option* option) { return {*option, *files_}; }
+    [[nodiscard]] CommandOption handle(CLI::Option* option) { return {*option, *declared_}; }
 
     CLI::App* app_;
-    FileOptions* files_;
+    DeclaredOptions* declared_;
 };
 
 /// The whole command line of a program.
@@ -151,7 +164,9 @@ class CommandLine {
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    [[nodiscard]] Command root() { return {*app_, files_}; }
+    [[nodiscard]] Command root() { return {*app_, declared_}; }
+    /// As it was declared.
+    [[nodiscard]] CommandDescription description() const;
     enum class Parsed { kAction, kHelp, kWrong };
     /// Takes the command line apart and runs the callbacks of the subcommand that it names. Prints
     /// help and version where they are asked for, and what is wrong where something is.
@@ -162,7 +177,7 @@ class CommandLine {
     void check_files() const;
 
     std::unique_ptr<CLI::App> app_;
-    FileOptions files_;
+    DeclaredOptions declared_;
 };
 
 }  // namespace stipple

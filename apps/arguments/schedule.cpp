@@ -19,6 +19,7 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .add_option("SCHEDULE", choice.schedule,
                     "name of config/schedules, file of that form, or compiled .mem or .hex")
         .type_name("NAME|FILE")
+        .listed("schedules")
         .required()
         .input();
     command

@@ -9,11 +9,13 @@ namespace stipple {
 void add_sensor_arguments(Command& command, SensorChoice& sensor) {
     command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\" (paper)")
         .type_name("NAME|FILE")
+        .listed("sensors")
         .input();
     command
         .add_option("--schedule", sensor.schedule,
                     "who exposes when, of \"stipple list schedules\" (random)")
         .type_name("NAME|FILE")
+        .listed("schedules")
         .input();
     command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
         .check(whole_check(0))

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+/// An option or a positional argument, as the help shows it.
+struct OptionDescription {
+    std::vector<std::string> names;    ///< as "-o", "--output"; of an argument its name alone
+    std::string value;                 ///< as "FILE"; empty: a flag, or an argument
+    std::string text;                  ///< a line
+    std::vector<std::string> choices;  ///< all values that it takes, if these have names
+    std::string list;                  ///< `stipple list` knows its values by this name, or empty
+    bool argument = false;             ///< positional
+    bool required = false;
+    bool repeats = false;  ///< may be given several times
+};
+
+/// A command with its subcommands: what help, manual pages and completions are made of.
+struct CommandDescription {
+    std::string name;    ///< whole, as "stipple capture record"
+    std::string text;    ///< a line
+    std::string footer;  ///< examples
+    std::vector<OptionDescription> options;
+    std::vector<CommandDescription> commands;
+};
+
+}  // namespace stipple

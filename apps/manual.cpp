@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "apps/report/completion.h"
+#include "apps/report/manual_page.h"
+#include "apps/report/text_file.h"
+#include "apps/subcommands.h"
+#include "core/version.h"
+#include "io/pending_output.h"
+
+namespace stipple {
+namespace {
+
+/// Of a command about the command line itself.
+struct ManualOptions {
+    std::string argument;  ///< a folder, or a shell
+    std::function<CommandDescription()> describe;
+};
+
+bool is_page_name(std::string_view name) {
+    return name.starts_with("stipple") && name.ends_with(".1");
+}
+
+void write_pages(const CommandDescription& command, const PendingOutput& folder) {
+    const std::string name = manual_page_name(command) + ".1";
+    write_whole(folder.partial() / name, (folder.final_path() / name).string(),
+                manual_page(command, version()));
+    for (const CommandDescription& below : command.commands) write_pages(below, folder);
+}
+
+void write_manual(const ManualOptions& options, const RunOptions& run) {
+    PendingOutput folder(options.argument, run.force, OutputKind::kFolder, is_page_name);
+    write_pages(options.describe(), folder);
+    folder.commit();
+}
+
+void print_completion(const ManualOptions& options, const RunOptions&) {
+    fmt::print("{}", completion(options.describe(), options.argument));
+}
+
+}  // namespace
+
+void add_manual(Command& app, Action& action, std::function<CommandDescription()> describe) {
+    const auto options = std::make_shared<ManualOptions>();
+    options->describe = std::move(describe);
+    Command manual = app.add_command("manual", "Manual pages of all commands");
+    manual.add_option("FOLDER", options->argument, "folder to write the pages to")
+        .required()
+        .output();
+    manual.add_flag("--force", action.options.force, "replace existing outputs");
+    manual.footer(
+        "Examples:\n"
+        "  stipple manual man1\n"
+        "  man man1/stipple-emulate.1");
+    set_action(manual, action, options, write_manual);
+
+    Command completion = app.add_command("completion", "Completion of the command line in a shell");
+    completion.add_option("SHELL", options->argument, "bash, zsh or fish")
+        .one_of({"bash", "zsh", "fish"})
+        .required();
+    completion.footer(
+        "Examples:\n"
+        "  source <(stipple completion bash)\n"
+        "  stipple completion zsh > ~/.zfunc/_stipple      # a folder of $fpath\n"
+        "  stipple completion fish > ~/.config/fish/completions/stipple.fish");
+    set_action(completion, action, options, print_completion);
+}
+
+}  // namespace stipple
