@@ -10,14 +10,15 @@
 
 #include "apps/footage_origin.h"
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/emulation_text.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
 #include "apps/report/standard_error.h"
 #include "capture/host_clock.h"
+#include "capture/recording/replay_camera.h"
 #include "core/error.h"
 #include "core/gap_limit.h"
 
@@ -41,8 +42,7 @@ std::string new_recording_name() {
 FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
     FootageOrigin origin{.name = camera.model};
     if (is_replay(arguments.camera)) {
-        const std::string& address = arguments.camera.address;
-        origin = origin_of(address.substr(address.find(':') + 1), FootageOptions{});
+        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{});
     } else {
         origin.recording = new_recording_name();
     }

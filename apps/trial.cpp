@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/progress.h"
 #include "readout/provenance.h"
 #include "readout/sensor_file.h"
