@@ -90,12 +90,6 @@ void check_end(const CameraRecording& recording, const std::string& file,
                           "no frame came; record for longer, or see \"stipple capture doctor\"");
 }
 
-void say_event(const SessionEvent& event) {
-    if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
-    if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
-    if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
-}
-
 void record_camera(const RecordArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     const CameraSettings settings = camera_settings(arguments.camera);
