@@ -1,24 +1,169 @@
+#include <fmt/format.h>
+
+#include <exception>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
 
 #include "apps/arguments/camera.h"
 #include "apps/arguments/checks.h"
 #include "apps/arguments/output_names.h"
+#include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
-#include "apps/live_emulation.h"
+#include "apps/footage_origin.h"
+#include "apps/interrupt.h"
+#include "apps/live_preview.h"
 #include "apps/report/json_file.h"
+#include "apps/report/live_report.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/rate_warning.h"
+#include "apps/report/session_report.h"
+#include "apps/report/standard_error.h"
+#include "apps/stream_output.h"
 #include "apps/subcommands.h"
+#include "capture/recording/replay_camera.h"
+#include "core/error.h"
 
 namespace stipple {
 namespace {
 
+struct LiveArguments {
+    CameraArguments camera;
+    SessionOptions session{.incomplete = IncompletePolicy::kKeep};  ///< they are held, and counted
+    SensorChoice sensor;
+    std::string output;
+    double black_level_dn = 0;
+    CaptureLimits limits;
+    PreviewArguments preview;
+    std::size_t queue_frames = 64;
+    double late_after_slots = 2;
+};
+
+/// A random number: packets of two recordings with the same settings are told apart by it
+/// (docs/stream_format.md, "Packet").
+std::string new_recording_name() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+/// What the stream says of where its light came from: no address, no time.
+FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
+    FootageOrigin origin{.name = camera.model};
+    if (is_replay(arguments.camera))
+        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{});
+    else
+        origin.recording = new_recording_name();
+    origin.black_level_dn = arguments.black_level_dn;
+    return origin;
+}
+
+LiveCameraOptions camera_options(const LiveArguments& arguments) {
+    return {.session = session_options(arguments.camera, arguments.session),
+            .waiting_frames = arguments.queue_frames,
+            .from_start = is_replay(arguments.camera),
+            .tell = say_event};
+}
+
+std::string left_out_text(const std::string& address, const LeftOut& left_out) {
+    return fmt::format(
+        "{}: {} are missing before a frame, too many beside those that came: the frame before "
+        "stands in for {} of them, so slots from {} on come too early",
+        address, counted(left_out.missing, "frame"), left_out.held, left_out.first_slot);
+}
+
+LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
+                      LiveEmulatorOptions options, const RunOptions& run) {
+    constexpr double kRateAfterS = 1;
+    const SensorParams& sensor = recorder.setup().params;
+    const auto frames = options.limits.total();
+    LiveEmulator emulator(camera, std::move(to_light), recorder, std::move(options));
+    Progress progress(run, "emulating live", frames);
+    bool rate_compared = false;
+    LiveEmulation result = emulator.run([&](const LiveEmulation& now) {
+        if (now.rate.seconds() >= kRateAfterS && !std::exchange(rate_compared, true))
+            say_warning(camera_rate_warning(now.rate, sensor));
+        progress.reach(static_cast<double>(now.latencies.count()));
+        if (now.held_slots + now.late_slots > 0)
+            progress.note(fmt::format("{} held, {} late", now.held_slots, now.late_slots));
+        return stop_signal() == 0;
+    });
+    if (!rate_compared && result.latencies.count() > 0)
+        say_warning(camera_rate_warning(result.rate, sensor));
+    return result;
+}
+
+/// Puts the stream in place, as far as it goes. \throws DeviceError.
+void put_in_place(StreamRecorder& recorder, LiveEmulation& emulation, const std::string& output) {
+    try {
+        if (!emulation.failure) return recorder.finish();
+    } catch (...) {
+        emulation.failure = std::current_exception();
+    }
+    if (!recorder.keep()) return;  // the message of the failure says where it is
+    say_kept(output.c_str());
+}
+
+/// \throws what ended an emulation without a frame.
+[[noreturn]] void fail_without_frame(const LiveEmulation& emulation, const std::string& address) {
+    throw_if_stopped();
+    if (emulation.failure) std::rethrow_exception(emulation.failure);
+    const auto& end = emulation.end;
+    if (end && end->bad_file) throw InputError(*end->bad_file);
+    throw DeviceError(address, end ? end->reason : "no frame came");
+}
+
+/// \throws what ended an emulation too early.
+void check_end(const LiveEmulation& emulation, const LiveArguments& arguments) {
+    if (emulation.failure) std::rethrow_exception(emulation.failure);
+    const auto& end = emulation.end;
+    if (end && end->bad_file) {
+        say_kept(arguments.output.c_str());
+        throw InputError(*end->bad_file);
+    }
+    if (end && !end->at_end) throw DeviceError(arguments.camera.address, end->reason);
+}
+
 void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
-    LiveEmulation emulation(arguments, run);
-    emulation.run(run);
-    emulation.finish();
-    json.write(emulation.json());
-    run.say(emulation.text());
+    LiveCamera camera(
+        [&arguments, settings = camera_settings(arguments.camera)] {
+            return open_picture_camera(arguments.camera, settings);
+        },
+        camera_options(arguments));
+    const FrameLight to_light(camera.layout(), arguments.black_level_dn);
+    const SensorSetup setup = set_up_sensor(arguments.sensor, to_light.shape(), to_light.filter());
+    StreamRecorder recorder = open_stream_output(arguments.output, run, setup,
+                                                 origin_of(arguments, camera.description()));
+    say_warnings(camera.description());
+    say_warning(mosaic_warning(setup, to_light.filter()));
+    std::optional<LivePreview> preview;
+    if (!arguments.preview.file.empty())
+        preview.emplace(arguments.preview.file, PreviewDecoder(stream_header_of(setup, {}),
+                                                               preview_options(arguments.preview)));
+    LiveEmulatorOptions options{.limits = arguments.limits,
+                                .late_after_slots = arguments.late_after_slots,
+                                .tell = [&](const LeftOut& left_out) {
+                                    say_warning(left_out_text(arguments.camera.address, left_out));
+                                }};
+    if (preview)
+        options.show = [&](auto packets, auto arrival_ns) { preview->add(packets, arrival_ns); };
+    LiveEmulation emulation = emulate(camera, to_light, recorder, options, run);
+    emulation.totals.repeated = camera.stop().repeated;
+    if (emulation.latencies.count() == 0) fail_without_frame(emulation, arguments.camera.address);
+    put_in_place(recorder, emulation, arguments.output);
+    if (preview) preview->finish();
+    check_end(emulation, arguments);
+    const LiveReport report{emulation, recorder, camera};
+    auto figures = live_json(report);
+    if (preview) figures["preview"] = preview->json();
+    json.write(figures);
+    run.say(live_text(report, arguments.output, arguments.late_after_slots) +
+            (preview ? "\n" + preview->text() : ""));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/session_report.h"
@@ -88,12 +88,6 @@ void check_end(const CameraRecording& recording, const std::string& file,
     if (!recording.kept)
         throw DeviceError(address,
                           "no frame came; record for longer, or see \"stipple capture doctor\"");
-}
-
-void say_event(const SessionEvent& event) {
-    if (const auto* const outage = std::get_if<Outage>(&event)) say(*outage);
-    if (const auto* const recovery = std::get_if<Recovery>(&event)) say(*recovery);
-    if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
 }
 
 void record_camera(const RecordArguments& arguments, const RunOptions& run) {

@@ -11,8 +11,8 @@
 
 #include "apps/decode_schedule.h"
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/session_report.h"

@@ -10,18 +10,18 @@
 #include "apps/arguments/sensor.h"
 #include "apps/footage_origin.h"
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/emulation_text.h"
 #include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
+#include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
 #include "core/joined.h"
 #include "io/frame_writer.h"
-#include "readout/stream_recorder.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {
@@ -61,9 +61,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
         say_leftover(options.truth);
     }
-    StreamRecorder recorder(options.output, run.force, setup,
-                            provenance_of(setup, origin_of(options.footage, options.reading)));
-    say_leftover(options.output);
+    StreamRecorder recorder =
+        open_stream_output(options.output, run, setup, origin_of(options.footage, options.reading));
     Progress progress(run, "emulating", footage.slots());
     auto frame = footage.next();
     for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/recording_info.h"
 #include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
 #include "apps/report/stream_text.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
 #include "capture/frame_rate.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

@@ -8,10 +8,12 @@
 #include <system_error>
 
 #include "apps/arguments/output_names.h"
-#include "apps/leftovers.h"
+#include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
+#include "capture/recording/recovery.h"
 #include "core/error.h"
+#include "io/partial_output.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -56,6 +58,16 @@ void list_leftovers(const fs::path& folder, const RunOptions& run) {
     json.write({{"left", left}});
 }
 
+/// How much of it was whole.
+std::string recovered_text(const fs::path& output, const Recovered& recovered) {
+    std::string text = fmt::format("{}: {} whole {}", output.string(), recovered.whole,
+                                   recovered.kind == Recoverable::kStream ? "slots" : "frames");
+    if (recovered.cut_bytes > 0)
+        text += fmt::format(", {} bytes of the next one cut off", recovered.cut_bytes);
+    return text + (recovered.complete ? "; it is complete"
+                                      : "; without an end, which marks it as cut off");
+}
+
 void recover_file(const RecoverOptions& options, const RunOptions& run) {
     const fs::path file(options.path);
     const auto partial = partial_output(file);
@@ -68,11 +80,11 @@ void recover_file(const RecoverOptions& options, const RunOptions& run) {
                          "so say with -o what it shall be called");
     JsonFile json(run);
     const fs::path output = options.output.empty() ? partial->final_path : fs::path(options.output);
-    const Recovered recovered = recover(file, output);
+    const Recovered recovered = recover(file, output, [] { throw_if_stopped(); });
     json.write({{"file", output.string()},
                 {"whole", recovered.whole},
                 {"cut_bytes", recovered.cut_bytes}});
-    run.say(recovered.text);
+    run.say(recovered_text(output, recovered));
 }
 
 void run_recover(const RecoverOptions& options, const RunOptions& run) {

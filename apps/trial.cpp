@@ -5,11 +5,9 @@
 #include <algorithm>
 
 #include "apps/interrupt.h"
-#include "apps/leftovers.h"
 #include "apps/report/progress.h"
-#include "readout/provenance.h"
+#include "apps/stream_output.h"
 #include "readout/sensor_file.h"
-#include "readout/stream_recorder.h"
 
 namespace stipple {
 
@@ -28,9 +26,7 @@ FluxVideo render_video(const Scene& scene, const RunOptions& run) {
 RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
                            const std::filesystem::path& file, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor({.schedule = schedule}, light.shape());
-    StreamRecorder recorder(file, run.force, setup,
-                            provenance_of(setup, {.name = "embedded scene"}));
-    say_leftover(file);
+    StreamRecorder recorder = open_stream_output(file, run, setup, {.name = "embedded scene"});
     Progress progress(run, fmt::format("recording ({})", schedule), light.slots());
     for (int slot = 0; slot < light.slots(); ++slot) {
         throw_if_stopped();

@@ -20,7 +20,7 @@ constexpr CameraKind kKinds[] = {
      examine_genicam_camera},
     {"v4l2", "v4l2:/dev/videoN", false, open_v4l2_camera, list_v4l2_cameras, v4l2_findings,
      nullptr},
-    {"replay", "replay:FILE", true, open_replay_camera, nullptr, nullptr, nullptr},
+    {kReplayPrefix, "replay:FILE", true, open_replay_camera, nullptr, nullptr, nullptr},
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "apps/arguments/usage_problem.h"
 #include "apps/report/standard_error.h"
+#include "capture/recording/replay_camera.h"
 #include "core/suggestion.h"
 #include "io/footage_files.h"
 
@@ -66,9 +67,8 @@ void check_names(const DeclaredOptions& declared) {
 
 /// The file or folder that an input stands for: of a pattern the folder.
 fs::path input_path(const fs::path& named) {
-    constexpr std::string_view kReplay = "replay:";
     const std::string name = named.string();
-    if (name.starts_with(kReplay)) return name.substr(kReplay.size());
+    if (const auto file = replayed_file(name); !file.empty()) return file;
     if (name.find('%') != std::string::npos && !fs::exists(named))
         return named.has_parent_path() ? named.parent_path() : ".";
     return named;

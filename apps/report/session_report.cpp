@@ -1,12 +1,12 @@
 #include "apps/report/session_report.h"
 
-#include "apps/report/standard_error.h"
-
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <numeric>
+
+#include "apps/report/standard_error.h"
 
 namespace stipple {
 
@@ -40,12 +40,12 @@ std::string losses_text(const SessionTotals& totals) {
     return fmt::format("{} lost, {} incomplete", lost, totals.incomplete);
 }
 
-void say(const Outage& outage) {
-    say_error("the camera is gone ({}); opening it anew", outage.reason);
-}
-
-void say(const Recovery& recovery) {
-    say_error("the camera is back after {:.1f} s", recovery.gone_s);
+void say_event(const SessionEvent& event) {
+    if (const auto* const outage = std::get_if<Outage>(&event))
+        say_error("the camera is gone ({}); opening it anew", outage->reason);
+    if (const auto* const recovery = std::get_if<Recovery>(&event))
+        say_error("the camera is back after {:.1f} s", recovery->gone_s);
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
 }
 
 void say_warning(const std::string& warning) {

@@ -20,9 +20,9 @@ namespace stipple {
 /// all is well.
 [[nodiscard]] std::string losses_text(const SessionTotals& totals);
 
-/// Tells on standard error that the camera is gone, or back.
-void say(const Outage& outage);
-void say(const Recovery& recovery);
+/// Tells on standard error that the camera is gone or back, or what is wrong at the end of a
+/// replay.
+void say_event(const SessionEvent& event);
 
 /// Prints a warning on standard error, unless it is empty.
 void say_warning(const std::string& warning);

@@ -18,7 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
-constexpr std::string_view kPrefix = "replay:";
 constexpr std::uint64_t kPeriod = std::uint64_t{1} << 32U;
 constexpr nanoseconds kFootagePeriod{5'000'000};
 constexpr nanoseconds kLongestPause{10'000'000'000};
@@ -108,7 +107,7 @@ CameraDescription ReplayCamera::description() const {
         result.transport_facts["recorded_transport"] = session->camera.transport;
     }
     result.transport = "replay";
-    result.address = std::string(kPrefix).append(path_);
+    result.address = fmt::format("{}:{}", kReplayPrefix, path_);
     result.warnings = source_.warnings();
     return result;
 }
@@ -194,9 +193,9 @@ Arrival ReplayCamera::wait(std::chrono::milliseconds timeout) {
 std::unique_ptr<Camera> open_replay_camera(const std::string& address,
                                            const CameraSettings& settings,
                                            const CameraBuffers& buffers) {
-    if (address.substr(0, kPrefix.size()) != kPrefix || address.size() == kPrefix.size())
-        throw InputError(address, "is no replay: write replay:FILE");
-    return std::make_unique<ReplayCamera>(address.substr(kPrefix.size()), parse(settings), buffers);
+    const std::string_view file = replayed_file(address);
+    if (file.empty()) throw InputError(address, "is no replay: write replay:FILE");
+    return std::make_unique<ReplayCamera>(std::string(file), parse(settings), buffers);
 }
 
 }  // namespace stipple

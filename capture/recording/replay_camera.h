@@ -2,10 +2,21 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "capture/camera.h"
 
 namespace stipple {
+
+/// How the address of a replay begins, before the colon.
+inline constexpr std::string_view kReplayPrefix = "replay";
+
+/// PATH of an address "replay:PATH"; empty of any other.
+[[nodiscard]] constexpr std::string_view replayed_file(std::string_view address) {
+    if (!address.starts_with(kReplayPrefix)) return {};
+    const std::string_view rest = address.substr(kReplayPrefix.size());
+    return rest.starts_with(':') ? rest.substr(1) : std::string_view();
+}
 
 /// A recording, or footage, that comes as if a camera sent it. `address` is "replay:PATH".
 ///

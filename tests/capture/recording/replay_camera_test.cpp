@@ -56,6 +56,12 @@ TEST(ReplayCameraTest, ARecordingComesAsItWasRecorded) {
     }
 }
 
+TEST(ReplayCameraTest, AnAddressNamesItsFile) {
+    EXPECT_EQ(replayed_file("replay:a:b.strec"), "a:b.strec");
+    for (const char* const other : {"replay:", "replay", "replays:a", "gige:replay:a", ""})
+        EXPECT_EQ(replayed_file(other), "") << other;
+}
+
 TEST(ReplayCameraTest, IdsThatWereLostStayLost) {
     const TemporaryFolder folder;
     auto recorded = test_frames(4);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "capture/live_emulator.h"
+
+namespace stipple {
+
+/// What `capture live` has done, for its report.
+struct LiveReport {
+    const LiveEmulation& emulation;
+    const StreamRecorder& recorder;
+    const LiveCamera& camera;  ///< stopped
+};
+
+/// The keys of `capture live` in docs/cli.md, without `preview`.
+[[nodiscard]] nlohmann::ordered_json live_json(const LiveReport& report);
+
+/// The same for people; slots are late after `late_after_slots`.
+[[nodiscard]] std::string live_text(const LiveReport& report, const std::string& output,
+                                    double late_after_slots);
+
+}  // namespace stipple

@@ -1,0 +1,13 @@
+#include "apps/stream_output.h"
+
+#include "apps/report/leftovers.h"
+
+namespace stipple {
+
+StreamRecorder open_stream_output(const std::filesystem::path& file, const RunOptions& run,
+                                  const SensorSetup& setup, const FootageOrigin& origin) {
+    say_leftover(file);
+    return StreamRecorder(file, run.force, setup, provenance_of(setup, origin));
+}
+
+}  // namespace stipple

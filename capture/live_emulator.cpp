@@ -1,0 +1,99 @@
+#include "capture/live_emulator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "capture/host_clock.h"
+#include "core/gap_limit.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::chrono::milliseconds kPollInterval{50};
+constexpr std::size_t kMaxLateListed = 1000;
+
+}  // namespace
+
+LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
+                           LiveEmulatorOptions options)
+    : camera_(camera),
+      to_light_(std::move(to_light)),
+      recorder_(recorder),
+      options_(std::move(options)),
+      light_(to_light_.shape().sites()) {
+    // Threads and code are in place before the first frame comes.
+    static_cast<void>(Emulator(recorder_.setup()).expose(light_));
+}
+
+LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
+    const std::int64_t start_ns = monotonic_ns();
+    const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
+    camera_.begin();
+    try {
+        while (goes_on(result_) && !result_.end &&
+               !options_.limits.reached(result_.latencies.count(), elapsed_s())) {
+            if (const auto frame = camera_.next(kPollInterval))
+                take(*frame);
+            else
+                result_.end = camera_.end();
+        }
+    } catch (...) {
+        result_.failure = std::current_exception();
+    }
+    if (const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
+        passed_s > 0)
+        result_.slots_per_s = static_cast<double>(recorder_.stats().slots - 1) / passed_s;
+    return std::move(result_);
+}
+
+/// As many of the slots before a frame as are in proportion to the frames: what a camera or a clock
+/// says of them has no limit.
+std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
+    const auto frames = static_cast<std::int64_t>(result_.latencies.count()) + 1;
+    const auto most = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
+    const std::uint64_t held = std::min(lost, most - std::min(most, result_.held_slots));
+    if (held < lost && result_.unheld_slots == 0 && options_.tell)
+        options_.tell({lost, held, recorder_.stats().slots + static_cast<std::int64_t>(held)});
+    result_.unheld_slots += lost - held;
+    return held;
+}
+
+void LiveEmulator::hold_missing(const FrameRecord& record) {
+    // Nothing stands in for what came before the first frame.
+    if (result_.latencies.count() == 0) return;
+    const std::uint64_t incomplete = record.status == FrameStatus::kComplete ? 0 : 1;
+    const std::uint64_t slots = lost_to_hold(record.lost_before) + incomplete;
+    for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
+    result_.held_slots += slots;
+    result_.totals.lost[static_cast<std::size_t>(record.cause)] += record.lost_before;
+    result_.totals.incomplete += incomplete;
+}
+
+void LiveEmulator::expose(std::int64_t arrival_ns) {
+    const auto packets = recorder_.expose(light_);
+    if (options_.show) options_.show(packets, arrival_ns);
+}
+
+void LiveEmulator::take(const CapturedFrame& frame) {
+    if (frame.record.layout != camera_.layout()) {
+        result_.end = DeviceLost{"the camera sends another region or pixel format"};
+        return;
+    }
+    hold_missing(frame.record);
+    result_.rate.add(frame.record);
+    if (frame.record.status != FrameStatus::kComplete) return;
+    to_light_.convert(frame.payload, light_);
+    const std::int64_t arrival_ns = frame.record.host_monotonic_ns;
+    expose(arrival_ns);
+    last_done_ns_ = monotonic_ns();
+    if (result_.latencies.count() == 0) first_done_ns_ = last_done_ns_;
+    const auto latency_us = static_cast<double>(last_done_ns_ - arrival_ns) * 1e-3;
+    result_.latencies.add(latency_us);
+    if (latency_us <= options_.late_after_slots * recorder_.setup().params.slot_us) return;
+    ++result_.late_slots;
+    if (result_.late.size() < kMaxLateListed)
+        result_.late.push_back({recorder_.stats().slots - 1, arrival_ns, latency_us});
+}
+
+}  // namespace stipple

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "capture/capture_limits.h"
+#include "capture/frame_light.h"
+#include "capture/frame_rate.h"
+#include "capture/live_camera.h"
+#include "core/duration_histogram.h"
+#include "readout/stream_recorder.h"
+
+namespace stipple {
+
+/// Frames that were missing and that nothing stands in for: too many beside those that came.
+struct LeftOut {
+    std::uint64_t missing = 0;    ///< before one frame
+    std::uint64_t held = 0;       ///< of these
+    std::int64_t first_slot = 0;  ///< from which on slots come too early
+};
+
+struct LiveEmulatorOptions {
+    CaptureLimits limits = {};
+    double late_after_slots = 2;  ///< from frame in to packets out
+    /// Given the packets of each slot, and when its light came (CLOCK_MONOTONIC); may be empty.
+    std::function<void(std::span<const SamplePacket> packets, std::int64_t arrival_ns)> show = {};
+    /// Told the first time that frames are left out; may be empty.
+    std::function<void(const LeftOut&)> tell = {};
+};
+
+/// A slot whose packets came too late.
+struct LateSlot {
+    std::int64_t slot;
+    std::int64_t arrival_ns;  ///< of its frame
+    double latency_us;
+};
+
+/// What has become of a camera's frames.
+struct LiveEmulation {
+    DurationHistogram latencies;  ///< from frame in to packets out, of each whole frame
+    SessionTotals totals;         ///< from the first slot to the last
+    FrameRate rate;
+    std::uint64_t held_slots = 0;    ///< in which the frame before stands in
+    std::uint64_t unheld_slots = 0;  ///< left out
+    std::uint64_t late_slots = 0;
+    std::vector<LateSlot> late;         ///< the first 1000
+    std::optional<double> slots_per_s;  ///< once it has ended; nothing of a single slot
+    std::optional<DeviceLost> end;      ///< of the frames
+    std::exception_ptr failure;         ///< of the disk (DeviceError), or no memory
+};
+
+/// A camera's frames through the emulated sensor as they come, a slot each. Where frames are
+/// missing or incomplete, the one before stands in, so that each slot keeps its time.
+class LiveEmulator {
+  public:
+    /// Asked before each wait for a frame, every 50 ms at least; false ends the emulation.
+    using GoesOn = std::function<bool(const LiveEmulation&)>;
+
+    /// `camera` and `recorder` must outlive it; `to_light` is made for the camera's layout, the
+    /// recorder's setup for its light.
+    LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
+                 LiveEmulatorOptions options);
+
+    /// Takes frames until a limit is reached, `goes_on` says no or the camera is lost. The stream
+    /// is the caller's to finish. Called once.
+    [[nodiscard]] LiveEmulation run(const GoesOn& goes_on);
+
+  private:
+    void take(const CapturedFrame& frame);
+    [[nodiscard]] std::uint64_t lost_to_hold(std::uint64_t lost);
+    void hold_missing(const FrameRecord& record);
+    void expose(std::int64_t arrival_ns);
+
+    LiveCamera& camera_;
+    FrameLight to_light_;
+    StreamRecorder& recorder_;
+    LiveEmulatorOptions options_;
+    std::vector<float> light_;
+    LiveEmulation result_;
+    std::int64_t first_done_ns_ = 0;  ///< when the first slot was in the stream
+    std::int64_t last_done_ns_ = 0;
+};
+
+}  // namespace stipple
