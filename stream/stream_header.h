@@ -7,11 +7,9 @@
 #include "core/colour_filter.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/rounding.h"
 
 namespace stipple {
-
-/// How the converter maps a level between two digital numbers (DN).
-enum class Rounding : std::uint8_t { kNearest = 0, kFloor = 1 };
 
 /// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
 struct CalibrationPixel {
