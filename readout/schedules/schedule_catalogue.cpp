@@ -128,12 +128,10 @@ NamedSchedule read_cell(Config& config, const Made& /*made*/) {
     cell.every_slots = read_per_pixel(
         config, {"every_slots", kPeriod, "slots", "distance of exposures; a list: of each pixel"},
         4, pixels);
-    cell.first_slots = read_per_pixel(config,
-                                      {"first_slots",
-                                       {0, kMaxPeriodSlots},
-                                       "slots",
-                                       "begin of the first exposure; a list: of each pixel"},
-                                      0, pixels);
+    cell.first_slots = read_per_pixel(
+        config,
+        {"first_slots", {0, kMaxPeriodSlots}, "slots", "begin of the first; a list: of each pixel"},
+        0, pixels);
     return {"cell", {}, at_key(config, "every_slots", [&] { return cell_schedule(cell); })};
 }
 
