@@ -9,11 +9,10 @@
 
 #include "core/error.h"
 #include "readout/schedules/tile_list.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 namespace {
-
-constexpr std::int64_t kMaxExposures = std::int64_t{1} << 24;  ///< of a stream's tile
 
 std::int64_t period_of(const Cell& cell) {
     std::int64_t period = 1;
@@ -36,7 +35,7 @@ ExposureSchedule cell_schedule(const Cell& cell) {
     const std::int64_t period = period_of(cell);
     std::int64_t exposures = 0;
     for (const int every : cell.every_slots) exposures += period / every;
-    if (exposures > kMaxExposures)
+    if (exposures > static_cast<std::int64_t>(kMaxTileExposures))
         throw InputError("cell", fmt::format("the period of {} slots has {} exposures; 2^24 fit a "
                                              "stream",
                                              period, exposures));

@@ -20,10 +20,6 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kMaxNameBytes = 64;               ///< in a stream header
-constexpr std::size_t kMaxRandomExposures = 1U << 25U;  ///< of a stream (docs/stream_format.md)
-constexpr std::size_t kMaxTileExposures = 1U << 24U;    ///< the same
-
 constexpr KeyRange kExposure{1, kMaxExposureSlots};
 constexpr KeyRange kPeriod{1, kMaxPeriodSlots};
 constexpr ConfigKey kOpenSlots{"open_slots", kExposure, "slots", "open slots of an exposure"};
