@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/json_file.h"
-#include "apps/list_keys.h"
+#include "apps/key_list.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"

@@ -48,6 +48,21 @@ class KeysTest(ProgramTest):
             for key in flat(table):
                 self.assertTrue(any((kind, f"{section}.{key}") in listed for kind in kinds), f"{file}: {key}")
 
+    def test_the_files_that_show_every_key_of_a_mode_do(self):
+        def value(default):
+            try:
+                return tomllib.loads(f"value = {default}")["value"]
+            except tomllib.TOMLDecodeError:
+                return default
+
+        paper, ideal = (tomllib.loads(project_path(f"config/sensors/{name}.toml").read_text())
+                        for name in ("paper", "ideal"))
+        listed = {key["name"].removeprefix("sensor."): value(key["default"])
+                  for key in self.keys("sensor", "paper")}
+        self.assertEqual(paper, listed)
+        physical = {key["name"].removeprefix("sensor.") for key in self.keys("sensor", "physical")}
+        self.assertEqual(ideal.keys(), listed.keys() | physical)
+
     def test_the_defaults_of_a_sensor_hold_where_nothing_is_set(self):
         self.write_array("light.npy", np.random.default_rng(1).random((16, 12, 20)))
         paper = self.defaults("sensor", "paper")

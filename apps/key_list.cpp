@@ -1,4 +1,4 @@
-#include "apps/list_keys.h"
+#include "apps/key_list.h"
 
 #include <fmt/format.h>
 
