@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "apps/key_list.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"
+#include "core/joined.h"
 #include "decoder/reconstruct.h"
 #include "scenes/scene.h"
 
@@ -70,7 +72,7 @@ std::vector<Entry> entries_of(const std::string& kind) {
     return entries;
 }
 
-void list(const std::string& kind, const RunOptions& run) {
+void list_names(const std::string& kind, const RunOptions& run) {
     JsonFile json(run);
     const auto entries = entries_of(kind);
     std::size_t width = 0;
@@ -85,19 +87,84 @@ void list(const std::string& kind, const RunOptions& run) {
     run.say(text);
 }
 
+/// What it takes, in brackets: unit and range.
+std::string taken(const KnownKey& key) {
+    std::vector<std::string> words{key.unit, key.range};
+    std::erase(words, "");
+    return words.empty() ? "" : fmt::format(" ({})", joined(words));
+}
+
+struct ListOptions {
+    std::string kind;
+    std::string section;
+    std::string of;
+    std::vector<KeyList> keys = {};
+};
+
+void list_keys(const ListOptions& options, const RunOptions& run) {
+    JsonFile json(run);
+    auto keys = nlohmann::ordered_json::array();
+    std::string text;
+    for (const KeyList& list : options.keys) {
+        std::size_t name_width = 0, value_width = 0;
+        for (const KnownKey& key : list.keys) {
+            name_width = std::max(name_width, key.name.size());
+            value_width = std::max(value_width, key.fallback.size());
+        }
+        text += fmt::format("{}{} {}{}", text.empty() ? "" : "\n\n", list.section, list.of,
+                            list.keys.empty() ? ": no keys" : "");
+        for (const KnownKey& key : list.keys) {
+            const std::string name = fmt::format("{}.{}", list.section, key.name);
+            text +=
+                fmt::format("\n  {:<{}}  {:<{}}  {}{}", name, list.section.size() + 1 + name_width,
+                            key.fallback, value_width, key.text, taken(key));
+            keys.push_back({{"name", name},
+                            {"of", list.of},
+                            {"default", key.fallback},
+                            {"range", key.range},
+                            {"unit", key.unit},
+                            {"text", key.text}});
+        }
+    }
+    json.write({{"keys", keys}});
+    run.say(text);
+}
+
+void list(const ListOptions& options, const RunOptions& run) {
+    if (options.kind == "keys")
+        list_keys(options, run);
+    else
+        list_names(options.kind, run);
+}
+
 }  // namespace
 
 void add_list(Command& app, Action& action) {
-    Command command = app.add_command("list", "Names of sensors, schedules, scenes or methods");
-    const auto kind = std::make_shared<std::string>();
-    command.add_option("KIND", *kind, "sensors, schedules, scenes or methods")
-        .one_of({"sensors", "schedules", "scenes", "methods"})
+    Command command =
+        app.add_command("list", "Names of sensors, schedules, scenes or methods, keys of --set");
+    const auto options = std::make_shared<ListOptions>();
+    command.add_option("KIND", options->kind, "sensors, schedules, scenes, methods or keys")
+        .one_of({"sensors", "schedules", "scenes", "methods", "keys"})
         .required();
+    command.add_option("SECTION", options->section, "of keys: sensor, schedule or decoder (all)")
+        .one_of({"sensor", "schedule", "decoder"});
+    command.add_option("OF", options->of,
+                       "mode of the sensor or timing, kind of schedule, or method (all)");
     command.footer(
         "Examples:\n"
         "  stipple list sensors\n"
-        "  stipple list schedules --json -");
-    set_action(command, action, kind, list);
+        "  stipple list schedules --json -\n"
+        "  stipple list keys sensor\n"
+        "  stipple list keys decoder fast\n"
+        "A key has a line: default, meaning, unit and range. Those of the section camera are the\n"
+        "features of the camera.");
+    set_action(command, action, options, list, [command, options] {
+        if (options->kind == "keys")
+            options->keys = key_lists(options->section, options->of);
+        else
+            command.refuse({"SECTION"}, fmt::format("\"{}\" is more than stipple list {} takes",
+                                                    options->section, options->kind));
+    });
 }
 
 }  // namespace stipple

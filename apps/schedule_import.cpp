@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 namespace {
@@ -23,8 +24,6 @@ struct ImportOptions {
     bool lengths = false;
     int period_slots = 0;
 };
-
-constexpr std::size_t kMaxNameBytes = 64;  // a stream's header has room for no more
 
 std::string check_name(const std::string& name) {
     if (name.size() <= kMaxNameBytes) return {};

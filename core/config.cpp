@@ -92,6 +92,14 @@ std::string range_text(Value min, Value max) {
     return fmt::format("{}..{}", min, max);
 }
 
+template <typename Value>
+std::string list_text(const std::vector<Value>& values) {
+    std::vector<std::string> items;
+    items.reserve(values.size());
+    for (const Value value : values) items.push_back(fmt::format("{}", value));
+    return items.size() == 1 ? items.front() : fmt::format("[{}]", joined(items));
+}
+
 }  // namespace
 
 struct Config::Impl {
@@ -103,11 +111,23 @@ struct Config::Impl {
 
     void set(const std::string& assignment);
     /// The value of a key, or null; from now on the key is known.
-    const toml::node* find(std::string_view key, std::string fallback = {}, std::string range = {});
+    const toml::node* find(const ConfigKey& key, std::string fallback, std::string range = {});
+    /// Takes each item of a list, or the only one, with `take`; false if there is none.
+    template <typename Take>
+    bool each(const ConfigKey& key, std::string fallback, std::string range, const Take& take) {
+        const toml::node* node = find(key, std::move(fallback), std::move(range));
+        if (node == nullptr) return false;
+        if (const toml::array* list = node->as_array())
+            for (const toml::node& item : *list) take(item);
+        else
+            take(*node);
+        return true;
+    }
     [[nodiscard]] std::string place(std::string_view key) const;
 
     template <typename Value>
-    [[noreturn]] void fail_range(std::string_view key, Value value, Value min, Value max) const {
+    void check_range(std::string_view key, Value value, Value min, Value max) const {
+        if (value >= min && value <= max) return;  // false for NaN
         throw InputError(place(key), fmt::format("{} is outside {}", value, range_text(min, max)));
     }
     [[noreturn]] void fail_type(std::string_view key, const toml::node& value,
@@ -125,11 +145,12 @@ void Config::Impl::set(const std::string& assignment) {
     entries[key] = Entry{tables.back().get("value"), "--set", false, kAfterFile + tables.size()};
 }
 
-const toml::node* Config::Impl::find(std::string_view key, std::string fallback,
+const toml::node* Config::Impl::find(const ConfigKey& key, std::string fallback,
                                      std::string range) {
-    asked.try_emplace(std::string(key),
-                      KnownKey{std::string(key), std::move(fallback), std::move(range)});
-    const auto found = entries.find(key);
+    asked.try_emplace(std::string(key.name),
+                      KnownKey{std::string(key.name), std::move(fallback), std::move(range),
+                               std::string(key.unit), std::string(key.text)});
+    const auto found = entries.find(key.name);
     if (found == entries.end()) return nullptr;
     found->second.known = true;
     return found->second.value;
@@ -178,96 +199,93 @@ Config::~Config() = default;
 Config::Config(Config&&) noexcept = default;
 Config& Config::operator=(Config&&) noexcept = default;
 
-double Config::number(std::string_view key, double fallback, double min, double max) {
+double Config::number(const ConfigKey& key, double fallback) {
+    const auto [min, max] = key.range;
+    const bool has_default = fallback >= min && fallback <= max;
     const toml::node* node =
-        impl_->find(key, fmt::format("{:.7g}", fallback), range_text(min, max));
+        impl_->find(key, has_default ? fmt::format("{:.7g}", fallback) : "", range_text(min, max));
     if (node == nullptr) return fallback;
-    if (!node->is_number()) impl_->fail_type(key, *node, "a number");
+    if (!node->is_number()) impl_->fail_type(key.name, *node, "a number");
     const double value = *node->value<double>();
-    if (!(value >= min && value <= max)) impl_->fail_range(key, value, min, max);
+    impl_->check_range(key.name, value, min, max);
     return value;
 }
 
-std::int64_t Config::integer(std::string_view key, std::int64_t fallback, std::int64_t min,
-                             std::int64_t max) {
-    const toml::node* node = impl_->find(key, fmt::format("{}", fallback), range_text(min, max));
+std::int64_t Config::integer(const ConfigKey& key, std::int64_t fallback) {
+    const auto min = static_cast<std::int64_t>(key.range.min);
+    const auto max = static_cast<std::int64_t>(key.range.max);
+    const bool has_default = fallback >= min && fallback <= max;
+    const toml::node* node =
+        impl_->find(key, has_default ? fmt::format("{}", fallback) : "", range_text(min, max));
     if (node == nullptr) return fallback;
-    if (!node->is_integer()) impl_->fail_type(key, *node, "an integer");
+    if (!node->is_integer()) impl_->fail_type(key.name, *node, "an integer");
     const std::int64_t value = *node->value<std::int64_t>();
-    if (value < min || value > max) impl_->fail_range(key, value, min, max);
+    impl_->check_range(key.name, value, min, max);
     return value;
 }
 
-bool Config::boolean(std::string_view key, bool fallback) {
+bool Config::boolean(const ConfigKey& key, bool fallback) {
     const toml::node* node = impl_->find(key, fallback ? "true" : "false");
     if (node == nullptr) return fallback;
-    if (!node->is_boolean()) impl_->fail_type(key, *node, "true or false");
+    if (!node->is_boolean()) impl_->fail_type(key.name, *node, "true or false");
     return *node->value<bool>();
 }
 
-std::string Config::text(std::string_view key, std::string_view fallback) {
-    const toml::node* node = impl_->find(key, std::string(fallback));
+std::string Config::text(const ConfigKey& key, std::string_view fallback) {
+    const toml::node* node =
+        impl_->find(key, fallback.empty() ? "\"\"" : std::string(fallback), joined(key.choices));
     if (node == nullptr) return std::string(fallback);
-    if (!node->is_string()) impl_->fail_type(key, *node, "text");
+    if (!node->is_string()) impl_->fail_type(key.name, *node, "text");
     return *node->value<std::string>();
 }
 
-std::string Config::choice(std::string_view key, std::string_view fallback,
-                           const std::vector<std::string>& choices) {
-    std::string value = text(key, fallback);
-    if (std::find(choices.begin(), choices.end(), value) == choices.end())
-        throw InputError(place(key),
-                         fmt::format("\"{}\" is not one of {}", value, joined(choices)));
-    return value;
+std::size_t Config::choice(const ConfigKey& key, std::size_t fallback) {
+    const std::string value = text(key, key.choices[fallback]);
+    const auto found = std::ranges::find(key.choices, value);
+    if (found == key.choices.end())
+        throw InputError(place(key.name),
+                         fmt::format("\"{}\" is not one of {}", value, joined(key.choices)));
+    return static_cast<std::size_t>(found - key.choices.begin());
 }
 
-std::vector<int> Config::integers(std::string_view key, std::vector<int> fallback, int min,
-                                  int max) {
-    const toml::node* node = impl_->find(key, {}, range_text(min, max));
-    if (node == nullptr) return fallback;
+std::vector<int> Config::integers(const ConfigKey& key, std::vector<int> fallback) {
+    const auto min = static_cast<std::int64_t>(key.range.min);
+    const auto max = static_cast<std::int64_t>(key.range.max);
     std::vector<int> values;
-    const auto take = [&](const toml::node& item) {
-        if (!item.is_integer()) impl_->fail_type(key, item, "a list of integers");
-        const std::int64_t value = *item.value<std::int64_t>();
-        if (value < min || value > max) impl_->fail_range<std::int64_t>(key, value, min, max);
-        values.push_back(static_cast<int>(value));
-    };
-    if (const toml::array* list = node->as_array())
-        for (const toml::node& item : *list) take(item);
-    else
-        take(*node);
-    return values;
+    const bool given =
+        impl_->each(key, list_text(fallback), range_text(min, max), [&](const toml::node& item) {
+            if (!item.is_integer()) impl_->fail_type(key.name, item, "a list of integers");
+            const std::int64_t value = *item.value<std::int64_t>();
+            impl_->check_range(key.name, value, min, max);
+            values.push_back(static_cast<int>(value));
+        });
+    return given ? values : fallback;
 }
 
-std::vector<std::string> Config::texts(std::string_view key) {
-    const toml::node* node = impl_->find(key);
+std::vector<double> Config::numbers(const ConfigKey& key, std::vector<double> fallback) {
+    const double min = key.range.min, max = key.range.max;
+    std::vector<double> values;
+    const bool given =
+        impl_->each(key, list_text(fallback), range_text(min, max), [&](const toml::node& item) {
+            if (!item.is_number())
+                impl_->fail_type(key.name, item, "a number or a list of numbers");
+            values.push_back(*item.value<double>());
+            impl_->check_range(key.name, values.back(), min, max);
+        });
+    return given ? values : fallback;
+}
+
+std::vector<std::string> Config::texts(const ConfigKey& key) {
+    const toml::node* node = impl_->find(key, "");
     if (node == nullptr) return {};
     const toml::array* list = node->as_array();
-    if (list == nullptr) impl_->fail_type(key, *node, "a list of texts");
+    if (list == nullptr) impl_->fail_type(key.name, *node, "a list of texts");
     std::vector<std::string> values;
     values.reserve(list->size());
     for (const toml::node& item : *list) {
-        if (!item.is_string()) impl_->fail_type(key, item, "a list of texts");
+        if (!item.is_string()) impl_->fail_type(key.name, item, "a list of texts");
         values.push_back(*item.value<std::string>());
     }
-    return values;
-}
-
-std::vector<double> Config::numbers(std::string_view key, std::vector<double> fallback, double min,
-                                    double max) {
-    const toml::node* node = impl_->find(key, {}, range_text(min, max));
-    if (node == nullptr) return fallback;
-    std::vector<double> values;
-    const auto take = [&](const toml::node& item) {
-        if (!item.is_number()) impl_->fail_type(key, item, "a number or a list of numbers");
-        const double value = *item.value<double>();
-        if (!(value >= min && value <= max)) impl_->fail_range(key, value, min, max);
-        values.push_back(value);
-    };
-    if (const toml::array* list = node->as_array())
-        for (const toml::node& item : *list) take(item);
-    else
-        take(*node);
     return values;
 }
 

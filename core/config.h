@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,11 +11,30 @@
 
 namespace stipple {
 
-/// A key that a reader knows, as it asked for it.
+/// Closed interval of accepted numbers; of integers within 2^53.
+struct KeyRange {
+    double min = 0;
+    double max = 0;
+};
+
+/// A key as its reader describes it. Strings and choices must last as long as the call.
+struct ConfigKey {
+    std::string_view name;  ///< dotted
+    KeyRange range = {};    ///< of a number, of each number of a list
+    std::string_view unit = {};
+    std::string_view text = {};                      ///< what it is, one line
+    std::span<const std::string_view> choices = {};  ///< of a name
+};
+
+/// A key that was asked for, as `key=value` takes it.
 struct KnownKey {
     std::string name;
-    std::string fallback;  ///< of numbers and texts; of lists empty
-    std::string range;     ///< "min..max" of numbers and lists of numbers
+    std::string fallback;  ///< empty: it has none
+    std::string range;     ///< "min..max" of numbers and lists of numbers, "a, b" of choices
+    std::string unit;
+    std::string text;
+
+    bool operator==(const KnownKey&) const = default;
 };
 
 /// Settings from a TOML file with `key=value` overrides laid over it. A module asks for each key
@@ -34,29 +54,24 @@ class Config {
     Config& operator=(Config&&) noexcept;
 
     /// The value of `key`, or `fallback` if absent. \throws InputError naming file, line and key
-    /// if the type is wrong or the value lies outside [min, max].
-    [[nodiscard]] double number(std::string_view key, double fallback, double min, double max);
-    [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback,
-                                       std::int64_t min, std::int64_t max);
-    [[nodiscard]] bool boolean(std::string_view key, bool fallback);
-    [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
-    /// One of `choices`. \throws InputError listing them.
-    [[nodiscard]] std::string choice(std::string_view key, std::string_view fallback,
-                                     const std::vector<std::string>& choices);
+    /// if the type is wrong or the value lies outside its range.
+    [[nodiscard]] double number(const ConfigKey& key, double fallback);
+    [[nodiscard]] std::int64_t integer(const ConfigKey& key, std::int64_t fallback);
+    [[nodiscard]] bool boolean(const ConfigKey& key, bool fallback);
+    [[nodiscard]] std::string text(const ConfigKey& key, std::string_view fallback);
+    /// The index in `key.choices`. \throws InputError listing them.
+    [[nodiscard]] std::size_t choice(const ConfigKey& key, std::size_t fallback);
     /// One integer or a list of integers.
-    [[nodiscard]] std::vector<int> integers(std::string_view key, std::vector<int> fallback,
-                                            int min, int max);
+    [[nodiscard]] std::vector<int> integers(const ConfigKey& key, std::vector<int> fallback);
     /// One number or a list of numbers.
-    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback,
-                                              double min, double max);
+    [[nodiscard]] std::vector<double> numbers(const ConfigKey& key, std::vector<double> fallback);
+    /// A list of texts; empty if absent.
+    [[nodiscard]] std::vector<std::string> texts(const ConfigKey& key);
     /// Whether the key is given; asking does not make it known.
     [[nodiscard]] bool contains(std::string_view key) const;
 
     /// Whether the file has no keys.
     [[nodiscard]] bool file_is_empty() const;
-
-    /// A list of texts; empty if absent.
-    [[nodiscard]] std::vector<std::string> texts(std::string_view key);
 
     /// All that was given, as text, in the order in which it was: the file, then the overrides.
     /// For settings whose names only a device knows. \throws InputError for a list or a date.

@@ -58,10 +58,10 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
       period_slots_(period_slots),
       first_(std::move(first)),
       exposures_(std::move(exposures)) {
-    if (tile_rows < 1 || tile_cols < 1 || tile_rows > 65535 || tile_cols > 65535)
+    if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTileSide || tile_cols > kMaxTileSide)
         throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..65535 rows and columns",
                                              tile_rows, tile_cols));
-    if (period_slots < 1 || period_slots > 65535)
+    if (period_slots < 1 || period_slots > kMaxPeriodSlots)
         throw InputError(kPlace, fmt::format("period {} is outside 1..65535 slots", period_slots));
     if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
         first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
@@ -184,7 +184,7 @@ RandomExposures::RandomExposures(std::span<const int> exposure_slots, std::uint6
       exposures_(exposure_slots.size()) {
     if (exposure_slots.empty()) throw InputError(kPlace, "there is no exposure length");
     for (const int length : exposure_slots) {
-        if (length < 1 || length > 64)
+        if (length < 1 || length > kMaxExposureSlots)
             throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
         period_slots_ += length;
     }

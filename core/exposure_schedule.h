@@ -9,6 +9,10 @@
 
 namespace stipple {
 
+inline constexpr int kMaxExposureSlots = 64;  ///< bits of `Exposure::open_slots`
+inline constexpr int kMaxPeriodSlots = 65535;
+inline constexpr int kMaxTileSide = 65535;  ///< pixels
+
 /// One exposure of one pixel: the slots in which its shutter is open. Bit i of `open_slots` is
 /// slot `first_slot + i`; bit 0 is set. It is read out at the end of its last open slot.
 struct Exposure {

@@ -89,16 +89,15 @@ CalibrationTile tile_of(const PhysicalTerms& terms) {
 }  // namespace
 
 Calibration calibration_of(const SensorParams& params) {
-    return {
-        .bit_depth = params.bit_depth,
-        .rounding = params.rounding == AdcRounding::kFloor ? Rounding::kFloor : Rounding::kNearest,
-        .black_level_dn = params.physical.black_level_dn,
-        .gain_e_per_dn = params.gain_e_per_dn(),
-        .read_noise_e = params.temporal_read_noise_e(),
-        .full_well_e = params.full_well_e,
-        .electrons_per_unit = params.electrons_per_unit(),
-        .dark_e_per_slot = params.dark_e_per_slot(),
-        .tile = tile_of(params.physical)};
+    return {.bit_depth = params.bit_depth,
+            .rounding = params.rounding,
+            .black_level_dn = params.physical.black_level_dn,
+            .gain_e_per_dn = params.gain_e_per_dn(),
+            .read_noise_e = params.temporal_read_noise_e(),
+            .full_well_e = params.full_well_e,
+            .electrons_per_unit = params.electrons_per_unit(),
+            .dark_e_per_slot = params.dark_e_per_slot(),
+            .tile = tile_of(params.physical)};
 }
 
 struct CodedSensor::Impl {

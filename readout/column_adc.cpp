@@ -29,7 +29,7 @@ std::vector<float> step_errors(const SensorParams& params) {
 ColumnAdc::ColumnAdc(const SensorParams& params)
     : transfer_{.full_scale_e = params.full_scale_e,
                 .max_dn = static_cast<double>((1 << params.bit_depth) - 1),
-                .to_round = params.rounding == AdcRounding::kNearest ? 0.5 : 0.0},
+                .to_round = params.rounding == Rounding::kNearest ? 0.5 : 0.0},
       plain_(params.mode == SensorMode::kPaper),
       black_level_dn_(params.physical.black_level_dn),
       inl_dn_(params.physical.inl_dn),

@@ -8,10 +8,11 @@
 #include <limits>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 
 #include "core/toml_keys.h"
 #include "core/version.h"
-#include "sensor_model/physical_keys.h"
+#include "sensor_model/sensor_keys.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -26,32 +27,22 @@ toml::array toml_array(const std::vector<double>& values) {
     return array;
 }
 
-void add_physical_terms(const PhysicalTerms& terms, toml::table& sensor) {
-    for (const PhysicalKey& key : kPhysicalKeys) sensor.insert(key.name, terms.*key.term);
-    sensor.insert("row_noise_e", toml_array(terms.row_noise_e));
-    sensor.insert("device_id", std::int64_t{terms.device_id});
-    sensor.insert("cfa", name_of(terms.cfa));
-    sensor.insert("map_rows", terms.map_rows);
-    sensor.insert("map_cols", terms.map_cols);
-    sensor.insert("transmittance", toml_array(terms.transmittance));
-    sensor.insert("gain_map", toml_array(terms.gain_map));
-}
-
 /// All parameters of the sensor's mode, as in a file of config/sensors.
 toml::table sensor_table(const SensorParams& params) {
-    const bool physical = params.mode == SensorMode::kPhysical;
-    toml::table sensor{{"mode", physical ? "physical" : "paper"},
-                       {"name", params.name},
-                       {"photons_per_unit", params.photons_per_unit},
-                       {"full_scale_e", params.full_scale_e},
-                       {"full_well_e", params.full_well_e},
-                       {"read_noise_e", params.read_noise_e},
-                       {"shot_noise", params.shot_noise},
-                       {"bit_depth", params.bit_depth},
-                       {"rounding", params.rounding == AdcRounding::kFloor ? "floor" : "nearest"},
-                       {"slot_us", params.slot_us},
-                       {"charge_stores", params.charge_stores}};
-    if (physical) add_physical_terms(params.physical, sensor);
+    toml::table sensor;
+    const auto add = [&](const ConfigKey& key, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_enum_v<Value>)
+            sensor.insert(key.name, key.choices[static_cast<std::size_t>(value)]);
+        else if constexpr (std::is_same_v<Value, std::vector<double>>)
+            sensor.insert(key.name, toml_array(value));
+        else if constexpr (std::is_same_v<Value, std::uint32_t>)
+            sensor.insert(key.name, std::int64_t{value});
+        else
+            sensor.insert(key.name, value);
+    };
+    visit_sensor_keys(params, add);
+    if (params.mode == SensorMode::kPhysical) visit_physical_keys(params.physical, add);
     return sensor;
 }
 

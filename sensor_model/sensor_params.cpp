@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "core/error.h"
-#include "sensor_model/physical_keys.h"
 #include "sensor_model/power_of_two.h"
+#include "sensor_model/sensor_keys.h"
 
 namespace stipple {
 namespace {
@@ -17,13 +19,30 @@ namespace {
     throw InputError(fmt::format("sensor \"{}\": {}", params.name, key), problem);
 }
 
-void check(const SensorParams& params, std::string_view key, double value, ParameterRange range) {
-    if (value >= range.least && value <= range.most) return;  // false for NaN
-    fail(params, key, fmt::format("{} is outside {} .. {}", value, range.least, range.most));
-}
+/// \throws InputError for a number outside the range of its key.
+class RangeCheck {
+  public:
+    explicit RangeCheck(const SensorParams& params) : params_(params) {}
 
-void check_map(const SensorParams& params, std::string_view key, const std::vector<double>& map,
-               ParameterRange range) {
+    template <typename Value>
+    void operator()(const ConfigKey& key, const Value& value) const {
+        if constexpr (std::is_same_v<Value, std::vector<double>>)
+            for (const double item : value) check(key, item);
+        else if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
+            check(key, static_cast<double>(value));
+    }
+
+  private:
+    void check(const ConfigKey& key, double value) const {
+        const auto [min, max] = key.range;
+        if (value >= min && value <= max) return;  // false for NaN
+        fail(params_, key.name, fmt::format("{} is outside {} .. {}", value, min, max));
+    }
+
+    const SensorParams& params_;
+};
+
+void check_map(const SensorParams& params, std::string_view key, const std::vector<double>& map) {
     const PhysicalTerms& terms = params.physical;
     const auto pixels =
         static_cast<std::size_t>(terms.map_rows) * static_cast<std::size_t>(terms.map_cols);
@@ -31,7 +50,6 @@ void check_map(const SensorParams& params, std::string_view key, const std::vect
         fail(params, key,
              fmt::format("has {} values, but its tile has map_rows x map_cols = {} x {} pixels",
                          map.size(), terms.map_rows, terms.map_cols));
-    for (const double value : map) check(params, key, value, range);
 }
 
 /// What must hold between the terms of the physical mode.
@@ -59,15 +77,11 @@ void check_together(const SensorParams& params) {
 
 void check_physical(const SensorParams& params) {
     const PhysicalTerms& terms = params.physical;
-    for (const PhysicalKey& key : kPhysicalKeys)
-        check(params, key.name, terms.*key.term, key.range);
+    visit_physical_keys(terms, RangeCheck(params));
     if (terms.row_noise_e.size() > std::size_t{kMaxTaps})
         fail(params, "row_noise_e", fmt::format("has more than {} values", kMaxTaps));
-    for (const double noise : terms.row_noise_e) check(params, "row_noise_e", noise, kRowNoiseE);
-    check(params, "map_rows", terms.map_rows, {1, kMaxMapSide});
-    check(params, "map_cols", terms.map_cols, {1, kMaxMapSide});
-    check_map(params, "transmittance", terms.transmittance, kTransmittance);
-    check_map(params, "gain_map", terms.gain_map, kRelativeGain);
+    check_map(params, "transmittance", terms.transmittance);
+    check_map(params, "gain_map", terms.gain_map);
     check_together(params);
 }
 
@@ -105,13 +119,7 @@ double default_black_level_dn(const SensorParams& params) {
 }
 
 void validate(const SensorParams& params) {
-    check(params, "photons_per_unit", params.photons_per_unit, SensorParams::kPhotonsPerUnit);
-    check(params, "full_scale_e", params.full_scale_e, SensorParams::kFullScaleE);
-    check(params, "full_well_e", params.full_well_e, SensorParams::kFullWellE);
-    check(params, "read_noise_e", params.read_noise_e, SensorParams::kReadNoiseE);
-    check(params, "bit_depth", params.bit_depth, SensorParams::kBitDepth);
-    check(params, "slot_us", params.slot_us, SensorParams::kSlotUs);
-    check(params, "charge_stores", params.charge_stores, SensorParams::kChargeStores);
+    visit_sensor_keys(params, RangeCheck(params));
     if (params.mode == SensorMode::kPhysical) return check_physical(params);
     if (params.physical != PhysicalTerms{})
         fail(params, "mode", "\"paper\" has the terms of Eq. 1 only; take \"physical\"");

@@ -3,21 +3,13 @@
 #include <cstdint>
 #include <string>
 
+#include "core/rounding.h"
 #include "sensor_model/physical_terms.h"
 
 namespace stipple {
 
-/// How the converter maps a level between two digital numbers.
-enum class AdcRounding : std::uint8_t { kNearest, kFloor };
-
 /// Which terms the model has: those of Eq. 1, or those of EMVA 1288 as well.
 enum class SensorMode : std::uint8_t { kPaper, kPhysical };
-
-/// Closed interval of accepted values of a parameter.
-struct ParameterRange {
-    double least;
-    double most;
-};
 
 /// A sensor (docs/sensor_model.md). In paper mode Eq. 1: shot noise, full well, read noise and
 /// converter of an array of equal pixels, where photons and electrons are the same thing and
@@ -28,23 +20,15 @@ struct SensorParams {
     std::string name = "paper";
     double photons_per_unit = 1000;  ///< r: mean photons per slot at flux 1.0
     double full_scale_e = 2000;      ///< s: electrons of 2^d - 1 DN
-    double full_well_e = 20000;      ///< w: charge beyond it is lost
+    double full_well_e = 20000;      ///< w: charge beyond it is lost; below 2^24, exact in float
     double read_noise_e = 10;        ///< sigma: rms of each reading's noise
     bool shot_noise = true;          ///< false: the charge is its mean, not a Poisson draw
     int bit_depth = 8;               ///< d: the highest DN is 2^d - 1
-    AdcRounding rounding = AdcRounding::kNearest;
+    Rounding rounding = Rounding::kNearest;
     double slot_us = 5000;  ///< time slot: one frame of the footage
     int charge_stores = 1;  ///< of a pixel: exposures that can be under way at once
     SensorMode mode = SensorMode::kPaper;
     PhysicalTerms physical = {};
-
-    static constexpr ParameterRange kPhotonsPerUnit{1e-3, 1e7};
-    static constexpr ParameterRange kFullScaleE{1, 1e7};
-    static constexpr ParameterRange kFullWellE{1, 1e7};  ///< below 2^24: exact in float
-    static constexpr ParameterRange kReadNoiseE{0, 1e5};
-    static constexpr ParameterRange kBitDepth{1, 16};
-    static constexpr ParameterRange kSlotUs{1e-3, 1e9};
-    static constexpr ParameterRange kChargeStores{1, 2};
 
     /// K: electrons that raise the output by one DN.
     [[nodiscard]] double gain_e_per_dn() const { return full_scale_e / ((1 << bit_depth) - 1); }

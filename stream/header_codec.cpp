@@ -24,7 +24,6 @@ constexpr std::uint16_t kVersion = 2;  ///< that is written; 1 is read, too
 constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
-constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxProvenanceBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
 constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;

@@ -15,9 +15,6 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMaxTilePixels = std::size_t{1} << 24U;
-constexpr std::size_t kMaxTileExposures = std::size_t{1} << 24U;
-constexpr std::size_t kMaxRandomExposures = std::size_t{1} << 25U;
-constexpr int kMaxExposureSlots = 64;
 
 /// What makes a tile too large to be read safely (docs/stream_format.md), if anything.
 std::optional<std::string> tile_fault(std::size_t rows, std::size_t cols, std::size_t period) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -7,11 +8,9 @@
 #include "core/colour_filter.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/rounding.h"
 
 namespace stipple {
-
-/// How the converter maps a level between two digital numbers (DN).
-enum class Rounding : std::uint8_t { kNearest = 0, kFloor = 1 };
 
 /// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
 struct CalibrationPixel {
@@ -45,6 +44,12 @@ struct Calibration {
 
     bool operator==(const Calibration&) const = default;
 };
+
+/// The most that a stream holds (docs/stream_format.md): exposures of a tile and of the array of a
+/// random schedule, bytes of a schedule's name.
+inline constexpr std::size_t kMaxTileExposures = std::size_t{1} << 24U;
+inline constexpr std::size_t kMaxRandomExposures = std::size_t{1} << 25U;
+inline constexpr std::size_t kMaxNameBytes = 64;
 
 /// The schedule as it is stored: its own list of exposures, or the generator `random_schedule`
 /// with a seed (for tiles as large as the array, where a list would weigh more than the samples).

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace stipple {
@@ -10,6 +11,8 @@ CommandOption add_settings(Command& command, std::vector<SettingsSection> sectio
                            const std::string& text) {
     const std::string type =
         fmt::format("{}.KEY=VALUE", sections.size() == 1 ? sections.front().name : "SECTION");
+    const bool listed = std::ranges::any_of(
+        sections, [](const SettingsSection& section) { return section.name != "camera"; });
     const auto take = [sections = std::move(sections)](const std::string& setting) {
         std::string prefixes;
         for (const auto& [name, settings] : sections) {
@@ -20,7 +23,8 @@ CommandOption add_settings(Command& command, std::vector<SettingsSection> sectio
         throw UsageError("--set",
                          fmt::format("{}: its key begins with none of {}", setting, prefixes));
     };
-    return command.add_list("--set", take, text).type_name(type);
+    return command.add_list("--set", take, text + (listed ? " (stipple list keys)" : ""))
+        .type_name(type);
 }
 
 }  // namespace stipple

@@ -33,7 +33,7 @@ ordered_json calibration_json(const Calibration& calibration) {
         conversion_gain.push_back(pixel.conversion_gain);
     }
     return {{"bit_depth", calibration.bit_depth},
-            {"rounding", calibration.rounding == Rounding::kFloor ? "floor" : "nearest"},
+            {"rounding", name_of(calibration.rounding)},
             {"black_level_dn", calibration.black_level_dn},
             {"gain_e_per_dn", calibration.gain_e_per_dn},
             {"read_noise_e", calibration.read_noise_e},

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/best/collaborative_filter.h"
 #include "decoder/best/variance_stabilisation.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
 #include "decoder/measurements.h"
-#include "decoder/option_reader.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -179,30 +179,54 @@ CollaborativeOptions options_for(const Measurements& measurements, Collaborative
     return options;
 }
 
+constexpr KeyRange kIterations{0, 10000};
+constexpr KeyRange kEvery{1, 10000};
+constexpr KeyRange kSigma{1e-3, 10};
+
+void read_matching(Config& config, const char* prefix, MatchingOptions& matching) {
+    constexpr KeyRange kReach{0, 32};
+    const KeyReader read(config, prefix);
+    read({"slots", kReach, "slots", "slots searched before and after"}, matching.slots);
+    read({"own_radius", kReach, "pixels", "search radius in the slot of the reference"},
+         matching.own_radius);
+    read({"path_radius", kReach, "pixels", "search radius around the motion path"},
+         matching.path_radius);
+}
+
 }  // namespace
 
 void read_options(Config& config, CollaborativeOptions& options) {
-    read_integer(config, "iterations", 0, 10000, options.iterations);
-    read_integer(config, "motion_every", 1, 10000, options.motion_every);
-    read_integer(config, "match_every", 1, 10000, options.match_every);
-    read_integer(config, "patch_stride", 1, kPatchSide, options.patch_stride);
-    read_integer(config, "matching.slots", 0, 32, options.matching.slots);
-    read_integer(config, "matching.own_radius", 0, 32, options.matching.own_radius);
-    read_integer(config, "matching.path_radius", 0, 32, options.matching.path_radius);
-    read_number(config, "first_sigma", 1e-3, 10, options.first_sigma);
-    read_number(config, "last_noise", 0, 100, options.last_noise);
-    read_number(config, "min_sigma", 1e-3, 10, options.min_sigma);
-    read_number(config, "light_offset", 1e-4, 1e3, options.light_offset);
-    read_number(config, "min_light", -10, 0, options.min_light);
-    read_number(config, "residual_gain", 0, 2, options.residual_gain);
-    read_number(config, "residual_decay", 0, 1, options.residual_decay);
-    read_number(config, "momentum", 0, 1, options.momentum);
-    read_integer(config, "mosaic.iterations", 0, 10000, options.mosaic.iterations);
-    read_number(config, "mosaic.first_sigma", 1e-3, 10, options.mosaic.first_sigma);
-    read_integer(config, "mosaic.near_iterations", 0, 10000, options.mosaic.near_iterations);
-    read_integer(config, "mosaic.near.slots", 0, 32, options.mosaic.near.slots);
-    read_integer(config, "mosaic.near.own_radius", 0, 32, options.mosaic.near.own_radius);
-    read_integer(config, "mosaic.near.path_radius", 0, 32, options.mosaic.near.path_radius);
+    const KeyReader read(config);
+    read({"iterations", kIterations, "", "iterations of filter and data-consistency step"},
+         options.iterations);
+    read({"motion_every", kEvery, "iterations", "interval of estimates of motion"},
+         options.motion_every);
+    read({"match_every", kEvery, "iterations", "interval of searches for similar patches"},
+         options.match_every);
+    read({"patch_stride", {1, kPatchSide}, "pixels", "stride of reference patches"},
+         options.patch_stride);
+    read_matching(config, "matching.", options.matching);
+    read({"first_sigma", kSigma, "", "sigma of the first iteration, on the scale 2 sqrt(light)"},
+         options.first_sigma);
+    read({"last_noise", {0, 100}, "", "sigma of the last iteration, in shot noise of one slot"},
+         options.last_noise);
+    read({"min_sigma", kSigma, "", "smallest sigma of the last iteration"}, options.min_sigma);
+    read({"light_offset", {1e-4, 1e3}, "flux", "smallest offset under the square root"},
+         options.light_offset);
+    read({"min_light", {-10, 0}, "flux", "smallest light; minus the offset at least"},
+         options.min_light);
+    read({"residual_gain", {0, 2}, "", "share of the residuals that is added to the samples"},
+         options.residual_gain);
+    read({"residual_decay", {0, 1}, "", "decay of the added residuals in each iteration"},
+         options.residual_decay);
+    read({"momentum", {0, 1}, "", "momentum beta: x + beta (x - x_previous)"}, options.momentum);
+    read({"mosaic.iterations", kIterations, "", "iterations of a mosaic"},
+         options.mosaic.iterations);
+    read({"mosaic.first_sigma", kSigma, "", "first_sigma of a mosaic"}, options.mosaic.first_sigma);
+    read({"mosaic.near_iterations", kIterations, "",
+          "first iterations of a mosaic, with patches from nearby"},
+         options.mosaic.near_iterations);
+    read_matching(config, "mosaic.near.", options.mosaic.near);
 }
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,

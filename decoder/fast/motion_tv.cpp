@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/key_reader.h"
 #include "core/light.h"
 #include "core/parallel.h"
 #include "decoder/fast/box_blur.h"
@@ -12,7 +13,6 @@
 #include "decoder/fast/presumed_samples.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
-#include "decoder/option_reader.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -118,21 +118,38 @@ MotionTvOptions options_for(const Measurements& measurements, MotionTvOptions op
 }  // namespace
 
 void read_options(Config& config, MotionTvOptions& options) {
-    read_integer(config, "static_tv.iterations", 0, 10000, options.static_tv.iterations);
-    read_number(config, "static_tv.spatial_weight", 0, 1e4, options.static_tv.spatial_weight);
-    read_number(config, "static_tv.temporal_weight", 0, 1e4, options.static_tv.temporal_weight);
-    read_integer(config, "along_motion.iterations", 0, 10000, options.along_motion.iterations);
-    read_number(config, "along_motion.spatial_weight", 0, 1e4, options.along_motion.spatial_weight);
-    read_number(config, "along_motion.temporal_weight", 0, 1e4,
-                options.along_motion.temporal_weight);
-    read_integer(config, "rounds", 0, 100, options.rounds);
-    read_integer(config, "last_iterations", 0, 10000, options.last_iterations);
-    read_number(config, "mosaic.spatial_weight", 0, 1e4, options.mosaic.spatial_weight);
-    read_number(config, "mosaic.chroma_weight", 0, 1e4, options.mosaic.chroma_weight);
-    read_integer(config, "mosaic.last_iterations", 0, 10000, options.mosaic.last_iterations);
-    read_number(config, "step", 1e-6, 1, options.step);
-    read_number(config, "step_flux", 1e-4, 1e4, options.step_flux);
-    read_number(config, "max_step_ratio", 1, 1e4, options.max_step_ratio);
+    constexpr KeyRange kIterations{0, 10000};
+    constexpr KeyRange kWeight{0, 1e4};
+    const KeyReader read(config);
+    read({"static_tv.iterations", kIterations, "", "iterations of the static total variation"},
+         options.static_tv.iterations);
+    read({"static_tv.spatial_weight", kWeight, "1/flux", "weight of spatial differences"},
+         options.static_tv.spatial_weight);
+    read({"static_tv.temporal_weight", kWeight, "1/flux", "weight of temporal differences"},
+         options.static_tv.temporal_weight);
+    read({"along_motion.iterations", kIterations, "", "iterations of each round but the last"},
+         options.along_motion.iterations);
+    read({"along_motion.spatial_weight", kWeight, "1/flux", "weight of spatial differences"},
+         options.along_motion.spatial_weight);
+    read({"along_motion.temporal_weight", kWeight, "1/flux",
+          "weight of all links of a voxel together"},
+         options.along_motion.temporal_weight);
+    read({"rounds", {0, 100}, "", "rounds of variances, motion, total variation along it"},
+         options.rounds);
+    read({"last_iterations", kIterations, "", "iterations of the last round"},
+         options.last_iterations);
+    read({"mosaic.spatial_weight", kWeight, "1/flux", "along_motion.spatial_weight of a mosaic"},
+         options.mosaic.spatial_weight);
+    read({"mosaic.chroma_weight", kWeight, "",
+          "weight of opponent colours of a mosaic, times the others"},
+         options.mosaic.chroma_weight);
+    read({"mosaic.last_iterations", kIterations, "", "last_iterations of a mosaic"},
+         options.mosaic.last_iterations);
+    read({"step", {1e-6, 1}, "flux^2", "primal step at step_flux"}, options.step);
+    read({"step_flux", {1e-4, 1e4}, "flux", "light at which the primal step is step"},
+         options.step_flux);
+    read({"max_step_ratio", {1, 1e4}, "", "largest ratio of the primal steps of linked pixels"},
+         options.max_step_ratio);
 }
 
 std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const SampleNoise& noise,

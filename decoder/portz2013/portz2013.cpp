@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
-#include "decoder/option_reader.h"
 #include "decoder/portz2013/exposure_table.h"
 
 namespace stipple {
@@ -146,56 +146,58 @@ class Decoder {
     bool stopped_ = false;
 };
 
-/// Keys of one stage: `prefix` is "stage1." or "stage2.".
-class StageKeys {
-  public:
-    StageKeys(Config& config, std::string prefix) : config_(config), prefix_(std::move(prefix)) {}
-    void number(const char* key, double least, double most, float& value) {
-        read_number(config_, prefix_ + key, least, most, value);
-    }
-    void integer(const char* key, int least, int most, int& value) {
-        read_integer(config_, prefix_ + key, least, most, value);
-    }
-    void search(MatchSearch& search) {
-        integer("patch_rows", 1, 64, search.size.rows);
-        integer("patch_cols", 1, 64, search.size.cols);
-        integer("patch_slots", 1, 32, search.size.slots);
-        integer("step_px", 1, 64, search.step_px);
-        integer("window_px", 0, 64, search.window_px);
-        integer("window_slots", 0, 64, search.window_slots);
-        number("sigma", 1e-4, 1e3, search.sigma);
-    }
-    void admm(MatchAdmmOptions& admm) {
-        integer("iterations", 0, 10000, admm.iterations);
-        number("rho", 1e-4, 1e6, admm.rho);
-        integer("cg_iterations", 1, 10000, admm.cg_iterations);
-        number("cg_tolerance", 0, 1, admm.cg_tolerance);
-    }
+constexpr KeyRange kMatches{0, 1000};
+constexpr KeyRange kGamma{0, 1e4};
 
-  private:
-    Config& config_;
-    std::string prefix_;
-};
+void read_search(const KeyReader& read, MatchSearch& search) {
+    constexpr KeyRange kSide{1, 64};
+    constexpr KeyRange kWindow{0, 64};
+    read({"patch_rows", kSide, "pixels", "rows of a patch"}, search.size.rows);
+    read({"patch_cols", kSide, "pixels", "columns of a patch"}, search.size.cols);
+    read({"patch_slots", {1, 32}, "slots", "slots of a patch"}, search.size.slots);
+    read({"step_px", kSide, "pixels", "stride of reference patches"}, search.step_px);
+    read({"window_px", kWindow, "pixels", "search radius in rows and columns"}, search.window_px);
+    read({"window_slots", kWindow, "slots", "search radius in slots"}, search.window_slots);
+    read({"sigma", {1e-4, 1e3}, "flux", "sigma of Eq. 3"}, search.sigma);
+}
+
+void read_admm(const KeyReader& read, MatchAdmmOptions& admm) {
+    read({"iterations", {0, 10000}, "", "iterations of ADMM"}, admm.iterations);
+    read({"rho", {1e-4, 1e6}, "", "penalty of ADMM: the larger, the smaller the steps"}, admm.rho);
+    read({"cg_iterations", {1, 10000}, "", "most steps of conjugate gradients in each"},
+         admm.cg_iterations);
+    read({"cg_tolerance", {0, 1}, "", "tolerance of the residual, relative to the right side"},
+         admm.cg_tolerance);
+}
 
 }  // namespace
 
 void read_options(Config& config, Portz2013Options& options) {
-    read_number(config, "values_per_flux", 1e-3, 1e6, options.values_per_flux);
-    StageKeys first(config, "stage1.");
-    first.search(options.stage1.search);
-    first.integer("max_matches", 0, 1000, options.stage1.max_matches);
-    first.number("gamma", 0, 1e4, options.stage1.gamma);
-    first.admm(options.stage1.admm);
-    StageKeys second(config, "stage2.");
-    second.search(options.stage2.search);
-    second.number("search_weight", 0, 1e3, options.stage2.search.weight);
-    second.integer("max_matches", 0, 1000, options.stage2.max_matches);
-    second.number("gamma", 0, 1e4, options.stage2.gamma);
-    second.integer("flow_block_px", 1, 64, options.stage2.flow.block_px);
-    second.integer("flow_radius_slots", 0, 64, options.stage2.flow.radius_slots);
-    second.number("flow_consistency_px", 0, 1e3, options.stage2.flow.consistency_px);
-    second.admm(options.stage2.admm);
-    options.stage2.flow.sigma = options.stage2.search.sigma;
+    const KeyReader read(config);
+    read({"values_per_flux", {1e-3, 1e6}, "1/flux", "of Eq. 1 for light 1.0: unit of rho"},
+         options.values_per_flux);
+    const KeyReader first(config, "stage1.");
+    read_search(first, options.stage1.search);
+    first({"max_matches", kMatches, "", "most matches of a reference patch"},
+          options.stage1.max_matches);
+    first({"gamma", kGamma, "", "weight of differences between matches"}, options.stage1.gamma);
+    read_admm(first, options.stage1.admm);
+    const KeyReader second(config, "stage2.");
+    read_search(second, options.stage2.search);
+    second({"search_weight", {0, 1e3}, "", "factor of the weights of matches by search"},
+           options.stage2.search.weight);
+    second({"max_matches", kMatches, "", "most matches of a patch, of both kinds"},
+           options.stage2.max_matches);
+    second({"gamma", kGamma, "", "weight of differences between matches"}, options.stage2.gamma);
+    FlowMatchOptions& flow = options.stage2.flow;
+    second({"flow_block_px", {1, 64}, "pixels", "side of the blocks that follow the flow"},
+           flow.block_px);
+    second({"flow_radius_slots", {0, 64}, "slots", "reach of a trajectory, either way"},
+           flow.radius_slots);
+    second({"flow_consistency_px", {0, 1e3}, "pixels", "largest error of the flow back"},
+           flow.consistency_px);
+    read_admm(second, options.stage2.admm);
+    flow.sigma = options.stage2.search.sigma;
 }
 
 std::optional<FluxVideo> decode_portz2013(const Measurements& measurements,

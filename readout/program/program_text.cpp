@@ -58,9 +58,9 @@ class Parser {
         std::string_view key;
         int most;
     };
-    static constexpr std::array<FieldRule, kFields> kRules = {{{"tile_rows", 65535},
-                                                               {"tile_cols", 65535},
-                                                               {"period_slots", 65535},
+    static constexpr std::array<FieldRule, kFields> kRules = {{{"tile_rows", kMaxTileSide},
+                                                               {"tile_cols", kMaxTileSide},
+                                                               {"period_slots", kMaxPeriodSlots},
                                                                {"bits_per_pixel", 3}}};
 
     [[noreturn]] void fail(const std::string& problem) const {

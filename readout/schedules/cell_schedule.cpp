@@ -9,21 +9,19 @@
 
 #include "core/error.h"
 #include "readout/schedules/tile_list.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 namespace {
-
-constexpr std::int64_t kLongestPeriod = 65535;
-constexpr std::int64_t kMaxExposures = std::int64_t{1} << 24;  ///< of a stream's tile
 
 std::int64_t period_of(const Cell& cell) {
     std::int64_t period = 1;
     for (const int every : cell.every_slots) {
         period = std::lcm(period, std::int64_t{every});
-        if (period > kLongestPeriod)
+        if (period > kMaxPeriodSlots)
             throw InputError("cell", fmt::format("all pixels together repeat after {} slots or "
                                                  "more; {} are the most",
-                                                 period, kLongestPeriod));
+                                                 period, kMaxPeriodSlots));
     }
     return period;
 }
@@ -37,7 +35,7 @@ ExposureSchedule cell_schedule(const Cell& cell) {
     const std::int64_t period = period_of(cell);
     std::int64_t exposures = 0;
     for (const int every : cell.every_slots) exposures += period / every;
-    if (exposures > kMaxExposures)
+    if (exposures > static_cast<std::int64_t>(kMaxTileExposures))
         throw InputError("cell", fmt::format("the period of {} slots has {} exposures; 2^24 fit a "
                                              "stream",
                                              period, exposures));
@@ -59,12 +57,12 @@ ExposureSchedule cell_schedule(const Cell& cell) {
 
 ExposureSchedule rolling_schedule(const RollingShutter& shutter, int array_rows) {
     const auto [exposure_slots, period_slots, rows_per_slot] = shutter;
-    if (exposure_slots < 1 || exposure_slots > 64 || exposure_slots > period_slots ||
-        period_slots > kLongestPeriod || rows_per_slot < 1 || array_rows < 1)
+    if (exposure_slots < 1 || exposure_slots > kMaxExposureSlots || exposure_slots > period_slots ||
+        period_slots > kMaxPeriodSlots || rows_per_slot < 1 || array_rows < 1)
         throw InputError("rolling shutter",
                          fmt::format("{} slots of {}, {} rows a slot: needs exposures of 1 to 64 "
                                      "slots, periods of these to {}, and 1 row or more",
-                                     exposure_slots, period_slots, rows_per_slot, kLongestPeriod));
+                                     exposure_slots, period_slots, rows_per_slot, kMaxPeriodSlots));
     const auto rows = static_cast<int>(
         std::min<std::int64_t>(std::int64_t{period_slots} * rows_per_slot, array_rows));
     TileList list(rows, 1, period_slots);

@@ -12,7 +12,6 @@
 namespace stipple {
 namespace {
 
-constexpr int kLongestExposure = 64;
 constexpr std::size_t kLineWidth = 96;
 
 struct Store {
@@ -60,10 +59,10 @@ class CodeReader {
                 begin = i;
                 mask = 1;
             } else if (c == store.open) {
-                if (i - begin >= kLongestExposure)
+                if (i - begin >= kMaxExposureSlots)
                     fail(begin % slots.size(),
                          fmt::format("this exposure spans {} slots or more; {} are the most",
-                                     i - begin + 1, kLongestExposure));
+                                     i - begin + 1, kMaxExposureSlots));
                 mask |= std::uint64_t{1} << (i - begin);
             }
         }

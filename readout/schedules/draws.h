@@ -7,12 +7,19 @@
 
 namespace stipple {
 
-/// Random numbers one after the other, for the making of schedules. Each generator has a `plane` of
-/// its own: 0 is `random_schedule`, 1 `tiled_schedule`, 2 `scattered_schedule`, 3
-/// `flutter_schedule`, 4 `hardware_tiled_schedule`.
+/// Whose random numbers: each generator of schedules has its own. 0 is `random_schedule`.
+enum class DrawPlane : std::uint32_t {
+    kTiled = 1,
+    kScattered = 2,
+    kFlutter = 3,
+    kHardwareTiled = 4
+};
+
+/// Random numbers one after the other, for the making of schedules.
 class Draws {
   public:
-    Draws(std::uint64_t seed, std::uint32_t plane) : seed_(seed), plane_(plane) {}
+    Draws(std::uint64_t seed, DrawPlane plane)
+        : seed_(seed), plane_(static_cast<std::uint32_t>(plane)) {}
 
     /// An integer in [0, range).
     std::uint32_t below(std::size_t range) {

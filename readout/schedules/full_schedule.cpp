@@ -5,18 +5,13 @@
 #include "core/error.h"
 
 namespace stipple {
-namespace {
-
-constexpr int kLongestExposure = 64;  ///< slots: the bits of `Exposure::open_slots`
-
-}  // namespace
 
 ExposureSchedule full_schedule(int open_slots, int period_slots) {
-    if (open_slots < 1 || open_slots > kLongestExposure || open_slots > period_slots)
+    if (open_slots < 1 || open_slots > kMaxExposureSlots || open_slots > period_slots)
         throw InputError("exposure schedule",
                          fmt::format("{} open slots in a period of {}: needs 1 to {} open slots "
                                      "and a period not shorter",
-                                     open_slots, period_slots, kLongestExposure));
+                                     open_slots, period_slots, kMaxExposureSlots));
     return {1, 1, period_slots, {0, 1}, {{0, open_without_gap(open_slots)}}};
 }
 

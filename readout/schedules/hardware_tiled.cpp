@@ -12,9 +12,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint32_t kPlane = 4;   ///< of Draws
-constexpr int kLongestExposure = 64;  ///< slots: the bits of `Exposure::open_slots`
-constexpr int kFewGroups = 12;        ///< the least side of a scattered tile
+constexpr int kFewGroups = 12;  ///< the least side of a scattered tile
 
 void fail(const std::string& problem) {
     throw InputError("hardware_tiled", problem);
@@ -25,9 +23,9 @@ void check_lengths(std::span<const int> lengths) {
         fail(fmt::format("exposure_slots holds {} lengths; give 1 to {}", lengths.size(),
                          kMaxHardwareLengths));
     for (const int length : lengths)
-        if (length < 1 || length > kLongestExposure)
+        if (length < 1 || length > kMaxExposureSlots)
             fail(fmt::format("exposure_slots: {} slots are outside 1..{}", length,
-                             kLongestExposure));
+                             kMaxExposureSlots));
     const int period = std::accumulate(lengths.begin(), lengths.end(), 0);
     if (period > kMaxHardwarePeriod)
         fail(fmt::format("exposure_slots are {} slots together; at most {} are designed for",
@@ -111,7 +109,7 @@ ExposureSchedule hardware_tiled_schedule(const HardwareTile& tile,
                                          std::span<const int> exposure_slots, std::uint64_t seed) {
     check_lengths(exposure_slots);
     const GroupGrid grid = grid_of(tile);
-    Draws draws(seed, kPlane);
+    Draws draws(seed, DrawPlane::kHardwareTiled);
     const CodeSet codes(exposure_slots, draws);
     return schedule_of(design(tile, grid, codes, draws), grid, codes);
 }

@@ -11,8 +11,6 @@
 namespace stipple {
 namespace {
 
-constexpr int kMaxSide = 65535;
-constexpr int kMaxChannels = 4096;
 constexpr double kSigma = 0.8;  ///< groups; of square groups (docs/hardware_schedules.md)
 constexpr std::int32_t kFullWeight = 256;
 
@@ -32,11 +30,11 @@ void check(const char* key, int value, int most) {
 
 GroupGrid grid_of(const HardwareTile& tile) {
     const ColumnAddressing& addressing = tile.addressing;
-    check("channels", addressing.channels, kMaxChannels);
+    check("channels", addressing.channels, ColumnAddressing::kMaxChannels);
     GroupGrid grid;
     if (addressing.kind == ColumnAddressing::Kind::kGroup) {
-        check("group_cols", addressing.group_cols, kMaxSide);
-        check("group_rows", addressing.group_rows, kMaxSide);
+        check("group_cols", addressing.group_cols, ColumnAddressing::kMaxSide);
+        check("group_rows", addressing.group_rows, ColumnAddressing::kMaxSide);
         grid.group_cols = addressing.group_cols;
         grid.group_rows = addressing.group_rows;
     }

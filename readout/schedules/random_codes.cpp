@@ -14,13 +14,8 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint32_t kScatterPlane = 2;  ///< of the random numbers (draws.h)
-constexpr std::uint32_t kFlutterPlane = 3;
-constexpr int kLongestExposure = 64;
-constexpr int kLongestPeriod = 65535;
-
 void check_tile(int rows, int cols) {
-    if (rows < 1 || cols < 1 || rows > 65535 || cols > 65535)
+    if (rows < 1 || cols < 1 || rows > kMaxTileSide || cols > kMaxTileSide)
         throw InputError("random codes", fmt::format("tile {} x {} is outside 1..65535 rows and "
                                                      "columns",
                                                      rows, cols));
@@ -58,20 +53,20 @@ ExposureSchedule scattered_schedule(const Scatter& scatter, std::span<const int>
     constexpr int kClosed = 0;  // an item of one slot
     check_tile(scatter.tile_rows, scatter.tile_cols);
     for (const int length : exposure_slots)
-        if (length < 1 || length > kLongestExposure)
+        if (length < 1 || length > kMaxExposureSlots)
             throw InputError("scattered exposures",
                              fmt::format("exposure of {} slots is outside 1..64", length));
     const auto open =
         std::accumulate(exposure_slots.begin(), exposure_slots.end(), std::int64_t{0});
-    if (open < 1 || open > scatter.period_slots || scatter.period_slots > kLongestPeriod)
+    if (open < 1 || open > scatter.period_slots || scatter.period_slots > kMaxPeriodSlots)
         throw InputError("scattered exposures",
                          fmt::format("exposures of {} slots in a period of {}: needs 1 or more, a "
                                      "period not shorter, and at most {}",
-                                     open, scatter.period_slots, kLongestPeriod));
+                                     open, scatter.period_slots, kMaxPeriodSlots));
     std::vector<int> items(exposure_slots.begin(), exposure_slots.end());
     items.resize(items.size() + static_cast<std::size_t>(scatter.period_slots - open), kClosed);
     TileList list(scatter.tile_rows, scatter.tile_cols, scatter.period_slots);
-    Draws draws(seed, kScatterPlane);
+    Draws draws(seed, DrawPlane::kScattered);
     for (int pixel = 0; pixel < scatter.tile_rows * scatter.tile_cols; ++pixel) {
         shuffle(draws, items);
         const auto period = static_cast<std::size_t>(scatter.period_slots);
@@ -88,17 +83,17 @@ ExposureSchedule scattered_schedule(const Scatter& scatter, std::span<const int>
 ExposureSchedule flutter_schedule(const Flutter& flutter, std::uint64_t seed) {
     check_tile(flutter.tile_rows, flutter.tile_cols);
     const int max_open = flutter.code_slots - (flutter.complement ? 1 : 0);
-    if (flutter.code_slots < 1 || flutter.code_slots > kLongestExposure || flutter.open_slots < 1 ||
-        flutter.open_slots > max_open || flutter.codes < 1 ||
-        flutter.codes > kLongestPeriod / flutter.code_slots)
+    if (flutter.code_slots < 1 || flutter.code_slots > kMaxExposureSlots ||
+        flutter.open_slots < 1 || flutter.open_slots > max_open || flutter.codes < 1 ||
+        flutter.codes > kMaxPeriodSlots / flutter.code_slots)
         throw InputError(
             "flutter", fmt::format("{} codes of {} slots with {} open{}: needs 1 to {} slots, 1 "
                                    "to {} of them open, and at most {} slots in all",
                                    flutter.codes, flutter.code_slots, flutter.open_slots,
-                                   flutter.complement ? " and a complement" : "", kLongestExposure,
-                                   max_open, kLongestPeriod));
+                                   flutter.complement ? " and a complement" : "", kMaxExposureSlots,
+                                   max_open, kMaxPeriodSlots));
     TileList list(flutter.tile_rows, flutter.tile_cols, flutter.codes * flutter.code_slots);
-    Draws draws(seed, kFlutterPlane);
+    Draws draws(seed, DrawPlane::kFlutter);
     const std::uint64_t all = open_without_gap(flutter.code_slots);
     for (int pixel = 0; pixel < flutter.tile_rows * flutter.tile_cols; ++pixel) {
         for (int code = 0; code < flutter.codes; ++code) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <array>
+#include <iterator>
 
 #include "core/error.h"
+#include "core/key_reader.h"
 #include "core/memory_limit.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
@@ -18,30 +20,37 @@
 namespace stipple {
 namespace {
 
-constexpr int kLongestExposure = 64;  ///< slots: the bits of `Exposure::open_slots`
-constexpr int kLongestPeriod = 65535;
-constexpr std::size_t kMaxLengths = 255;
-constexpr std::size_t kLongestName = 64;                ///< bytes in a stream header
-constexpr std::size_t kMaxRandomExposures = 1U << 25U;  ///< of a stream (docs/stream_format.md)
-constexpr std::size_t kMaxTileExposures = 1U << 24U;    ///< the same
-constexpr int kLargestTileSide = 256;
-constexpr int kMaxChannels = 4096;  ///< of a sensor
+constexpr KeyRange kExposure{1, kMaxExposureSlots};
+constexpr KeyRange kPeriod{1, kMaxPeriodSlots};
+constexpr ConfigKey kOpenSlots{"open_slots", kExposure, "slots", "open slots of an exposure"};
+constexpr ConfigKey kPeriodSlots{"period_slots", kPeriod, "slots", "period of the schedule"};
+
+/// What a schedule is made for.
+struct Made {
+    FrameShape shape;
+    std::uint64_t seed;
+    ColumnAddressing addressing;
+};
 
 std::vector<int> read_exposure_slots(Config& config) {
-    constexpr char kKey[] = "exposure_slots";
-    const std::vector<int> paper(std::begin(kPaperExposureSlots), std::end(kPaperExposureSlots));
-    std::vector<int> lengths = config.integers(kKey, paper, 1, kLongestExposure);
-    if (lengths.empty() || lengths.size() > kMaxLengths)
-        throw InputError(config.place(kKey), fmt::format("holds {} lengths; give 1 to {}",
-                                                         lengths.size(), kMaxLengths));
+    std::vector<int> lengths(std::begin(kPaperExposureSlots), std::end(kPaperExposureSlots));
+    const ConfigKey key{"exposure_slots", kExposure, "slots", "lengths of a pixel's exposures"};
+    const KeyReader read(config);
+    read(key, lengths);
+    if (lengths.empty() || lengths.size() > kMaxTiledLengths)
+        throw InputError(config.place(key.name), fmt::format("holds {} lengths; give 1 to {}",
+                                                             lengths.size(), kMaxTiledLengths));
     return lengths;
 }
 
-int read_int(Config& config, const char* key, int fallback, int most) {
-    return static_cast<int>(config.integer(key, fallback, 1, most));
+void read_tile_size(Config& config, KeyRange range, int& rows, int& cols) {
+    const KeyReader read(config);
+    read({"tile_rows", range, "pixels", "rows of the tile"}, rows);
+    read({"tile_cols", range, "pixels", "columns of the tile"}, cols);
 }
 
-NamedSchedule read_random(Config& config, FrameShape shape, std::uint64_t seed) {
+NamedSchedule read_random(Config& config, const Made& made) {
+    const FrameShape shape = made.shape;
     std::vector<int> lengths = read_exposure_slots(config);
     if (shape.pixels() * lengths.size() > kMaxRandomExposures)
         throw InputError(config.place("kind"),
@@ -51,42 +60,40 @@ NamedSchedule read_random(Config& config, FrameShape shape, std::uint64_t seed) 
     // It is kept twice: by the sensor, and in the header of the stream.
     check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.place("kind"),
                  fmt::format("random exposures of {} x {} pixels", shape.rows, shape.cols));
-    ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, seed);
+    ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, made.seed);
     return {.name = "random",
-            .source = {ScheduleSource::Kind::kRandom, std::move(lengths), seed},
+            .source = {ScheduleSource::Kind::kRandom, std::move(lengths), made.seed},
             .schedule = std::move(schedule)};
 }
 
-NamedSchedule read_tiled(Config& config, std::uint64_t seed) {
-    const int rows = read_int(config, "tile_rows", 16, kLargestTileSide);
-    const int cols = read_int(config, "tile_cols", 16, kLargestTileSide);
+NamedSchedule read_tiled(Config& config, const Made& made) {
+    int rows = 16, cols = 16;
+    read_tile_size(config, {1, kMaxTiledSide}, rows, cols);
     const std::vector<int> lengths = read_exposure_slots(config);
-    return {"tiled", {}, tiled_schedule(rows, cols, lengths, seed)};
+    return {"tiled", {}, tiled_schedule(rows, cols, lengths, made.seed)};
 }
 
-NamedSchedule read_full(Config& config) {
-    const int open_slots = read_int(config, "open_slots", 4, kLongestExposure);
-    const int period_slots = read_int(config, "period_slots", 4, kLongestPeriod);
+NamedSchedule read_full(Config& config, const Made& /*made*/) {
+    const KeyReader read(config);
+    int open_slots = 4, period_slots = 4;
+    read(kOpenSlots, open_slots);
+    read(kPeriodSlots, period_slots);
     if (open_slots > period_slots)
-        throw InputError(config.place("open_slots"),
+        throw InputError(config.place(kOpenSlots.name),
                          fmt::format("{} is more than period_slots, {}", open_slots, period_slots));
     return {"full", {}, full_schedule(open_slots, period_slots)};
 }
 
-struct Limits {
-    int least;
-    int most;
-};
-
 /// One value for each of `pixels` pixels, or one for all.
-std::vector<int> read_per_pixel(Config& config, const char* key, int fallback, Limits limits,
+std::vector<int> read_per_pixel(Config& config, const ConfigKey& key, int fallback,
                                 std::size_t pixels) {
-    std::vector<int> values = config.integers(key, {fallback}, limits.least, limits.most);
+    std::vector<int> values = config.integers(key, {fallback});
     if (values.size() == 1) values.resize(pixels, values.front());
     if (values.size() != pixels)
-        throw InputError(config.place(key), fmt::format("holds {} values; give one for each of the "
-                                                        "{} pixels of the cell, or one for all",
-                                                        values.size(), pixels));
+        throw InputError(config.place(key.name),
+                         fmt::format("holds {} values; give one for each of the {} pixels of the "
+                                     "cell, or one for all",
+                                     values.size(), pixels));
     return values;
 }
 
@@ -106,106 +113,93 @@ ExposureSchedule at_key(const Config& config, const char* key, const Make& make)
     }
 }
 
-NamedSchedule read_cell(Config& config) {
+NamedSchedule read_cell(Config& config, const Made& /*made*/) {
     Cell cell;
-    cell.rows = read_int(config, "tile_rows", 1, kLargestTileSide);
-    cell.cols = read_int(config, "tile_cols", 1, kLargestTileSide);
+    read_tile_size(config, {1, kMaxTiledSide}, cell.rows, cell.cols);
     const auto pixels = static_cast<std::size_t>(cell.rows) * static_cast<std::size_t>(cell.cols);
-    cell.exposure_slots =
-        read_per_pixel(config, "exposure_slots", 4, {1, kLongestExposure}, pixels);
-    cell.every_slots = read_per_pixel(config, "every_slots", 4, {1, kLongestPeriod}, pixels);
-    cell.first_slots = read_per_pixel(config, "first_slots", 0, {0, kLongestPeriod}, pixels);
+    cell.exposure_slots = read_per_pixel(
+        config,
+        {"exposure_slots", kExposure, "slots", "length of the exposures; a list: of each pixel"}, 4,
+        pixels);
+    cell.every_slots = read_per_pixel(
+        config, {"every_slots", kPeriod, "slots", "distance of exposures; a list: of each pixel"},
+        4, pixels);
+    cell.first_slots = read_per_pixel(
+        config,
+        {"first_slots", {0, kMaxPeriodSlots}, "slots", "begin of the first; a list: of each pixel"},
+        0, pixels);
     return {"cell", {}, at_key(config, "every_slots", [&] { return cell_schedule(cell); })};
 }
 
-NamedSchedule read_rolling(Config& config, FrameShape shape) {
-    RollingShutter shutter;
-    shutter.exposure_slots = read_int(config, "exposure_slots", 4, kLongestExposure);
-    shutter.period_slots = read_int(config, "period_slots", 4, kLongestPeriod);
-    const auto rows = static_cast<int>(config.integer("rows_per_slot", 0, 0, kLongestPeriod));
-    shutter.rows_per_slot =
-        rows > 0 ? rows : (shape.rows + shutter.period_slots - 1) / shutter.period_slots;
+NamedSchedule read_rolling(Config& config, const Made& made) {
+    const KeyReader read(config);
+    RollingShutter shutter{.exposure_slots = 4, .period_slots = 4, .rows_per_slot = 0};
+    read({"exposure_slots", kExposure, "slots", "open slots of an exposure"},
+         shutter.exposure_slots);
+    read(kPeriodSlots, shutter.period_slots);
+    read({"rows_per_slot", {0, kMaxTileSide}, "rows", "begin in a slot; 0: all once a period"},
+         shutter.rows_per_slot);
+    if (shutter.rows_per_slot == 0)
+        shutter.rows_per_slot = (made.shape.rows + shutter.period_slots - 1) / shutter.period_slots;
     return {"rolling", {}, at_key(config, "exposure_slots", [&] {
-                return rolling_schedule(shutter, shape.rows);
+                return rolling_schedule(shutter, made.shape.rows);
             })};
 }
 
-NamedSchedule read_scattered(Config& config, std::uint64_t seed) {
-    Scatter scatter;
-    scatter.tile_rows = read_int(config, "tile_rows", 16, kLargestTileSide);
-    scatter.tile_cols = read_int(config, "tile_cols", 16, kLargestTileSide);
-    scatter.period_slots = read_int(config, "period_slots", 16, kLongestPeriod);
-    scatter.wrap = config.boolean("wrap", true);
+NamedSchedule read_scattered(Config& config, const Made& made) {
+    const KeyReader read(config);
+    Scatter scatter{.tile_rows = 16, .tile_cols = 16, .period_slots = 16};
+    read_tile_size(config, {1, kMaxTiledSide}, scatter.tile_rows, scatter.tile_cols);
+    read(kPeriodSlots, scatter.period_slots);
+    read({"wrap", {}, "", "whether exposures may go on beyond the period"}, scatter.wrap);
     const std::vector<int> lengths = read_exposure_slots(config);
     return {"scattered", {}, at_key(config, "exposure_slots", [&] {
-                return scattered_schedule(scatter, lengths, seed);
+                return scattered_schedule(scatter, lengths, made.seed);
             })};
 }
 
-NamedSchedule read_flutter(Config& config, std::uint64_t seed) {
-    Flutter flutter;
-    flutter.tile_rows = read_int(config, "tile_rows", 16, kLargestTileSide);
-    flutter.tile_cols = read_int(config, "tile_cols", 16, kLargestTileSide);
-    flutter.code_slots = read_int(config, "code_slots", 8, kLongestExposure);
-    flutter.open_slots = read_int(config, "open_slots", 4, kLongestExposure);
-    flutter.codes = read_int(config, "codes", 1, kLongestPeriod);
-    flutter.complement = config.boolean("complement", false);
+NamedSchedule read_flutter(Config& config, const Made& made) {
+    const KeyReader read(config);
+    Flutter flutter{.tile_rows = 16, .tile_cols = 16, .code_slots = 8, .open_slots = 4};
+    read_tile_size(config, {1, kMaxTiledSide}, flutter.tile_rows, flutter.tile_cols);
+    read({"code_slots", kExposure, "slots", "length of a code"}, flutter.code_slots);
+    read(kOpenSlots, flutter.open_slots);
+    read({"codes", kPeriod, "", "codes in succession before they repeat"}, flutter.codes);
+    read({"complement", {}, "", "whether the second charge store takes the closed slots"},
+         flutter.complement);
     check_exposures(config, "codes",
                     std::uint64_t{2} * static_cast<std::uint64_t>(flutter.tile_rows) *
                         static_cast<std::uint64_t>(flutter.tile_cols) *
                         static_cast<std::uint64_t>(flutter.codes));
     return {"flutter", {}, at_key(config, "open_slots", [&] {
-                return flutter_schedule(flutter, seed);
+                return flutter_schedule(flutter, made.seed);
             })};
 }
 
-NamedSchedule read_code(Config& config) {
-    const TileSize size{.rows = read_int(config, "tile_rows", 1, kLongestPeriod),
-                        .cols = read_int(config, "tile_cols", 1, kLongestPeriod),
-                        .period_slots = read_int(config, "period_slots", 1, kLongestPeriod)};
-    const std::vector<std::string> code = config.texts("code");
+NamedSchedule read_code(Config& config, const Made& /*made*/) {
+    TileSize size{.rows = 1, .cols = 1, .period_slots = 1};
+    read_tile_size(config, {1, kMaxTileSide}, size.rows, size.cols);
+    const KeyReader read(config);
+    read(kPeriodSlots, size.period_slots);
+    const ConfigKey key{"code", {}, "", "exposure code: a text per pixel, a character per slot"};
+    const std::vector<std::string> code = config.texts(key);
     if (code.size() * static_cast<std::size_t>(size.period_slots) > kMaxCodeSlots)
-        throw InputError(config.place("code"),
+        throw InputError(config.place(key.name),
                          fmt::format("{} pixels of {} slots are more than the 2^24 characters that "
                                      "a code may have; use a smaller tile",
                                      code.size(), size.period_slots));
-    return {"code", {}, code_schedule(size, code, config.place("code"))};
-}
-
-/// What a schedule is made for.
-struct Made {
-    FrameShape shape;
-    std::uint64_t seed;
-    ColumnAddressing addressing;
-};
-
-ColumnAddressing read_addressing(Config& config, ColumnAddressing addressing) {
-    using enum ColumnAddressing::Kind;
-    const std::string kind =
-        config.choice("addressing", addressing.kind == kGroup ? "group" : "skip_channel",
-                      {"skip_channel", "group"});
-    addressing.kind = kind == "group" ? kGroup : kSkipChannel;
-    addressing.channels = read_int(config, "channels", addressing.channels, kMaxChannels);
-    addressing.group_cols = read_int(config, "group_cols", addressing.group_cols, kLongestPeriod);
-    addressing.group_rows = read_int(config, "group_rows", addressing.group_rows, kLongestPeriod);
-    return addressing;
+    return {"code", {}, code_schedule(size, code, config.place(key.name))};
 }
 
 NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
-    using enum TileArrangement;
-    const auto side = [&](const char* key) {
-        return static_cast<int>(config.integer(key, 0, 0, kLongestHardwareSide));
-    };
-    HardwareTile tile{.addressing = read_addressing(config, made.addressing),
-                      .tile_rows = side("tile_rows"),
-                      .tile_cols = side("tile_cols"),
-                      .array_cols = made.shape.cols};
-    const std::string arrangement =
-        config.choice("arrangement", "auto", {"auto", "lattice", "scatter", "random"});
-    tile.arrangement = arrangement == "lattice"   ? kLattice
-                       : arrangement == "scatter" ? kScatter
-                       : arrangement == "random"  ? kRandom
-                                                  : kAuto;
+    static constexpr std::array<std::string_view, 4> kArrangements{"auto", "lattice", "scatter",
+                                                                   "random"};
+    const KeyReader read(config);
+    HardwareTile tile{.addressing = made.addressing, .array_cols = made.shape.cols};
+    read_addressing(read, tile.addressing);
+    read_tile_size(config, {0, kLongestHardwareSide}, tile.tile_rows, tile.tile_cols);
+    read({"arrangement", {}, "", "arrangement of the codes in the tile", kArrangements},
+         tile.arrangement);
     const std::vector<int> lengths = read_exposure_slots(config);
     return {"hardware_tiled", {}, at_key(config, "kind", [&] {
                 return hardware_tiled_schedule(tile, lengths, made.seed);
@@ -213,38 +207,47 @@ NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
 }
 
 struct Kind {
-    const char* name;
-    std::function<NamedSchedule(Config&, const Made&)> read;
+    std::string_view name;
+    NamedSchedule (*read)(Config& config, const Made& made);
 };
-
-const std::vector<Kind>& kinds() {
-    static const std::vector<Kind> all = {
-        {"random", [](Config& c, const Made& m) { return read_random(c, m.shape, m.seed); }},
-        {"tiled", [](Config& c, const Made& m) { return read_tiled(c, m.seed); }},
-        {"hardware_tiled", read_hardware_tiled},
-        {"full", [](Config& c, const Made&) { return read_full(c); }},
-        {"cell", [](Config& c, const Made&) { return read_cell(c); }},
-        {"rolling", [](Config& c, const Made& m) { return read_rolling(c, m.shape); }},
-        {"scattered", [](Config& c, const Made& m) { return read_scattered(c, m.seed); }},
-        {"flutter", [](Config& c, const Made& m) { return read_flutter(c, m.seed); }},
-        {"code", [](Config& c, const Made&) { return read_code(c); }},
-    };
-    return all;
-}
+constexpr Kind kKinds[] = {
+    {"random", read_random},
+    {"tiled", read_tiled},
+    {"hardware_tiled", read_hardware_tiled},
+    {"full", read_full},
+    {"cell", read_cell},
+    {"rolling", read_rolling},
+    {"scattered", read_scattered},
+    {"flutter", read_flutter},
+    {"code", read_code},
+};
 
 }  // namespace
 
+std::vector<std::string_view> schedule_kinds() {
+    std::vector<std::string_view> names;
+    for (const Kind& kind : kKinds) names.push_back(kind.name);
+    return names;
+}
+
+std::vector<KnownKey> known_schedule_keys(std::string_view kind) {
+    // The code is for the kind of that name, which has no default.
+    Config config({fmt::format("kind={}", kind), "code=[\"A\"]"});
+    static_cast<void>(read_schedule(config, {1, 1, 1}, 0));
+    return config.known_keys();
+}
+
 NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
                             const ColumnAddressing& addressing) {
-    std::vector<std::string> names;
-    for (const Kind& kind : kinds()) names.emplace_back(kind.name);
-    const std::string kind = config.choice("kind", "random", names);
-    const auto found = std::ranges::find(kinds(), kind, &Kind::name);
-    NamedSchedule result = found->read(config, {shape, seed, addressing});
-    result.name = config.text("name", kind);
-    if (result.name.size() > kLongestName)
-        throw InputError(config.place("name"), fmt::format("has {} bytes; at most {} fit a stream",
-                                                           result.name.size(), kLongestName));
+    const auto names = schedule_kinds();
+    const Kind& kind = kKinds[config.choice({"kind", {}, "", "kind of schedule", names}, 0)];
+    NamedSchedule result = kind.read(config, {shape, seed, addressing});
+    const ConfigKey name{"name", {}, "", "name in messages and in the header of streams"};
+    result.name = config.text(name, kind.name);
+    if (result.name.size() > kMaxNameBytes)
+        throw InputError(config.place(name.name),
+                         fmt::format("has {} bytes; at most {} fit a stream", result.name.size(),
+                                     kMaxNameBytes));
     return result;
 }
 

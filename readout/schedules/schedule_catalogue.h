@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/config.h"
 #include "core/exposure_schedule.h"
@@ -25,6 +27,12 @@ struct NamedSchedule {
 /// else. \throws InputError naming file, line and key.
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
                                           const ColumnAddressing& addressing);
+
+/// What `kind` may be.
+[[nodiscard]] std::vector<std::string_view> schedule_kinds();
+
+/// The keys of schedules of a kind. Precondition: one of `schedule_kinds`.
+[[nodiscard]] std::vector<KnownKey> known_schedule_keys(std::string_view kind);
 
 /// For a sensor that skips pixel by pixel, the default of ColumnAddressing.
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed);

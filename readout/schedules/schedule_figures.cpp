@@ -20,9 +20,8 @@ void count_exposures(const ExposureSchedule& schedule, ScheduleFigures& figures)
 
 void count_due_pixels(const ExposureSchedule& schedule, FrameShape shape,
                       ScheduleFigures& figures) {
-    constexpr std::int64_t kLongestExposure = 64;
     const std::int64_t period = schedule.period_slots();
-    const std::int64_t first = (kLongestExposure + period - 1) / period * period;
+    const std::int64_t first = (kMaxExposureSlots + period - 1) / period * period;
     std::uint64_t total = 0;
     figures.min_due = std::numeric_limits<std::uint64_t>::max();
     for (std::int64_t slot = first; slot < first + period; ++slot) {

@@ -12,10 +12,7 @@ namespace stipple {
 namespace {
 
 constexpr char kPlace[] = "tiled schedule";
-constexpr int kLargestTileSide = 256;  ///< with 255 lengths within 2^24 exposures, a stream's most
-constexpr std::size_t kMaxLengths = 255;
 constexpr std::size_t kMaxDrawn = 1U << 23U;  ///< well under a second
-constexpr std::uint32_t kTilePlane = 1;       ///< apart from the draws of `random_schedule`
 
 int period_of(std::span<const int> lengths) {
     return std::accumulate(lengths.begin(), lengths.end(), 0);
@@ -71,15 +68,14 @@ class SlotCounts {
 };
 
 void check(int tile_rows, int tile_cols, std::span<const int> lengths) {
-    if (tile_rows < 1 || tile_cols < 1 || tile_rows > kLargestTileSide ||
-        tile_cols > kLargestTileSide)
+    if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTiledSide || tile_cols > kMaxTiledSide)
         throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..{} rows and columns",
-                                             tile_rows, tile_cols, kLargestTileSide));
-    if (lengths.empty() || lengths.size() > kMaxLengths)
+                                             tile_rows, tile_cols, kMaxTiledSide));
+    if (lengths.empty() || lengths.size() > kMaxTiledLengths)
         throw InputError(kPlace,
-                         fmt::format("{} lengths; give 1 to {}", lengths.size(), kMaxLengths));
+                         fmt::format("{} lengths; give 1 to {}", lengths.size(), kMaxTiledLengths));
     for (const int length : lengths)
-        if (length < 1 || length > 64)
+        if (length < 1 || length > kMaxExposureSlots)
             throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
 }
 
@@ -130,7 +126,7 @@ ExposureSchedule tiled_schedule(int tile_rows, int tile_cols, std::span<const in
     const int period_slots = period_of(exposure_slots);
     Tile tile{exposure_slots.size(), std::vector<Exposure>(pixels * exposure_slots.size())};
     SlotCounts counts(static_cast<std::size_t>(period_slots));
-    Draws draws(seed, kTilePlane);
+    Draws draws(seed, DrawPlane::kTiled);
     for (std::size_t p = 0; p < pixels; ++p) {
         draw_pixel(draws, exposure_slots, tile.pixel(p));
         counts.add(tile.pixel(p));

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "core/exposure_schedule.h"
 
 namespace stipple {
+
+/// Pixels along the sides of such a tile and lengths of a pixel: 2^24 exposures, a stream's most.
+inline constexpr int kMaxTiledSide = 256;
+inline constexpr std::size_t kMaxTiledLengths = 255;
 
 /// A seeded tile in which every pixel repeats its own permutation of `exposure_slots` without
 /// gaps, and the number of pixels due per slot is as even as possible over the period.

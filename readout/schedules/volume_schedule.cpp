@@ -10,8 +10,6 @@
 namespace stipple {
 namespace {
 
-constexpr int kLongestExposure = 64;
-constexpr int kLongestPeriod = 65535;
 constexpr double kWhite = 255;  // of masks that are stored as pictures
 
 struct TilePixel {
@@ -39,12 +37,12 @@ void add_mask(const Masks& masks, TilePixel pixel, TileList& list) {
     for (int slot = 0; slot < masks.volume.layers; ++slot) {
         if (!is_open(masks, slot, pixel)) continue;
         if (first < 0) first = slot;
-        if (slot - first >= kLongestExposure)
+        if (slot - first >= kMaxExposureSlots)
             throw InputError(
                 masks.place,
                 fmt::format("pixel ({}, {}) slot {}: the exposure from slot {} on spans "
                             "more than {} slots",
-                            pixel.row, pixel.col, slot, first, kLongestExposure));
+                            pixel.row, pixel.col, slot, first, kMaxExposureSlots));
         mask |= std::uint64_t{1} << static_cast<unsigned>(slot - first);
     }
     if (first >= 0) list.add(static_cast<std::uint32_t>(first), mask);
@@ -53,12 +51,12 @@ void add_mask(const Masks& masks, TilePixel pixel, TileList& list) {
 
 int length_at(const NpyVolume& lengths, int layer, TilePixel pixel, std::string_view place) {
     const double value = lengths.at(layer, pixel.row, pixel.col);
-    if (value >= 0 && value <= kLongestExposure && value == static_cast<int>(value))
+    if (value >= 0 && value <= kMaxExposureSlots && value == static_cast<int>(value))
         return static_cast<int>(value);
     throw InputError(place,
                      fmt::format("pixel ({}, {}) exposure {}: {} is no whole number of slots "
                                  "from 0 to {}",
-                                 pixel.row, pixel.col, layer, value, kLongestExposure));
+                                 pixel.row, pixel.col, layer, value, kMaxExposureSlots));
 }
 
 template <typename Visit>
@@ -74,7 +72,7 @@ int checked_period(const NpyVolume& lengths, int period_slots, std::string_view 
         std::int64_t sum = 0;
         for (int layer = 0; layer < lengths.layers; ++layer) {
             sum += length_at(lengths, layer, pixel, place);
-            const int most = period_slots > 0 ? period_slots : kLongestPeriod;
+            const int most = period_slots > 0 ? period_slots : kMaxPeriodSlots;
             if (sum > most)
                 throw InputError(place,
                                  fmt::format("pixel ({}, {}) exposure {}: ends after {} slots;"

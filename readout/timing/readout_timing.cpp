@@ -8,11 +8,12 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/light.h"
 
 namespace stipple {
 namespace {
 
-constexpr int kMaxSide = 65535;  ///< rows or columns of a stream
+constexpr int kMaxSide = kMaxFrameSide;
 
 void require(bool holds, std::string_view sensor, const std::string& constraint) {
     if (!holds) throw InputError(fmt::format("sensor \"{}\": timing", sensor), constraint);

@@ -3,7 +3,9 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <array>
+#include <cstdint>
+#include <string_view>
 
 #include "core/error.h"
 #include "tests/support/temporary_folder.h"
@@ -12,6 +14,8 @@ namespace stipple {
 namespace {
 
 using Texts = std::vector<std::string>;
+
+constexpr std::array<std::string_view, 2> kModes{"fast", "best"};
 
 class ConfigTest : public testing::Test {
   protected:
@@ -22,7 +26,7 @@ class ConfigTest : public testing::Test {
     std::string parse_error(std::string_view text, const Texts& overrides = {}) {
         return message_of<InputError>([&] { parse(text, overrides); });
     }
-    static double number(Config& config) { return config.number("gain", 1, 0, 100); }
+    static double number(Config& config) { return config.number({"gain", {0, 100}}, 1); }
 
     TemporaryFolder folder_;
 };
@@ -31,26 +35,30 @@ TEST_F(ConfigTest, ReadsEveryKindOfValueByItsDottedName) {
     Config config = parse(
         "gain = 2.5\nname = \"paper\"\n[adc]\nbit_depth = 10\ndither = true\n"
         "lengths = [1, 2, 4]\nmode.kind = \"fast\"\n");
-    EXPECT_EQ(config.number("gain", 0, 0, 10), 2.5);
-    EXPECT_EQ(config.text("name", ""), "paper");
-    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 10);
-    EXPECT_TRUE(config.boolean("adc.dither", false));
-    EXPECT_EQ(config.integers("adc.lengths", {}, 1, 64), (std::vector<int>{1, 2, 4}));
-    EXPECT_EQ(config.choice("adc.mode.kind", "best", {"fast", "best"}), "fast");
+    EXPECT_EQ(config.number({"gain", {0, 10}}, 0), 2.5);
+    EXPECT_EQ(config.text({"name"}, ""), "paper");
+    EXPECT_EQ(config.integer({"adc.bit_depth", {1, 16}}, 8), 10);
+    EXPECT_TRUE(config.boolean({"adc.dither"}, false));
+    EXPECT_EQ(config.integers({"adc.lengths", {1, 64}}, {}), (std::vector<int>{1, 2, 4}));
+    EXPECT_EQ(config.choice({.name = "adc.mode.kind", .choices = kModes}, 1), 0U);
     EXPECT_NO_THROW(config.reject_unknown_keys());
 }
 
 TEST_F(ConfigTest, ReadsOneNumberOrAListOfNumbers) {
     Config config = parse("one = 2.5\nmany = [1, 0.5]\nnone = []\n");
-    EXPECT_EQ(config.numbers("one", {}, 0, 10), (std::vector<double>{2.5}));
-    EXPECT_EQ(config.numbers("many", {}, 0, 10), (std::vector<double>{1, 0.5}));
-    EXPECT_EQ(config.numbers("none", {7}, 0, 10), std::vector<double>{});
-    EXPECT_EQ(config.numbers("absent", {7}, 0, 10), std::vector<double>{7});
+    EXPECT_EQ(config.numbers({"one", {0, 10}}, {}), (std::vector<double>{2.5}));
+    EXPECT_EQ(config.numbers({"many", {0, 10}}, {}), (std::vector<double>{1, 0.5}));
+    EXPECT_EQ(config.numbers({"none", {0, 10}}, {7}), std::vector<double>{});
+    EXPECT_EQ(config.numbers({"absent", {0, 10}}, {7}), std::vector<double>{7});
     EXPECT_NO_THROW(config.reject_unknown_keys());
-    expect_parts(message_of<InputError>([&] { return config.numbers("many", {}, 0, 0.75); }),
+    expect_parts(message_of<InputError>([&] {
+                     return config.numbers({"many", {0, 0.75}}, {});
+                 }),
                  {"sensor.toml:2: many", "1 is outside 0..0.75"});
     Config text = parse("a = [1, \"x\"]\n");
-    expect_parts(message_of<InputError>([&] { return text.numbers("a", {}, 0, 10); }),
+    expect_parts(message_of<InputError>([&] {
+                     return text.numbers({"a", {0, 10}}, {});
+                 }),
                  {"sensor.toml:1: a", "a number or a list of numbers"});
 }
 
@@ -65,7 +73,7 @@ TEST_F(ConfigTest, RefusesKeysOfManyParts) {
         expect_parts(parse_error("# more\n" + fmt::format(fmt::runtime(form), dotted(33))),
                      {"sensor.toml:2", "more than 32 parts"});
     }
-    EXPECT_EQ(parse("", {fmt::format("a={{{}=1}}", dotted(33))}).text("a", "").front(), '{');
+    EXPECT_EQ(parse("", {fmt::format("a={{{}=1}}", dotted(33))}).text({"a"}, "").front(), '{');
 }
 
 TEST_F(ConfigTest, RefusesLongKeysWithThoseOfTheirSections) {
@@ -89,12 +97,12 @@ d = '''{0}'
 e = [{1}]
 )",
                                       dots, numbers));
-    EXPECT_EQ(config.text("a", ""), dots + '"' + dots);
-    EXPECT_EQ(config.text("b", ""), dots + '\\');
-    EXPECT_EQ(config.text("c", ""), dots + "\"\n" + dots);
-    EXPECT_EQ(config.text("d", ""), dots + "'\n");
-    EXPECT_EQ(config.integer(dots, 0, 0, 1), 1);
-    EXPECT_EQ(config.numbers("e", {}, 1, 2).size(), 100U);
+    EXPECT_EQ(config.text({"a"}, ""), dots + '"' + dots);
+    EXPECT_EQ(config.text({"b"}, ""), dots + '\\');
+    EXPECT_EQ(config.text({"c"}, ""), dots + "\"\n" + dots);
+    EXPECT_EQ(config.text({"d"}, ""), dots + "'\n");
+    EXPECT_EQ(config.integer({dots, {0, 1}}, 0), 1);
+    EXPECT_EQ(config.numbers({"e", {1, 2}}, {}).size(), 100U);
 }
 
 TEST_F(ConfigTest, TellsWhetherAKeyIsGivenWithoutMakingItKnown) {
@@ -106,22 +114,22 @@ TEST_F(ConfigTest, TellsWhetherAKeyIsGivenWithoutMakingItKnown) {
 
 TEST_F(ConfigTest, FallsBackForAbsentKeys) {
     Config config = parse("");
-    EXPECT_EQ(config.number("a", 0.1, 0, 1), 0.1);
-    EXPECT_EQ(config.integer("b", 7, 0, 9), 7);
-    EXPECT_FALSE(config.boolean("c", false));
-    EXPECT_EQ(config.text("d", "text"), "text");
-    EXPECT_EQ(config.choice("e", "x", {"x", "y"}), "x");
-    EXPECT_EQ(config.integers("f", {3}, 0, 9), std::vector<int>{3});
+    EXPECT_EQ(config.number({"a", {0, 1}}, 0.1), 0.1);
+    EXPECT_EQ(config.integer({"b", {0, 9}}, 7), 7);
+    EXPECT_FALSE(config.boolean({"c"}, false));
+    EXPECT_EQ(config.text({"d"}, "text"), "text");
+    EXPECT_EQ(config.choice({.name = "e", .choices = kModes}, 1), 1U);
+    EXPECT_EQ(config.integers({"f", {0, 9}}, {3}), std::vector<int>{3});
 }
 
 TEST_F(ConfigTest, TakesOneIntegerAsAListAndListsOfTexts) {
     Config config = parse("one = 3\ncode = ['A.', 'Aa']\nmixed = ['A', 1]\n");
-    EXPECT_EQ(config.integers("one", {}, 1, 9), std::vector<int>{3});
-    EXPECT_EQ(config.texts("code"), (Texts{"A.", "Aa"}));
-    EXPECT_TRUE(config.texts("absent").empty());
-    expect_parts(message_of<InputError>([&] { return config.texts("mixed"); }),
+    EXPECT_EQ(config.integers({"one", {1, 9}}, {}), std::vector<int>{3});
+    EXPECT_EQ(config.texts({"code"}), (Texts{"A.", "Aa"}));
+    EXPECT_TRUE(config.texts({"absent"}).empty());
+    expect_parts(message_of<InputError>([&] { return config.texts({"mixed"}); }),
                  {"sensor.toml:3: mixed", "list of texts"});
-    expect_parts(message_of<InputError>([&] { return config.texts("one"); }), {"list of texts"});
+    expect_parts(message_of<InputError>([&] { return config.texts({"one"}); }), {"list of texts"});
 }
 
 TEST_F(ConfigTest, TakesAnIntegerWhereANumberIsNeeded) {
@@ -134,18 +142,18 @@ TEST_F(ConfigTest, OverridesLieOverTheFile) {
                           {"gain=2.5", "adc.bit_depth=10", "adc.lengths=[1,2]", "name=paper",
                            "quoted=\"a b\"", "on=true", "gain=7"});
     EXPECT_EQ(number(config), 7.0);
-    EXPECT_EQ(config.integer("adc.bit_depth", 0, 1, 16), 10);
-    EXPECT_EQ(config.integers("adc.lengths", {}, 1, 64), (std::vector<int>{1, 2}));
-    EXPECT_EQ(config.text("name", ""), "paper");
-    EXPECT_EQ(config.text("quoted", ""), "a b");
-    EXPECT_TRUE(config.boolean("on", false));
+    EXPECT_EQ(config.integer({"adc.bit_depth", {1, 16}}, 0), 10);
+    EXPECT_EQ(config.integers({"adc.lengths", {1, 64}}, {}), (std::vector<int>{1, 2}));
+    EXPECT_EQ(config.text({"name"}, ""), "paper");
+    EXPECT_EQ(config.text({"quoted"}, ""), "a b");
+    EXPECT_TRUE(config.boolean({"on"}, false));
     EXPECT_NO_THROW(config.reject_unknown_keys());
 }
 
 TEST_F(ConfigTest, AnOverrideCannotSmuggleInOtherKeys) {
     Config config = parse("", {"name=1\ngain=5"});
     EXPECT_EQ(number(config), 1.0);
-    EXPECT_EQ(config.text("name", ""), "1\ngain=5");
+    EXPECT_EQ(config.text({"name"}, ""), "1\ngain=5");
 }
 
 TEST_F(ConfigTest, NamesTheLineOfASyntaxError) {
@@ -173,13 +181,18 @@ TEST_F(ConfigTest, NamesPlaceAndKeyOfAWrongType) {
     };
     expect(message_of<InputError>([&] { return number(config); }),
            "sensor.toml:2: gain: ", "needs a number, but is text");
-    expect(message_of<InputError>([&] { return config.integer("bits", 8, 1, 16); }),
+    expect(message_of<InputError>([&] {
+               return config.integer({"bits", {1, 16}}, 8);
+           }),
            "sensor.toml:3: bits: ", "needs an integer, but is a number");
-    expect(message_of<InputError>([&] { return config.integers("list", {}, 1, 16); }),
+    expect(message_of<InputError>([&] {
+               return config.integers({"list", {1, 16}}, {});
+           }),
            "sensor.toml:4: list: ", "needs a list of integers");
-    expect(message_of<InputError>([&] { return config.boolean("on.x", true); }),
+    expect(message_of<InputError>([&] { return config.boolean({"on.x"}, true); }),
            "sensor.toml:6: on.x: ", "needs true or false, but is an integer");
-    expect(message_of<InputError>([&] { return config.text("t", ""); }), "--set t: ", "needs text");
+    expect(message_of<InputError>([&] { return config.text({"t"}, ""); }),
+           "--set t: ", "needs text");
 }
 
 TEST_F(ConfigTest, RefusesValuesOutOfRangeAndTakesTheEnds) {
@@ -192,29 +205,35 @@ TEST_F(ConfigTest, RefusesValuesOutOfRangeAndTakesTheEnds) {
         expect_parts(message_of<InputError>([&] { return number(config); }),
                      {"--set gain: ", "is outside 0..100"});
     }
-    Config config = parse("bits = 17\nlist = [1, -1]\nbig = 9223372036854775807\n");
-    expect_parts(message_of<InputError>([&] { return config.integer("bits", 8, 1, 16); }),
+    Config config = parse(
+        "bits = 17\nlist = [1, -1]\nbig = 9223372036854775807\n"
+        "exact = 9007199254740992");
+    expect_parts(message_of<InputError>([&] {
+                     return config.integer({"bits", {1, 16}}, 8);
+                 }),
                  {"sensor.toml:1: bits: 17 is outside 1..16"});
-    expect_parts(message_of<InputError>([&] { return config.integers("list", {}, 0, 9); }),
+    expect_parts(message_of<InputError>([&] {
+                     return config.integers({"list", {0, 9}}, {});
+                 }),
                  {"sensor.toml:2: list: -1 is outside 0..9"});
-    expect_parts(message_of<InputError>([&] { return config.integers("big", {}, 0, 9); }),
+    expect_parts(message_of<InputError>([&] {
+                     return config.integers({"big", {0, 9}}, {});
+                 }),
                  {"sensor.toml:3: big: ", "is outside 0..9"});
-    EXPECT_EQ(config.integer("big", 0, 0, std::numeric_limits<std::int64_t>::max()),
-              std::numeric_limits<std::int64_t>::max());
+    EXPECT_EQ(config.integer({"exact", {0, 9007199254740992}}, 0), std::int64_t{1} << 53U);
 }
 
 TEST_F(ConfigTest, ListsTheChoices) {
     Config config = parse("mode = \"papr\"");
-    expect_parts(message_of<InputError>([&] {
-                     return config.choice("mode", "x", {"paper", "physical"});
-                 }),
-                 {"sensor.toml:1: mode: \"papr\" is not one of paper, physical"});
+    expect_parts(message_of<InputError>(
+                     [&] { return config.choice({.name = "mode", .choices = kModes}, 0); }),
+                 {"sensor.toml:1: mode: \"papr\" is not one of fast, best"});
 }
 
 TEST_F(ConfigTest, SuggestsTheNearestKnownKeyForAnUnknownOne) {
     Config config = parse("gain = 1\n[adc]\nbit_deptj = 10\n");
     number(config);
-    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 8);
+    EXPECT_EQ(config.integer({"adc.bit_depth", {1, 16}}, 8), 8);
     expect_parts(message_of<InputError>([&] { config.reject_unknown_keys(); }),
                  {"sensor.toml:3: adc.bit_deptj: is unknown", "\"adc.bit_depth\""});
 }
@@ -222,7 +241,7 @@ TEST_F(ConfigTest, SuggestsTheNearestKnownKeyForAnUnknownOne) {
 TEST_F(ConfigTest, ListsTheKnownKeysForAnUnknownOneThatIsLikeNone) {
     Config config = parse("colour = 1");
     number(config);
-    EXPECT_EQ(config.integer("adc.bit_depth", 8, 1, 16), 8);
+    EXPECT_EQ(config.integer({"adc.bit_depth", {1, 16}}, 8), 8);
     expect_parts(message_of<InputError>([&] { config.reject_unknown_keys(); }),
                  {"sensor.toml:1: colour: is unknown; known are adc.bit_depth, gain"});
 }
@@ -252,8 +271,24 @@ TEST_F(ConfigTest, TellsASectionAsLinesThatMakeItAgain) {
     EXPECT_EQ(lines, "clock_hz = 90000000\nrow_timing = 'sequential'\nsettle = [ 19, 2 ]\n");
     Config again = parse(config.as_toml(""));
     EXPECT_EQ(again.as_toml(""), config.as_toml(""));
-    EXPECT_EQ(again.text("name", ""), "a \"b");
-    EXPECT_EQ(again.number("gain", 0, 0, 1), 1e-3);
+    EXPECT_EQ(again.text({"name"}, ""), "a \"b");
+    EXPECT_EQ(again.number({"gain", {0, 1}}, 0), 1e-3);
+}
+
+TEST_F(ConfigTest, TellsWhatItsReadersSaidOfTheKeys) {
+    Config config(Texts{"c=3"});
+    static_cast<void>(config.number({"a", {0, 1}, "m", "length"}, 0.1F));
+    static_cast<void>(config.integer({"b", {1, 9}, "slots"}, 0));  // out of range: none
+    static_cast<void>(config.integers({"c", {1, 9}}, {1, 2}));
+    static_cast<void>(config.choice({.name = "d", .choices = kModes}, 1));
+    static_cast<void>(config.text({"e"}, ""));
+    static_cast<void>(config.boolean({"f"}, true));
+    const auto keys = config.known_keys();
+    const auto expected = std::vector<KnownKey>{
+        {"a", "0.1", "0..1", "m", "length"}, {"b", "", "1..9", "slots", ""},
+        {"c", "[1, 2]", "1..9", "", ""},     {"d", "best", "fast, best", "", ""},
+        {"e", "\"\"", "", "", ""},           {"f", "true", "", "", ""}};
+    EXPECT_EQ(keys, expected);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config.h"
@@ -10,14 +12,16 @@
 namespace stipple {
 namespace {
 
+constexpr std::array<std::string_view, 2> kModes{"paper", "physical"};
+
 void read_all_keys(Config& config) {
-    static_cast<void>(config.number("gain", 1, 0, 100));
-    static_cast<void>(config.integer("adc.bit_depth", 8, 1, 16));
-    static_cast<void>(config.boolean("adc.dither", false));
-    static_cast<void>(config.choice("mode", "paper", {"paper", "physical"}));
-    static_cast<void>(config.integers("exposure_slots", {1}, 1, 64));
-    static_cast<void>(config.numbers("row_noise_e", {}, 0, 100));
-    static_cast<void>(config.text("name", ""));
+    static_cast<void>(config.number({"gain", {0, 100}}, 1));
+    static_cast<void>(config.integer({"adc.bit_depth", {1, 16}}, 8));
+    static_cast<void>(config.boolean({"adc.dither"}, false));
+    static_cast<void>(config.choice({.name = "mode", .choices = kModes}, 0));
+    static_cast<void>(config.integers({"exposure_slots", {1, 64}}, {1}));
+    static_cast<void>(config.numbers({"row_noise_e", {0, 100}}, {}));
+    static_cast<void>(config.text({"name"}, ""));
     config.reject_unknown_keys();
 }
 

@@ -64,7 +64,7 @@ Deviations expose_dim_footage(const SensorParams& params) {
     SamplePacket packet;
     Deviations found;
     const double g = electrons_to_dn(params);
-    const double cut = params.rounding == AdcRounding::kFloor ? 0.5 : 0;
+    const double cut = params.rounding == Rounding::kFloor ? 0.5 : 0;
     for (int slot = 0; slot < video.slots(); ++slot) {
         sensor.expose(video.frame(slot), packet);
         Deviation in_slot;
@@ -94,7 +94,7 @@ const std::vector<SensorParams>& dim_sensors() {
     static const std::vector<SensorParams> sensors = {
         {.name = "paper"},
         {.name = "coarse", .read_noise_e = 20, .bit_depth = 6},
-        {.name = "floor", .read_noise_e = 20, .bit_depth = 6, .rounding = AdcRounding::kFloor}};
+        {.name = "floor", .read_noise_e = 20, .bit_depth = 6, .rounding = Rounding::kFloor}};
     return sensors;
 }
 
@@ -137,7 +137,7 @@ struct Moments {
 /// Of the DN of a normal charge: P(DN >= k) = P(charge >= edge of k), clipped at both ends.
 Moments moments_of_normal(const SensorParams& params, double mean_e) {
     const int max_dn = (1 << params.bit_depth) - 1;
-    const double below = params.rounding == AdcRounding::kNearest ? 0.5 : 0;
+    const double below = params.rounding == Rounding::kNearest ? 0.5 : 0;
     const auto at_least = [&](int dn) {
         if (dn <= 0) return 1.0;
         if (dn > max_dn) return 0.0;
@@ -189,7 +189,7 @@ void expect_moments(const std::vector<std::uint16_t>& samples, const Moments& ex
 }
 
 TEST(CodedSensorNoiseTest, IsANormalClippedAtZeroAndFullScale) {
-    for (const AdcRounding rounding : {AdcRounding::kNearest, AdcRounding::kFloor})
+    for (const Rounding rounding : {Rounding::kNearest, Rounding::kFloor})
         for (const double mean_e : {0.0, 7.0, 1000.0, 1995.0, 2000.0, 2020.0}) {
             const SensorParams params{.shot_noise = false, .rounding = rounding};
             expect_moments(expose_flat(params, mean_e), moments_of_normal(params, mean_e),

@@ -257,7 +257,7 @@ TEST(CalibrationOfTest, SaysTheGainNoiseAndWellOfEquationOne) {
                                               .full_well_e = 9000,
                                               .read_noise_e = 2.5,
                                               .bit_depth = 12,
-                                              .rounding = AdcRounding::kFloor});
+                                              .rounding = Rounding::kFloor});
     const Calibration expected{.bit_depth = 12,
                                .rounding = Rounding::kFloor,
                                .black_level_dn = 0,

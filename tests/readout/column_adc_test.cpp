@@ -22,14 +22,14 @@ std::int64_t exact_dn(const SensorParams& params, std::int64_t steps) {
     const std::int64_t below = 1024 * static_cast<std::int64_t>(params.full_scale_e);
     if (steps <= 0) return 0;
     if (steps >= below) return most;
-    const std::int64_t half = params.rounding == AdcRounding::kNearest ? below / 2 : 0;
+    const std::int64_t half = params.rounding == Rounding::kNearest ? below / 2 : 0;
     return (steps * most + half) / below;
 }
 
 TEST(ColumnAdcTest, IsEquationOneInIntegers) {
     std::mt19937 random(1);
     for (const int bit_depth : {1, 2, 8, 10, 12, 16})
-        for (const AdcRounding rounding : {AdcRounding::kNearest, AdcRounding::kFloor})
+        for (const Rounding rounding : {Rounding::kNearest, Rounding::kFloor})
             for (const double full_scale_e : {1.0, 254.0, 2000.0, 65535.0}) {
                 const SensorParams params{
                     .full_scale_e = full_scale_e, .bit_depth = bit_depth, .rounding = rounding};
@@ -67,7 +67,7 @@ TEST(ColumnAdcTest, RoundsHalvesUpAndFloorsBelowTheNextNumber) {
     EXPECT_EQ(convert(nearest, 1), 1);
     EXPECT_EQ(convert(nearest, std::nextafter(1.0F, 0.0F)), 0);
     EXPECT_EQ(convert(nearest, 3), 2);
-    const SensorParams floor{.full_scale_e = 510, .rounding = AdcRounding::kFloor};
+    const SensorParams floor{.full_scale_e = 510, .rounding = Rounding::kFloor};
     EXPECT_EQ(convert(floor, std::nextafter(2.0F, 0.0F)), 0);
     EXPECT_EQ(convert(floor, 2), 1);
     EXPECT_EQ(convert(floor, std::nextafter(510.0F, 0.0F)), 254);  // 255 is full scale alone

@@ -11,16 +11,23 @@
 
 namespace stipple {
 
-/// The keys of a table of docs/, `| `key`, `key` | ... |`: the cells of each, by key. Where a row
-/// has several keys and as many values in a cell, each key has its own.
-[[nodiscard]] std::map<std::string, std::vector<std::string>> key_table(const std::string& page,
-                                                                        std::string_view heading);
+/// What a page says of a key.
+struct DocumentedKey {
+    std::string unit;
+    std::string fallback;
+    std::string range;
+};
+using KeyTable = std::map<std::string, DocumentedKey>;
 
-/// The keys of the table are those that were asked for, with their defaults and ranges where the
-/// reader tells them and the cells `fallback_cell` and `range_cell` (from 0; -1: none) hold
-/// numbers.
-void expect_documented(const std::vector<KnownKey>& known,
-                       const std::map<std::string, std::vector<std::string>>& table,
-                       int fallback_cell, int range_cell);
+/// The tables of docs/ under `heading` (empty: of the whole page) with the columns `key` and
+/// `default`, and `unit` and `range` where they have them. Where a row has several keys and as many
+/// values in a cell, each key has its own. Of tables with a column `kinds` the rows that name
+/// `kind` or "all".
+[[nodiscard]] KeyTable key_table(const std::string& page, std::string_view heading,
+                                 std::string_view kind = {});
+
+/// The keys of the table are those that were asked for, with the same units, ranges and defaults;
+/// a default or a range that is neither a number nor in backticks is for people.
+void expect_documented(const std::vector<KnownKey>& known, const KeyTable& table);
 
 }  // namespace stipple

@@ -42,17 +42,16 @@ TEST(TimingConfigTest, KeysArriveWhereTheyBelong) {
     EXPECT_EQ(timing.settle_clocks.size(), 9U);
 }
 
-TEST(TimingConfigTest, ThePageListsTheKeysThatAreReadWithDefaults) {
-    Config config({"timing.clock_hz=1000000", "timing.rows=8", "timing.cols=8"});
-    ASSERT_TRUE(read_timing(config, 8));
+TEST(TimingConfigTest, ThePageListsTheKeysThatAreReadWithUnitsDefaultsAndRanges) {
+    Config config(std::vector<std::string>{});
+    EXPECT_FALSE(read_timing(config, 8).has_value());
     constexpr std::string_view kSection = "timing.";
     std::vector<KnownKey> keys;
     for (KnownKey key : config.known_keys()) {
-        if (!key.name.starts_with(kSection)) continue;  // the sensor's name, for messages
         key.name.erase(0, kSection.size());
         keys.push_back(key);
     }
-    expect_documented(keys, key_table("docs/readout_timing.md", "A sensor file"), 1, -1);
+    expect_documented(keys, key_table("docs/readout_timing.md", "A sensor file"));
 }
 
 // Of each sensor: 30 us for 320 rows; 3 fF a row, charged to 1.2 V; 100 pJ for 10 bits.

@@ -1,0 +1,24 @@
+#include "readout/timing/column_addressing.h"
+
+#include <array>
+#include <string_view>
+
+#include "core/key_reader.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::array<std::string_view, 2> kKindNames{"skip_channel", "group"};
+constexpr KeyRange kSide{1, ColumnAddressing::kMaxSide};
+
+}  // namespace
+
+void read_addressing(const KeyReader& read, ColumnAddressing& addressing) {
+    read({"addressing", {}, "", "column by column, or whole groups", kKindNames}, addressing.kind);
+    read({"channels", {1, ColumnAddressing::kMaxChannels}, "", "outputs that work in parallel"},
+         addressing.channels);
+    read({"group_cols", kSide, "pixels", "columns of a group"}, addressing.group_cols);
+    read({"group_rows", kSide, "pixels", "rows of a group"}, addressing.group_rows);
+}
+
+}  // namespace stipple
