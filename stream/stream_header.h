@@ -10,10 +10,10 @@
 
 namespace stipple {
 
-/// How the converter maps a level between two digital numbers (DN).
+/// Rounding of the ADC between two digital numbers (DN).
 enum class Rounding : std::uint8_t { kNearest = 0, kFloor = 1 };
 
-/// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
+/// Parameters of a pixel of a calibration tile, relative to those of the sensor.
 struct CalibrationPixel {
     double responsivity = 1;     ///< of `electrons_per_unit`: a neutral-density mosaic
     double conversion_gain = 1;  ///< DN per electron, relative to 1 / `gain_e_per_dn`: dual gain
@@ -30,12 +30,12 @@ struct CalibrationTile {
     bool operator==(const CalibrationTile&) const = default;
 };
 
-/// What a decoder needs to turn DN into electrons and to know how far to trust them.
-/// Terms as in EMVA 1288.
+/// The parameters that convert DN to electrons, and their noise. Terms of EMVA 1288. The ranges are
+/// in docs/stream_format.md.
 struct Calibration {
     int bit_depth = 8;  ///< 1..16
     Rounding rounding = Rounding::kNearest;
-    double black_level_dn = 0;  ///< DN of no charge
+    double black_level_dn = 0;  ///< mean DN without charge
     double gain_e_per_dn = 2000.0 / 255;
     double read_noise_e = 10;  ///< standard deviation
     double full_well_e = 20000;
@@ -46,8 +46,8 @@ struct Calibration {
     bool operator==(const Calibration&) const = default;
 };
 
-/// The schedule as it is stored: its own list of exposures, or the generator `random_schedule`
-/// with a seed (for tiles as large as the array, where a list would weigh more than the samples).
+/// Storage of the schedule: a list of exposures, or the seed of the generator `random_schedule`
+/// (for tiles as large as the array, whose list would be larger than the samples).
 struct ScheduleSource {
     enum class Kind : std::uint8_t { kExplicit = 0, kRandom = 1 };
     Kind kind = Kind::kExplicit;
@@ -56,14 +56,14 @@ struct ScheduleSource {
     bool operator==(const ScheduleSource&) const = default;
 };
 
-/// Everything a stream says of itself before the first sample.
+/// The header of a stream.
 struct StreamHeader {
     FrameShape shape;
     double slot_us = 5000;
     Calibration calibration;
     ExposureSchedule schedule;
     ScheduleSource schedule_source;
-    std::string schedule_name;  ///< for people, at most 64 bytes of UTF-8
+    std::string schedule_name;  ///< informative, at most 64 bytes of UTF-8
     std::string provenance;     ///< TOML text: emulator parameters, seed, footage; may be empty
     ColourFilter cfa = ColourFilter::kNone;  ///< of the one plane, if it is a mosaic
 
