@@ -9,8 +9,7 @@ namespace stipple {
 /// by row, one DN per plane.
 struct SamplePacket {
     static constexpr std::uint8_t kOverrun = 1;  ///< the readout took longer than its slot
-    static constexpr std::uint8_t kDropped =
-        2;  ///< the chip discarded these samples: `dn` is empty
+    static constexpr std::uint8_t kDropped = 2;  ///< the chip discarded them: `dn` is empty
 
     std::int64_t slot = 0;
     int first_row = 0;
