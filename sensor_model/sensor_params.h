@@ -7,10 +7,10 @@
 
 namespace stipple {
 
-/// Rounding of the ADC between two digital numbers.
+/// How the converter maps a level between two digital numbers.
 enum class AdcRounding : std::uint8_t { kNearest, kFloor };
 
-/// Terms of the model: those of Eq. 1 only, or those of EMVA 1288 too.
+/// Which terms the model has: those of Eq. 1, or those of EMVA 1288 as well.
 enum class SensorMode : std::uint8_t { kPaper, kPhysical };
 
 /// Closed interval of accepted values of a parameter.
@@ -19,9 +19,9 @@ struct ParameterRange {
     double most;
 };
 
-/// A sensor (docs/sensor_model.md). Paper mode is Eq. 1: shot noise, full well, read noise and ADC
-/// of an array of equal pixels. It does not distinguish photons and electrons, and `physical` has
-/// its defaults. Physical mode uses all terms.
+/// A sensor (docs/sensor_model.md). In paper mode Eq. 1: shot noise, full well, read noise and
+/// converter of an array of equal pixels, where photons and electrons are the same thing and
+/// `physical` stays at its defaults. In physical mode all terms count.
 ///
 /// Not modelled: see PhysicalTerms.
 struct SensorParams {
@@ -29,7 +29,7 @@ struct SensorParams {
     double photons_per_unit = 1000;  ///< r: mean photons per slot at flux 1.0
     double full_scale_e = 2000;      ///< s: electrons of 2^d - 1 DN
     double full_well_e = 20000;      ///< w: charge beyond it is lost
-    double read_noise_e = 10;        ///< sigma: rms noise of a readout
+    double read_noise_e = 10;        ///< sigma: rms of each reading's noise
     bool shot_noise = true;          ///< false: the charge is its mean, not a Poisson draw
     int bit_depth = 8;               ///< d: the highest DN is 2^d - 1
     AdcRounding rounding = AdcRounding::kNearest;

@@ -10,10 +10,10 @@
 
 namespace stipple {
 
-/// Rounding of the ADC between two digital numbers (DN).
+/// How the converter maps a level between two digital numbers (DN).
 enum class Rounding : std::uint8_t { kNearest = 0, kFloor = 1 };
 
-/// Parameters of a pixel of a calibration tile, relative to those of the sensor.
+/// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
 struct CalibrationPixel {
     double responsivity = 1;     ///< of `electrons_per_unit`: a neutral-density mosaic
     double conversion_gain = 1;  ///< DN per electron, relative to 1 / `gain_e_per_dn`: dual gain
