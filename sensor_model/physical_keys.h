@@ -6,7 +6,7 @@
 
 namespace stipple {
 
-/// A numeric key of the physical mode.
+/// A number of the physical mode as configuration files name it.
 struct PhysicalKey {
     const char* name;
     double PhysicalTerms::*term;
@@ -31,7 +31,7 @@ inline constexpr std::array kPhysicalKeys{
     PhysicalKey{"hot_pixel_dark_current", &PhysicalTerms::hot_pixel_dark_current, {0, 1e9}},
     PhysicalKey{"dead_pixel_fraction", &PhysicalTerms::dead_pixel_fraction, {0, 0.5}}};
 
-/// Max values of `row_noise_e`, and max rows and columns of the tile of the maps.
+/// Most values of `row_noise_e`, and most rows and columns of the tile of the maps.
 inline constexpr int kMaxTaps = 64;
 inline constexpr int kMaxMapSide = 64;
 
@@ -39,8 +39,8 @@ inline constexpr ParameterRange kRowNoiseE{0, 1e5};
 inline constexpr ParameterRange kTransmittance{1e-3, 1};
 inline constexpr ParameterRange kRelativeGain{1e-3, 1e3};
 
-/// Default black level of physical mode: four standard deviations of a dark sample at the largest
-/// gain, rounded up to whole DN; 0 without noise.
+/// Black level that physical mode takes where none is given: four standard deviations of what
+/// a dark sample reads, in whole DN, rounded up; 0 without noise.
 [[nodiscard]] double default_black_level_dn(const SensorParams& params);
 
 }  // namespace stipple

@@ -54,8 +54,7 @@ struct SensorParams {
     }
     /// Mean dark electrons of an ordinary pixel in one open slot.
     [[nodiscard]] double dark_e_per_slot() const;
-    /// Temporal noise of a readout, standard deviation: read, reset and row noise (rms of the
-    /// taps).
+    /// Temporal noise of one reading, standard deviation: read, reset and row noise (rms of taps).
     [[nodiscard]] double temporal_read_noise_e() const;
 
     bool operator==(const SensorParams&) const = default;
