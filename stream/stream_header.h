@@ -46,8 +46,8 @@ struct Calibration {
     bool operator==(const Calibration&) const = default;
 };
 
-/// Storage of the schedule: a list of exposures, or the seed of the generator `random_schedule`
-/// (for tiles as large as the array, whose list would be larger than the samples).
+/// The schedule as it is stored: its own list of exposures, or the generator `random_schedule`
+/// with a seed (for tiles as large as the array, where a list would weigh more than the samples).
 struct ScheduleSource {
     enum class Kind : std::uint8_t { kExplicit = 0, kRandom = 1 };
     Kind kind = Kind::kExplicit;
