@@ -5,17 +5,17 @@
 
 namespace stipple {
 
-/// How long things took in a run of any length, in bounded memory: counts in bins of equal ratio.
+/// Histogram of durations with bins of equal ratio, in bounded memory.
 class DurationHistogram {
   public:
     DurationHistogram();
 
-    /// What is not above 0 counts as the shortest.
+    /// A duration that is not above 0 counts as the shortest.
     void add(double duration_us);
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] double longest_us() const { return longest_us_; }
-    /// The duration that a share (0..1) of the others do not exceed, within 0.6 % of itself between
-    /// 1 ns and 12 days. Precondition: count() > 0.
+    /// The quantile `share` (0..1), with a relative error of at most 0.6 % between 1 ns and 12
+    /// days. Precondition: count() > 0.
     [[nodiscard]] double quantile_us(double share) const;
 
   private:

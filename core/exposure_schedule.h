@@ -68,13 +68,13 @@ class ExposureSchedule {
     [[nodiscard]] bool gapless() const;
     /// True if some pixel begins an exposure before an earlier one has ended (two-bucket pixels).
     [[nodiscard]] bool interleaved() const { return max_at_once_ > 1; }
-    /// The most exposures of one pixel that are under way in one slot: the charge stores it needs.
+    /// Max simultaneous exposures of a pixel: the charge stores that it needs.
     [[nodiscard]] int charge_stores() const { return max_at_once_; }
-    /// The most slots from the first to the last open one of an exposure; 0 if there is none.
+    /// Max span of an exposure; 0 without exposures.
     [[nodiscard]] int longest_span_slots() const { return longest_span_slots_; }
-    /// The charge store (0 or 1) of exposure `i` of a tile pixel, when it begins in repetition
-    /// `begin_slot / period_slots` of the period. Exposures under way at once never share one. It
-    /// alternates between repetitions where an odd number of exposures follow each other around
+    /// The charge store (0 or 1) of exposure `i` of a tile pixel that begins in the given
+    /// repetition (begin slot / period_slots). Simultaneous exposures have different stores. The
+    /// store alternates between repetitions if an odd number of exposures follow each other around
     /// the period. Precondition: charge_stores() <= 2.
     [[nodiscard]] int store(int tile_row, int tile_col, std::size_t i,
                             std::int64_t repetition) const {
@@ -89,8 +89,8 @@ class ExposureSchedule {
         return static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_cols_) +
                static_cast<std::size_t>(tile_col);
     }
-    /// `zeros` holds a zero for each slot of the period, before and after: to clear as many for
-    /// each pixel would take seconds.
+    /// `zeros` has a zero per slot of the period before and after the call; clearing it for each
+    /// pixel would take seconds.
     void check_pixel(int pixel, std::span<int> zeros);
     void assign_stores();
     void list_due_pixels();
@@ -141,14 +141,14 @@ void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int
 /// Exposure lengths of the paper, in slots.
 inline constexpr int kPaperExposureSlots[] = {1, 2, 4, 8};
 
-/// Makes the exposures of the pixels of `random_schedule`, one pixel at a time.
+/// Generates the exposures of `random_schedule` pixel by pixel.
 class RandomExposures {
   public:
     /// \throws InputError as random_schedule.
     RandomExposures(std::span<const int> exposure_slots, std::uint64_t seed);
 
     [[nodiscard]] int period_slots() const { return period_slots_; }
-    /// Those of pixel row * cols + col, by first slot; valid until the next call.
+    /// Exposures of pixel row * cols + col, by first slot; valid until the next call.
     [[nodiscard]] std::span<const Exposure> of(std::uint32_t pixel);
 
   private:
@@ -168,7 +168,7 @@ class RandomExposures {
                                                std::span<const int> exposure_slots,
                                                std::uint64_t seed);
 
-/// Bytes of memory that `random_schedule` takes while it works, most of which it keeps.
+/// Peak memory of `random_schedule` in bytes, most of which the result keeps.
 [[nodiscard]] std::uint64_t random_schedule_bytes(int rows, int cols,
                                                   std::span<const int> exposure_slots);
 

@@ -10,8 +10,8 @@
 
 namespace stipple {
 
-/// Light reaching every site of the array in each time slot: the footage that goes into the
-/// sensor and the video that comes out of the decoder. Unit: 1.0 = the sensor's
+/// Light on every site of the array in each slot: the input of the sensor and the output of the
+/// decoder. Unit: 1.0 = the sensor's
 /// `photons_per_unit` (r in Eq. 1 of the paper) photons per site and slot; linear, >= 0.
 /// Planar, contiguous, order (slot, plane, row, col).
 class FluxVideo {

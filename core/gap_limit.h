@@ -7,10 +7,10 @@
 
 namespace stipple {
 
-/// Slots that may be missing, over all gaps, beside `present` ones: more are filled in only if the
-/// user asks for it. 16 for each that is there, and 1000, of large frames 2^25 values of light, but
-/// no fewer than 48: a recording may begin late. So what is filled in is in proportion to the bytes
-/// of the file, and 256 MB at most if these are less than 1 MB.
+/// Max number of missing slots, over all gaps, that are filled in beside `present` slots without a
+/// request of the user: 16 per present slot, plus 1000 (for large frames 2^25 values of light, but
+/// at least 48), because a stream may begin late. So the filled slots are in proportion to the
+/// bytes of the file, and at most 256 MB for files below 1 MB.
 [[nodiscard]] inline std::int64_t max_missing_slots(std::int64_t present, FrameShape shape) {
     constexpr std::int64_t kFreeSlots = 1000;
     constexpr std::int64_t kFewestFree = 48;

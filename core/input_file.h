@@ -10,7 +10,7 @@ namespace stipple {
 /// unreadable.
 [[nodiscard]] std::vector<std::uint8_t> read_file(const std::filesystem::path& file);
 
-/// \throws InputError for a device, pipe or socket, which may be endless and cannot be sought in.
+/// \throws InputError for a device, pipe or socket, which may be endless and cannot seek.
 void refuse_special(const std::filesystem::path& file);
 
 }  // namespace stipple

@@ -8,14 +8,14 @@
 
 namespace stipple {
 
-/// How the numbers of a footage file map to light.
+/// Transfer function from the values of a footage file to light.
 enum class Transfer {
     kLinear,   ///< proportional to light
     kGamma22,  ///< light = value^2.2
     kSrgb,     ///< IEC 61966-2-1
 };
 
-/// Largest frame that the sample stream can carry (docs/stream_format.md).
+/// Max sides and sites of a frame in a sample stream (docs/stream_format.md).
 inline constexpr std::uint64_t kMaxFrameSide = 65535;
 inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
 
@@ -24,17 +24,17 @@ inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
 [[nodiscard]] FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
                                        std::string_view place);
 
-/// What Deflate makes of bytes that are all alike, and the other ways in which pictures are packed
-/// do not reach, but those that say so.
+/// Max compression ratio of Deflate (equal bytes). Other compressions of images do not reach it
+/// unless noted.
 inline constexpr std::uint64_t kDeflateRatio = 1032;
 
-/// \throws InputError at `place` if a picture of `bytes` is more than a file of `file_bytes`,
-/// packed `ratio` times, can hold (by more than a factor of 2: headers). Said before memory is
-/// taken.
+/// \throws InputError at `place` if an image of `bytes` exceeds 2 x `ratio` x `file_bytes`, the max
+/// content of a file with this compression ratio (factor 2 for headers). Call it before taking
+/// memory.
 void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view place,
                   std::uint64_t ratio = kDeflateRatio);
 
-/// Turns encoded values into light, in place. Values below 0 stay as they are.
+/// Converts encoded values to light, in place. Values below 0 are unchanged.
 void linearise(std::span<float> values, Transfer transfer);
 
 /// \throws InputError naming place, row, column and plane of the first value that is NaN,

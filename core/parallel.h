@@ -5,7 +5,7 @@
 
 namespace stipple {
 
-/// While it lives, at most `threads` threads work in `parallel_for`. 0 means all cores.
+/// Limits `parallel_for` to `threads` threads during its lifetime. 0 means all cores.
 class ThreadLimit {
   public:
     explicit ThreadLimit(int threads);
@@ -21,13 +21,13 @@ class ThreadLimit {
 /// Threads that `parallel_for` uses now.
 [[nodiscard]] int thread_count();
 
-/// Calls `body`; `parallel_for` within it uses the calling thread only. For a thread that works
-/// beside others and must not take theirs.
+/// Calls `body`, in which `parallel_for` uses the calling thread only. For a background thread that
+/// must not use the threads of others.
 void run_on_this_thread(const std::function<void()>& body);
 
-/// Calls `body(i)` once for each i in [begin, end), spread over the threads in no fixed order.
-/// Bodies must write to disjoint memory and must not add up across indices, which makes every
-/// result independent of the number of threads. The first exception thrown by a body is rethrown.
+/// Calls `body(i)` once for each i in [begin, end), on several threads and in no fixed order.
+/// Bodies must write to disjoint memory and must not add up across indices. So every result is
+/// independent of the number of threads. The first exception thrown by a body is rethrown.
 void parallel_for(int begin, int end, const std::function<void(int)>& body);
 
 }  // namespace stipple

@@ -7,9 +7,9 @@ namespace stipple {
 
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 
-/// Philox4x32-10, a counter-based generator: four random words that depend on (counter, key)
-/// only, so a draw is the same whatever the order, the tiling or the number of threads.
-/// Source: Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011.
+/// Philox4x32-10, a counter-based generator. The four words depend on (counter, key) only, not on
+/// the order, the tiling or the number of threads. Source: Salmon et al., "Parallel random numbers:
+/// as easy as 1, 2, 3", SC 2011.
 [[nodiscard]] constexpr PhiloxCounter philox4x32(PhiloxCounter counter, std::uint64_t key) {
     auto [c0, c1, c2, c3] = counter;
     auto k0 = static_cast<std::uint32_t>(key);
@@ -27,8 +27,8 @@ using PhiloxCounter = std::array<std::uint32_t, 4>;
     return {c0, c1, c2, c3};
 }
 
-/// What a random word is used for: the low byte of counter word 2. Adding one changes no other
-/// draw; renumbering one changes recorded bits and needs a new `kRandomLayout`.
+/// Purpose of a random word, the low byte of counter word 2. A new purpose changes no other draw.
+/// A new number for an old purpose changes the bits of streams and needs a new `kRandomLayout`.
 enum class RandomPurpose : std::uint32_t {
     kSample = 0,
     kSchedule = 1,

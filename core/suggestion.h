@@ -6,14 +6,14 @@
 
 namespace stipple {
 
-/// The one of `known` that a misspelt `name` was probably meant to be: the first that begins with
-/// it, or the one that the fewest edits lead to, less than half as many as it has characters
-/// (inserted, deleted, replaced, or neighbours swapped; upper and lower case are the same). Empty
-/// if there is none.
+/// The name of `known` that a misspelt `name` probably means: the first one that begins with it, or
+/// the one with the min edit distance, if that is less than half the number of its characters.
+/// Edits are insertions, deletions, replacements and swaps of neighbours; case is ignored. Empty if
+/// there is none.
 [[nodiscard]] std::string nearest_name(std::string_view name,
                                        const std::vector<std::string>& known);
 
-/// What to say of a `name` that is none of `known`: `did you mean "x"?`, or which are known.
+/// Message on a `name` that is not in `known`: `did you mean "x"?`, or the list of known names.
 [[nodiscard]] std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace stipple

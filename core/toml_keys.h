@@ -5,12 +5,11 @@
 
 namespace stipple {
 
-/// The most parts of a key or of the name of a table, as in "a.b.c".
+/// Max parts of a key or of a table name, as in "a.b.c".
 inline constexpr std::size_t kMaxKeyParts = 32;
 
-/// The line (from 1) of the first key in TOML text that has more parts; 0 if none has. The parser
-/// calls itself for each part, and so do the destructors of what it makes, so a long key would take
-/// the whole stack.
+/// The line (from 1) of the first key in TOML text with more parts than that; 0 if there is none.
+/// Parser and destructors recurse once per part, so a long key would overflow the stack.
 [[nodiscard]] std::size_t line_of_long_key(std::string_view toml);
 
 }  // namespace stipple

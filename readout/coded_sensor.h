@@ -12,22 +12,22 @@
 
 namespace stipple {
 
-/// What the emulated chip has done so far.
+/// Counts of the emulated chip since slot 0.
 struct ReadoutStats {
     std::int64_t slots = 0;
     std::uint64_t samples = 0;
     std::uint64_t saturated_samples = 0;  ///< clipped by the full well, or at full scale
 };
 
-/// What the stream says of a sensor: Eq. 1 as gain, noise and full well.
+/// The calibration of a sensor for its stream: gain, noise and full well.
 [[nodiscard]] Calibration calibration_of(const SensorParams& params);
 
-/// The emulated chip: collects light slot by slot and reads, at the end of each slot, the pixels
-/// that are due, in scan order.
+/// The emulated chip. It collects light slot by slot, and reads the due pixels at the end of each
+/// slot in scan order.
 class CodedSensor {
   public:
     /// `schedule` must outlive the sensor. \throws InputError as `validate`, if the shape is empty,
-    /// or if the schedule takes more charge stores than the sensor's pixels have.
+    /// or if the schedule needs more charge stores than the pixels of the sensor have.
     CodedSensor(const SensorParams& params, FrameShape shape, const ExposureSchedule& schedule,
                 std::uint64_t seed);
     ~CodedSensor();

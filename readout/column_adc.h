@@ -8,19 +8,20 @@
 
 namespace stipple {
 
-/// The converter at the foot of the columns. In paper mode the outside of Eq. 1,
+/// The column ADC. In paper mode it is the ADC part of Eq. 1,
 ///
 ///     DN = [clamp(q (2^d - 1) / s, 0, 2^d - 1)],   q the electrons of a sample, s the full scale,
 ///
-/// where the bracket is the nearest integer (halves up) or the integer below. Evaluated as
-/// q (2^d - 1) / s in double, whose product is exact, so that halves are halves; the same bits on
-/// every machine. In physical mode the level y = q (2^d - 1) / s + black level is bent first, by
-/// 4 i x (1 - x) with x = y / (2^d - 1) and i the peak `inl_dn`, and the step to each DN lies up to
-/// dnl_dn / 2 beside its place, drawn once for `device_id`: so no step is off by more than dnl_dn.
-/// `convert` is `convert_one`, many at a time.
+/// where the bracket is the nearest integer (halves up) or the integer below. q (2^d - 1) / s is
+/// evaluated in double, where the product is exact, so halves are exact and the bits are the same
+/// on every machine. Physical mode adds two errors to the level y = q (2^d - 1) / s + black level:
+/// the integral non-linearity 4 i x (1 - x), with x = y / (2^d - 1) clamped to 0..1 and the peak i
+/// = `inl_dn`; and an error of each transition level, uniform within +-dnl_dn / 2 and fixed for
+/// `device_id`, so that no code width is wrong by more than dnl_dn. `convert` is `convert_one` for
+/// a list.
 ///
-/// Not modelled: dither, differences between the columns' converters, conversion time, noise of the
-/// converter's own (part of the read noise).
+/// Not modelled: dither, differences between the ADCs of the columns, conversion time, noise of the
+/// ADC (part of the read noise).
 class ColumnAdc {
   public:
     /// Precondition: `validate(params)` passes.
@@ -43,7 +44,7 @@ class ColumnAdc {
     struct TransferFunction {
         double full_scale_e;
         double max_dn;    ///< 2^d - 1
-        double to_round;  ///< added before the fraction is cut off
+        double to_round;  ///< added before truncation
 
         [[nodiscard]] double clamped(double level) const noexcept {
             const double above = level > 0 ? level : 0;
@@ -61,7 +62,7 @@ class ColumnAdc {
     bool plain_;  ///< Eq. 1 only
     double black_level_dn_;
     double inl_dn_;
-    std::vector<float> step_error_;  ///< by the DN above the step; empty: none
+    std::vector<float> step_error_;  ///< by the DN above the transition level; empty: none
 };
 
 }  // namespace stipple

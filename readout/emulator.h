@@ -15,8 +15,7 @@
 
 namespace stipple {
 
-/// The header of the stream that this sensor makes; `provenance` as `provenance_of` writes it, or
-/// empty.
+/// The stream header of this sensor; `provenance` as `provenance_of` writes it, or empty.
 [[nodiscard]] StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance);
 
 /// A sensor that turns light into the packets of a stream, slot by slot.
@@ -26,16 +25,16 @@ class Emulator {
     explicit Emulator(const SensorSetup& setup);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)). The
-    /// packets of the slot, valid until the next call: one, or two where the readout has no time
-    /// for its last rows and they are dropped.
+    /// packets of the slot, valid until the next call: one, or two if the last rows do not fit the
+    /// slot and are dropped.
     [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
     /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
     [[nodiscard]] const CalibrationTile& filters() const { return filters_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
-    /// Part of the light on the array since slot 0 that the samples hold: less than the light
-    /// throughput by exposures that began before slot 0, those under way, and dropped rows. NaN
+    /// Fraction of the light on the array since slot 0 that the samples hold. Less than the light
+    /// throughput by exposures that began before slot 0, exposures under way, and dropped rows. NaN
     /// before slot 0.
     [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.

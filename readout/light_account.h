@@ -8,9 +8,9 @@
 
 namespace stipple {
 
-/// Part of the light on an array of `shape` that is collected, once the first exposures are over:
-/// the open slots of each pixel, times the transmittance that `tile` gives its filter as relative
-/// responsivity. Colour filters do not count: each plane is a light of its own.
+/// Fraction of the light on an array of `shape` that is collected in steady slots: the open slots
+/// of each pixel, weighted by the transmittance of its filter, which `tile` has as relative
+/// responsivity. Colour filters have no weight: each plane counts separately.
 [[nodiscard]] double light_throughput(const ExposureSchedule& schedule, const CalibrationTile& tile,
                                       FrameShape shape);
 
@@ -22,12 +22,12 @@ struct SlotRows {
     int cols = 0;
 };
 
-/// Light that the samples of these rows hold, where a slot of light 1.0 on a pixel without filter
-/// is 1.
+/// Light that the samples of these rows hold. Unit: one slot of light 1.0 on a pixel without
+/// filter.
 [[nodiscard]] double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
                                const SlotRows& rows);
 
-/// The same of all samples of the slots 0 .. `slots` - 1. Exposures that begin before or end after
+/// The same for all samples of the slots 0 .. `slots` - 1. Exposures that begin before or end after
 /// them are not read, so it is less than light_throughput * slots * pixels.
 [[nodiscard]] double light_due_in_clip(const ExposureSchedule& schedule,
                                        const CalibrationTile& tile, FrameShape shape,

@@ -14,7 +14,7 @@
 
 namespace stipple {
 
-/// A sensor as the command line describes it.
+/// The choice of a sensor on the command line.
 struct SensorChoice {
     std::string sensor = "paper";            ///< name or file
     std::string schedule = "random";         ///< name, file, or compiled file (.mem, .hex)
@@ -24,13 +24,13 @@ struct SensorChoice {
     OverrunPolicy overrun = OverrunPolicy::kStretch;
 };
 
-/// What a sensor file says.
+/// Content of a sensor file.
 struct SensorDescription {
     SensorParams params;
-    std::optional<ReadoutTiming> timing;  ///< if it has a section [timing]
+    std::optional<ReadoutTiming> timing;  ///< of the section [timing], if present
 };
 
-/// All that decides what a sensor makes of light.
+/// All parameters that determine the samples of a sensor.
 struct SensorSetup {
     SensorParams params;
     NamedSchedule schedule;
@@ -39,17 +39,17 @@ struct SensorSetup {
     std::uint64_t seed = 1;
     std::optional<ReadoutTiming> timing = {};
     OverrunPolicy overrun = OverrunPolicy::kStretch;
-    SensorChoice choice = {};  ///< that it was made of
+    SensorChoice choice = {};  ///< from which it was made
 };
 
-/// The chosen sensor. \throws InputError naming file, line and key of what cannot be used.
+/// The chosen sensor. \throws InputError naming file, line and key of an unusable value.
 [[nodiscard]] SensorDescription read_sensor_file(const SensorChoice& choice);
 
-/// Says that a sensor has no section [timing], and which ones have.
+/// Message that a sensor has no section [timing], with the names of those that have one.
 [[nodiscard]] std::string no_timing_text();
 
 /// The chosen schedule, made for an array of `shape`. \throws InputError naming file, line and key
-/// of what cannot be used.
+/// of an unusable value.
 [[nodiscard]] NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
                                             const ColumnAddressing& addressing);
 
@@ -58,17 +58,17 @@ struct SensorSetup {
 [[nodiscard]] std::string timing_keys(const SensorChoice& choice);
 [[nodiscard]] std::string schedule_keys(const SensorChoice& choice);
 
-/// The parameters of a sensor that has no schedule. \throws InputError naming file, line and key of
-/// what cannot be used.
+/// The parameters of a sensor without a schedule. \throws InputError naming file, line and key of
+/// an unusable value.
 [[nodiscard]] SensorParams set_up_params(const SensorChoice& choice);
 
-/// A sensor for this footage, which may be a mosaic of colours already. \throws InputError naming
-/// file, line and key of what cannot be used, or if there is a colour filter array but no colour,
-/// or another mosaic than that of the footage.
+/// A sensor for footage of this shape, which may be a mosaic already. \throws InputError naming
+/// file, line and key of an unusable value, or if the sensor has a colour filter array but the
+/// footage has no colour or another mosaic.
 [[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage,
                                         ColourFilter mosaic = ColourFilter::kNone);
 
-/// Says what such a mosaic becomes if the sensor has no colour filter array; else empty.
+/// Warning that a sensor without colour filter array treats this mosaic as mono; else empty.
 [[nodiscard]] std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic);
 
 }  // namespace stipple

@@ -9,18 +9,18 @@
 
 namespace stipple {
 
-/// Tells the chip what to do in each slot: which pixels collect light and which are read at its
-/// end, row by row in scan order. When, within the slot, is the matter of slot_readout.h.
+/// The sequencer of the chip: for each slot, the pixels that collect light and the pixels that are
+/// read at its end, row by row in scan order. Times within the slot are in slot_readout.h.
 class Sequencer {
   public:
-    /// `schedule` must outlive the sequencer. Precondition: it needs two charge stores at most.
+    /// `schedule` must outlive the sequencer. Precondition: it needs at most two charge stores.
     Sequencer(const ExposureSchedule& schedule, FrameShape shape);
 
     /// True if all pixels collect light in this slot, in exposures that began in slot 0 or later.
     [[nodiscard]] bool all_open(std::int64_t slot) const noexcept;
 
-    /// `open[col]` = 1 for each pixel of `row` that does so, 2 where the light goes to its second
-    /// charge store (interleaved schedules only), 0 for the others.
+    /// `open[col]` = 1 for each pixel of `row` that collects light in such an exposure, 2 if the
+    /// light goes to its second charge store (interleaved schedules only), 0 for the others.
     /// Precondition: open.size() == columns of the array.
     void list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept;
 

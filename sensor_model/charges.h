@@ -5,16 +5,16 @@
 
 namespace stipple {
 
-/// What a pixel holds at the end of an exposure, as the converter sees it.
+/// Charge of a pixel at the end of an exposure, as the input of the ADC.
 struct Charge {
     float electrons = 0;   ///< noise included; may be negative
-    bool clipped = false;  ///< more was collected than the full well holds
+    bool clipped = false;  ///< the full well has limited it
 };
 
-/// The same of a list of pixels.
+/// Charges of a list of pixels.
 struct Charges {
     std::span<float> electrons;
-    std::span<std::uint8_t> clipped = {};  ///< 0 or 1; as many, or none: not asked for
+    std::span<std::uint8_t> clipped = {};  ///< 0 or 1 per pixel; empty: not wanted
 };
 
 }  // namespace stipple

@@ -7,8 +7,8 @@
 
 namespace stipple {
 
-/// What the pixels under a colour filter array see of RGB light: each the plane of its filter.
-/// `frame` is of `shape`, order (plane, row, col), `mosaic` has shape.pixels() values.
+/// RGB light behind a colour filter array: each pixel of `mosaic` gets the plane of its filter.
+/// `frame` has `shape`, order (plane, row, col); `mosaic` has shape.pixels() values.
 /// Precondition: shape.planes == 3, filter is not kNone.
 ///
 /// Not modelled: spectra of filters (no crosstalk of colours, no loss of light), optical low-pass.

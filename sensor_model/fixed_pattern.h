@@ -8,26 +8,26 @@
 
 namespace stipple {
 
-/// What is peculiar to one site of one chip, for good.
+/// Fixed-pattern parameters of one site.
 struct SiteTraits {
-    float responsivity_e = 0;   ///< electrons that flux 1.0 makes in a slot
+    float responsivity_e = 0;   ///< electrons that flux 1.0 gives per slot
     float dark_e_per_slot = 0;  ///< mean dark electrons of an open slot
-    float offset_e = 0;         ///< added to every reading
+    float offset_e = 0;         ///< added in every readout
     float read_noise_e = 0;     ///< read and reset noise, standard deviation
     float gain = 1;             ///< relative conversion gain
 };
 
-/// The sites of the chip `device_id`: the same at every run, whatever the seed of the noise.
+/// The fixed pattern of the chip `device_id`, independent of the seed of the noise.
 ///
-///     responsivity = r QE T (1 + prnu z0)          T transmittance of the tile, 0 at the least
+///     responsivity = r QE T (1 + prnu z0)          T transmittance of the tile; at least 0
 ///     dark         = t_slot I 2^((T_c - T_ref) / T_double),  I + I_hot in hot pixels
 ///     offset       = dsnu z1 + column_noise z(column)
 ///     noise        = sqrt((sigma (1 + s z2))^2 / (1 + s^2) + sigma_reset^2)
 ///
-/// z are normal deviates of the words of the Philox block at (pixel, device id, kFixedPattern,
-/// plane) with key 0, z(column) of (column, device id, kColumnPattern, plane); word 3 says which
-/// pixels are dead (its lowest values) or hot (its highest). Dead pixels have no responsivity, dark
-/// current, DSNU or noise of their own.
+/// z0, z1, z2 are normal deviates of the words 0, 1, 2 of the Philox block at (pixel, device id,
+/// kFixedPattern, plane) with key 0. z(column) is that of word 0 at (column, device id,
+/// kColumnPattern, plane). The lowest values of word 3 mark dead pixels, the highest hot pixels.
+/// Dead pixels have no responsivity, dark current, DSNU, read noise or reset noise.
 ///
 /// Not modelled: patterns that change with temperature or time, correlation of neighbours, a
 /// distribution of dark currents.

@@ -12,7 +12,7 @@
 
 namespace stipple {
 
-/// Pixels whose exposures end together; the spans have equal lengths.
+/// Pixels whose exposures end in the same slot; the spans have equal lengths.
 struct ExposedPixels {
     std::span<const std::uint32_t> pixel;       ///< row * cols + col
     std::span<const float> light;               ///< collected, flux x slots; >= 0, not NaN
@@ -30,11 +30,11 @@ struct SampleDraws {
 ///
 ///     electrons = g (min(Z, w) + V + offset + row noise),   Z ~ Poisson(R x + D n)
 ///
-/// for x light, n open slots, R responsivity, D dark electrons a slot, w full well, V read and
-/// reset noise, g the relative conversion gain of the pixel: the result is what the converter sees,
-/// in electrons at gain 1. Row noise is one draw for each (row, slot, plane, tap) at the address
-/// (row, slot, kRowNoise, plane + 256 tap); taps share the columns out in equal blocks. The rest as
-/// PixelArray: the words depend on seed, slot, plane and pixel only.
+/// with light x, n open slots, responsivity R, D dark electrons per slot, full well w, read and
+/// reset noise V and relative conversion gain g of the pixel. The result is the input of the ADC,
+/// in electrons at gain 1. Row noise is one draw per (row, slot, plane, tap) at the address (row,
+/// slot, kRowNoise, plane + 256 tap); taps are equal blocks of columns. As in PixelArray, the words
+/// depend on seed, slot, plane and pixel only.
 class PhysicalPixels {
   public:
     /// \throws InputError as `validate`. Precondition: shape.sites() > 0.
@@ -45,7 +45,7 @@ class PhysicalPixels {
     void expose(const ExposedPixels& exposed, std::uint32_t slot, std::uint32_t plane,
                 const Charges& charges) const noexcept;
 
-    /// One sample with the given draws: the slow, obvious form.
+    /// One sample with the given draws: the reference of `expose`.
     [[nodiscard]] Charge expose_one(const SiteTraits& site, float light, int open_slots,
                                     const SampleDraws& draws) const noexcept;
 

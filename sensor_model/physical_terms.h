@@ -7,30 +7,30 @@
 
 namespace stipple {
 
-/// What the physical mode adds to Eq. 1, in terms of EMVA 1288; formulas, sources and what each
-/// leaves out are in docs/sensor_model.md. The defaults add nothing.
+/// The terms that physical mode adds to Eq. 1 (EMVA 1288). docs/physics.md has the formulas and,
+/// for each term, the effects that are not modelled. The defaults add nothing.
 ///
-/// Not modelled: crosstalk, blooming, lag, spectra, kTC noise apart from `reset_noise_e`, noise of
-/// the converter, aging and temperature of anything but the dark current.
+/// Not modelled: crosstalk, blooming, lag, spectra, kTC noise other than `reset_noise_e`, noise of
+/// the ADC, aging, and the temperature of all terms but the dark current.
 struct PhysicalTerms {
     double quantum_efficiency = 1;         ///< electrons per photon
     double dark_current_e_per_s = 0;       ///< at `dark_reference_c`
     double dark_reference_c = 20;          ///< degrees Celsius
     double temperature_c = 20;             ///< degrees Celsius
-    double dark_doubling_c = 8;            ///< kelvins in which the dark current doubles
-    double dsnu_e = 0;                     ///< standard deviation of the pixels' offsets
+    double dark_doubling_c = 8;            ///< kelvins that double the dark current
+    double dsnu_e = 0;                     ///< standard deviation of the pixel offsets
     double prnu = 0;                       ///< standard deviation of relative responsivity
     double read_noise_spread = 0;          ///< relative spread of `read_noise_e` over the pixels
     double reset_noise_e = 0;              ///< standard deviation, each exposure
     std::vector<double> row_noise_e = {};  ///< temporal, per row and slot; one value per tap
-    double column_noise_e = 0;             ///< standard deviation of the columns' frozen offsets
-    double black_level_dn = 0;             ///< DN of no charge
-    double inl_dn = 0;                     ///< peak of the converter's smooth non-linearity
-    double dnl_dn = 0;                     ///< largest error of a step of the converter
+    double column_noise_e = 0;             ///< standard deviation of the fixed column offsets
+    double black_level_dn = 0;             ///< mean DN without charge
+    double inl_dn = 0;                     ///< peak of the integral non-linearity of the ADC
+    double dnl_dn = 0;                     ///< max error of a code width of the ADC
     double hot_pixel_fraction = 0;         ///< of all pixels
-    double hot_pixel_dark_current = 0;     ///< electrons/s on top, at `dark_reference_c`
+    double hot_pixel_dark_current = 0;     ///< additional electrons/s at `dark_reference_c`
     double dead_pixel_fraction = 0;        ///< of all pixels; these collect nothing
-    std::uint32_t device_id = 0;           ///< which chip: freezes the fixed pattern
+    std::uint32_t device_id = 0;           ///< selects the fixed pattern
     ColourFilter cfa = ColourFilter::kNone;
     int map_rows = 1;  ///< tile of the two maps, repeated over the array
     int map_cols = 1;

@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-/// Eq. 1 from light to charge in the numbers of the kernel.
+/// Parameters of the charge-domain part of Eq. 1, in the types of the kernel.
 struct PixelModel {
     float electrons_per_unit;  ///< r
     float full_well_e;         ///< w
@@ -17,20 +17,20 @@ struct PixelModel {
     bool shot_noise;
 };
 
-/// Charge of one sample with the given random words: the slow, obvious form.
+/// Charge of one sample with the given random words: the reference of `PixelArray::expose`.
 /// Precondition: light >= 0, not NaN.
 [[nodiscard]] Charge expose_one(const PixelModel& model, float light, std::uint32_t shot_word,
                                 std::uint32_t read_word) noexcept;
 
-/// Light to charge, the inside of the paper's Eq. 1 for a list of samples:
+/// Light to charge: the charge-domain part of the paper's Eq. 1, for a list of samples:
 ///
 ///     electrons = min(Z, w) + V,   Z ~ Poisson(r x),   V ~ N(0, sigma^2)
 ///
 /// x is the sum of flux over the exposure's slots, added in slot order (a sum of Poisson variables
-/// is Poisson, so one draw serves the exposure). The random words depend on seed, slot, plane and
-/// pixel only, never on the list's order or on what else is in it. Can be negative.
+/// is Poisson, so one draw per exposure is enough). The random words depend on seed, slot, plane
+/// and pixel only, not on the order or the other samples of the list. The result can be negative.
 ///
-/// Not modelled: see SensorParams. Conversion to DN is the reader's part.
+/// Not modelled: see SensorParams. ColumnAdc converts the charge to DN.
 class PixelArray {
   public:
     /// \throws InputError as `validate`.

@@ -1,4 +1,4 @@
-// poisson_one many at a time; included once per SIMD target (Highway), so without #pragma once.
+// SIMD form of poisson_one; included once per SIMD target (Highway), so without #pragma once.
 #if defined(STIPPLE_POISSON_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STIPPLE_POISSON_INL_H
 #undef STIPPLE_POISSON_INL_H
@@ -77,7 +77,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson_by_sum(D, V mean, VW word) {
     return hn::Combine(di, hn::DemoteTo(half_int, count1), hn::DemoteTo(half_int, count0));
 }
 
-/// What is to be added to floor(mean): see `Quantile` of the scalar form.
+/// The term that is added to floor(mean): see `Quantile` of the scalar form.
 template <class V>
 HWY_INLINE V quantile_rest(V mean, V w, V g, V c) {
     const V fraction = hn::Sub(mean, hn::Floor(mean));
@@ -143,9 +143,9 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson_large(D d, V mean, V w) {
     return quantile_count(d, mean, quantile_rest(mean, w, polynomial(d, kShortG, s), c));
 }
 
-/// A vector of Poisson draws. Neighbours are mostly alike, so most vectors need one method only;
-/// where methods mix, each runs with a harmless mean in the lanes of the others: 0 ends a sum at
-/// once, and kShortFrom is never rechecked.
+/// A vector of Poisson draws. Neighbours mostly have similar means, so most vectors need one method
+/// only. In a mixed vector each method runs with a harmless mean in the lanes of the others: a mean
+/// of 0 ends the sum at once, and kShortFrom is never rechecked.
 template <class D, class VW, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson(D d, V mean, VW word) {
     using namespace poisson_table;

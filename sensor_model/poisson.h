@@ -5,18 +5,18 @@
 
 namespace stipple {
 
-/// Means above this are taken as this.
+/// Larger means are reduced to this.
 inline constexpr float kLargestPoissonMean = 1e9F;
 
 /// Poisson draw with the given mean, the quantile of one random word: the smallest k with
 /// P(X <= k) >= u. Word bit 0 and the rest give u as in `normal_one`. A slightly brighter scene
 /// therefore gives the same draws or slightly larger ones. The accuracy table is in
-/// docs/sensor_model.md. This is the slow, obvious form; `poisson` is the same, many at a time.
+/// docs/sensor_model.md. This is the scalar reference of `poisson`.
 /// Precondition: mean >= 0, not NaN.
 ///
-/// Method: mean < 4, sum the terms in double; mean < 100, Temme's expansion of the incomplete
-/// gamma function at the normal quantile, with the sum where it is too close to an integer to
-/// trust (mean < 32); above, a shorter fit of the same expansion.
+/// Method: for means below 4 the sum of the terms in double; below 100 Temme's expansion of the
+/// incomplete gamma function at the normal quantile, and for means below 32 the sum if the result
+/// is too close to an integer or far in a tail; above, a shorter fit of the same expansion.
 /// Source: M. Giles, "Algorithm 955: approximation of the inverse Poisson cumulative distribution
 /// function", ACM Trans. Math. Softw. 42 (2016).
 [[nodiscard]] std::uint32_t poisson_one(float mean, std::uint32_t word) noexcept;

@@ -5,7 +5,7 @@
 
 namespace stipple::poisson_sum {
 
-// What the summation of Poisson terms in double needs; shared by the scalar and the SIMD form.
+// Constants for the summation of Poisson terms in double, of the scalar and the SIMD form.
 
 /// exp(r) = sum r^i / i!, enough for |r| <= ln(2) / 2; the lowest power first.
 inline constexpr double kExp[] = {
@@ -15,7 +15,7 @@ inline constexpr double kLog2E = 1.4426950408889634;
 inline constexpr double kLn2High = 0.693147180369123816490;  // exact products with small integers
 inline constexpr double kLn2Low = 1.90821492927058770002e-10;
 
-/// Terms that are summed at most: P(X > 127) < 1e-37 at mean 32.
+/// Max number of terms: P(X > 127) < 1e-37 at mean 32.
 inline constexpr std::size_t kTerms = 128;
 
 /// kReciprocal[k] = 1 / (k + 1): a product costs less than a division.

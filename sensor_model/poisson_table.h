@@ -10,15 +10,15 @@ namespace stipple::poisson_table {
 //     x = m + sqrt(m) w + w^2 g(s) + c0(s) + c1(s) / m + c2(s) / m^2,
 //     g(s) = (f^-1(s) - 1 - s) / s^2,   c0(s) = log(f(r) sqrt(r) / (r - 1)) / log r, r = f^-1(s).
 //
-// g and c0 are polynomials fitted at 400 Chebyshev nodes to extended-precision values; c1 and c2
-// are least-squares fits of what remains against the exact x (inverted incomplete gamma),
-// reweighted towards the smallest largest error in probability. All coefficients start with the
+// g and c0 are polynomials fitted at 400 Chebyshev nodes to extended-precision values. c1 and c2
+// are least-squares fits of the remainder to the exact x (inverted incomplete gamma), reweighted
+// to minimise the max error in probability. All coefficients start with the
 // lowest power and are rounded to float. Source of the expansion: Giles, Algorithm 955, ACM TOMS 42
 // (2016).
 
-inline constexpr float kSumBelow = 4;       ///< means that are summed term by term
-inline constexpr float kRecheckBelow = 32;  ///< means whose doubtful quantiles are summed
-inline constexpr float kShortFrom = 100;    ///< means that the short fit serves
+inline constexpr float kSumBelow = 4;       ///< smaller means are summed term by term
+inline constexpr float kRecheckBelow = 32;  ///< smaller means: doubtful quantiles are summed
+inline constexpr float kShortFrom = 100;    ///< means from here on use the short fit
 inline constexpr float kMinS = -1.27F;      ///< interval of s of the full fit
 inline constexpr float kMaxS = 2.05F;
 inline constexpr float kDoubtfulW = 4;        ///< |w| beyond which the fit is not trusted

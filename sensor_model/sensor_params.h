@@ -26,7 +26,7 @@ struct SensorParams {
     int bit_depth = 8;               ///< d: the highest DN is 2^d - 1
     Rounding rounding = Rounding::kNearest;
     double slot_us = 5000;  ///< time slot: one frame of the footage
-    int charge_stores = 1;  ///< of a pixel: exposures that can be under way at once
+    int charge_stores = 1;  ///< per pixel: max simultaneous exposures
     SensorMode mode = SensorMode::kPaper;
     PhysicalTerms physical = {};
 

@@ -10,7 +10,7 @@ namespace stipple {
 /// A new file that grows at its end; each block of bytes is visible to readers at once.
 class AppendFile {
   public:
-    /// Creates `file`, or empties it. Messages say `place`.
+    /// Creates or truncates `file`. Messages call it `place`.
     /// All members \throws DeviceError naming `place` (a full disk, say).
     AppendFile(const std::filesystem::path& file, std::string place);
     ~AppendFile();
@@ -19,7 +19,7 @@ class AppendFile {
 
     void append(std::span<const std::uint8_t> bytes);
     void close();
-    /// Takes back what lies beyond `bytes` bytes, as far as the system lets it: after a failure.
+    /// After a failure: truncates the file to `bytes` bytes if the system allows it.
     void cut(std::uint64_t bytes) noexcept;
 
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }

@@ -13,7 +13,7 @@
 
 namespace stipple {
 
-/// Takes numbers from a part of a file, one after the other.
+/// Reads numbers from a part of a file, one after the other.
 class ByteCursor {
   public:
     /// `bytes` begin at `offset` of the file that messages call `place`.

@@ -10,10 +10,10 @@
 
 namespace stipple {
 
-/// Most pixels of a calibration tile.
+/// Max pixels of a calibration tile.
 inline constexpr std::size_t kMaxCalibrationPixels = std::size_t{1} << 22U;
 
-/// Whether the calibration says more than the fixed part of a header can.
+/// True if the calibration has values that the fixed part of a header does not hold.
 [[nodiscard]] bool needs_calibration_section(const Calibration& calibration);
 
 /// The calibration section of a header. \throws InputError at `place` if a value is outside its
@@ -21,8 +21,8 @@ inline constexpr std::size_t kMaxCalibrationPixels = std::size_t{1} << 22U;
 [[nodiscard]] std::vector<std::uint8_t> encode_calibration(const Calibration& calibration,
                                                            std::string_view place);
 
-/// The inverse: fills in what the section says. `section` begins at `offset` of the file that
-/// messages call `place`. \throws InputError naming file and offset.
+/// The inverse: sets the values of the section in `calibration`. `section` begins at `offset` of
+/// the file that messages call `place`. \throws InputError naming file and offset.
 void decode_calibration(std::span<const std::uint8_t> section, std::size_t offset,
                         std::string_view place, Calibration& calibration);
 

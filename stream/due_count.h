@@ -14,9 +14,9 @@ struct RowBand {
     int rows = 0;
 };
 
-/// How many pixels of each row are due in each slot, of a schedule whose tile is the whole array
-/// and whose exposures have no gaps: all that a reader of such a stream checks, in two bytes a row
-/// and slot of the period where the schedule itself takes 20 bytes an exposure.
+/// Number of due pixels in each row and slot, for a schedule whose tile is the whole array and
+/// whose exposures have no gaps. Enough to check the packets of a stream, in two bytes per row and
+/// slot of the period; the schedule itself needs 20 bytes per exposure.
 class DueCounts {
   public:
     DueCounts(int rows, int period_slots);
@@ -28,11 +28,11 @@ class DueCounts {
     int rows_;
     int period_slots_;
     std::vector<std::uint16_t> steady_;  ///< by phase and row
-    std::vector<std::uint16_t> absent_;  ///< by slot and row: of these, begun before slot 0
+    std::vector<std::uint16_t> absent_;  ///< by slot and row: due, but begun before slot 0
 };
 
-/// True if `samples` samples are due in these rows of `slot`: planes x `count_due`, but counted by
-/// tiles, and no further than `samples`, so that a false claim costs no more than a true one.
+/// True if `samples` equals planes x `count_due` of these rows of `slot`. Counts by tiles and stops
+/// above `samples`, so a false number costs no more time than a true one.
 [[nodiscard]] bool matches_schedule(const StreamHeader& stream, std::int64_t slot, RowBand band,
                                     std::size_t samples);
 

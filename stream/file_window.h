@@ -10,12 +10,12 @@
 
 namespace stipple {
 
-/// A file, or a pipe, read from front to back through a window of memory. It is read rather than
-/// mapped, so that a file that another program cuts short, or a failing disk, is an error or an
-/// end and not a SIGBUS.
+/// A file or a pipe, read from front to back through a window of memory. It is read, not mapped:
+/// if another program shortens the file or the disk fails, the result is an end or an error, not a
+/// SIGBUS.
 class FileWindow {
   public:
-    /// What a read does where a pipe holds nothing at the moment.
+    /// Behaviour of a read from an empty pipe.
     enum class EmptyPipe { kWait, kReturn };
 
     /// Does not wait for the writer of a pipe. \throws InputError naming the file if it cannot be
@@ -29,17 +29,17 @@ class FileWindow {
     [[nodiscard]] std::uint64_t offset() const { return offset_; }
     /// Bytes of the file that have been read, those of the window included.
     [[nodiscard]] std::uint64_t bytes_read() const { return offset_ + (end_ - begin_); }
-    /// The next `bytes` bytes, or fewer at the end of the file or of what a pipe holds by now;
-    /// there may be more later. They are valid until the next call. Memory is taken only for bytes
-    /// that the file really has. \throws InputError if the file cannot be read, or if a signal that
-    /// the program handles comes while it waits for a pipe.
+    /// The next `bytes` bytes. Fewer at the end of the file or of the present content of a pipe;
+    /// more may follow later. Valid until the next call. Memory is taken only for bytes that the
+    /// file has. \throws InputError if the file cannot be read, or if a signal that the program
+    /// handles comes while it waits for a pipe.
     [[nodiscard]] std::span<const std::uint8_t> peek(std::size_t bytes);
     /// Moves on. Precondition: `bytes` bytes have been peeked at.
     void skip(std::size_t bytes);
 
     /// Length of the file; nothing if it is a pipe.
     [[nodiscard]] std::optional<std::uint64_t> file_bytes() const;
-    /// `bytes` bytes at `offset`, or nothing if the file does not have them. The window stays.
+    /// `bytes` bytes at `offset`; nothing if the file does not have them. Does not move the window.
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> read_at(std::uint64_t offset,
                                                                    std::size_t bytes) const;
 

@@ -12,14 +12,14 @@
 
 namespace stipple {
 
-/// Bytes of a file that tell how long its header is.
+/// First bytes of a file, which hold the length of its header.
 inline constexpr std::size_t kHeaderStartBytes = 16;
 
 /// The bytes of a header. \throws InputError at `place` if a field is outside its limits.
 [[nodiscard]] std::vector<std::uint8_t> encode_header(const StreamHeader& header,
                                                       std::string_view place);
 
-/// Length of a header, by the first `kHeaderStartBytes` bytes of a file, or all if it has fewer.
+/// Length of a header. `start`: the first `kHeaderStartBytes` bytes of a file, or the whole file.
 /// \throws InputError naming file and offset if it is no sample stream or of an unknown version.
 [[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view place);
 

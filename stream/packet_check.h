@@ -12,21 +12,21 @@
 
 namespace stipple {
 
-/// How many samples a packet must hold: those that are due by the schedule of the stream.
+/// Rule for the number of samples of a packet; by default the due pixels of the schedule x planes.
 struct DueRule {
-    bool any = false;                   ///< any number up to one a site instead
-    const DueCounts* counts = nullptr;  ///< by these instead
+    bool any = false;                   ///< any number up to one per site
+    const DueCounts* counts = nullptr;  ///< these counts instead of the schedule
 };
 
-/// What is wrong with a packet of kind 1 whose CRCs are good, if anything. No packet may begin
-/// before `expected`.
+/// The fault of a packet of kind 1 with correct CRCs; nothing if it is good. The packet must not
+/// begin before `expected`.
 [[nodiscard]] std::optional<std::string> sample_fault(const StreamHeader& stream,
                                                       const PacketHeader& packet,
                                                       std::span<const std::uint8_t> payload,
                                                       StreamPosition expected,
                                                       const DueRule& rule = {});
 
-/// The same for an index packet, whose entries must lie before `offset`. `expected`: see above.
+/// The same for an index packet; the offsets of its entries must be less than `offset`.
 [[nodiscard]] std::optional<std::string> index_fault(const PacketHeader& packet,
                                                      std::span<const std::uint8_t> payload,
                                                      std::uint64_t offset, StreamPosition expected);

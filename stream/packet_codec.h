@@ -33,24 +33,24 @@ struct PacketHeader {
     std::uint32_t payload_crc = 0;
 };
 
-/// Of the end marker, which is kEndMarkerBytes long from version 2 on.
+/// Length of the end marker; kEndMarkerBytes from version 2 on.
 [[nodiscard]] constexpr std::size_t end_marker_bytes(const Framing& framing) {
     return framing.version == 1 ? 16 : kEndMarkerBytes;
 }
 
-/// What an end marker says.
+/// Content of an end marker.
 struct EndMarker {
     std::uint64_t index_offset = 0;
     std::optional<std::uint32_t> checksum = std::nullopt;  ///< of all packets; none in version 1
 };
 
-/// Fills the first kPacketHeaderBytes of `packet`, whose payload is in place: its length and CRC
-/// are set here. `seed`: of the Framing.
+/// Writes the first kPacketHeaderBytes of `packet`, with length and CRC of the payload, which is in
+/// place. `seed` as in Framing.
 void frame_packet(PacketHeader header, std::span<std::uint8_t> packet, std::uint32_t seed);
 /// Precondition: `start` of these bytes is kPacket.
 [[nodiscard]] PacketHeader decode_packet_header(std::span<const std::uint8_t> bytes);
 
-/// The checksum of all packets up to this one, by that of those before (at first the seed).
+/// The packet checksum up to `packet`, from the one before it (initially the seed).
 [[nodiscard]] std::uint32_t add_to_checksum(std::uint32_t checksum,
                                             std::span<const std::uint8_t> packet);
 
@@ -60,7 +60,7 @@ void frame_packet(PacketHeader header, std::span<std::uint8_t> packet, std::uint
 [[nodiscard]] EndMarker decode_end_marker(std::span<const std::uint8_t> bytes,
                                           const Framing& framing);
 
-/// What a stretch of a file begins with.
+/// First unit in a part of a file.
 enum class Start {
     kPacket,    ///< a packet header with a good CRC, whose payload is not too long
     kEnd,       ///< an end marker with a good CRC

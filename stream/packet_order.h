@@ -13,22 +13,22 @@ struct StreamPosition {
     auto operator<=>(const StreamPosition&) const = default;
 };
 
-/// Follows the sample packets of a stream and notices what is missing between them.
+/// Follows the sample packets of a stream and finds gaps between them.
 class PacketOrder {
   public:
     explicit PacketOrder(int array_rows) : array_rows_(array_rows) {}
 
     /// Where the next packet begins if nothing is missing.
     [[nodiscard]] StreamPosition expected() const { return expected_; }
-    /// Goes to `next`, and counts slots with rows that were skipped over.
+    /// Advances to `next` and counts slots with missing rows.
     /// Precondition: next >= expected().
     void skip_to(StreamPosition next);
-    /// Goes on by `rows` rows of a slot. Precondition: there are as many.
+    /// Advances by `rows` rows of a slot. Precondition: the slot has them.
     void advance(int rows);
 
-    /// Slots of which rows were skipped over.
+    /// Slots with missing rows.
     [[nodiscard]] std::int64_t missing_slots() const { return missing_slots_; }
-    /// "slot 3 from row 4 to slot 5 row 7 is missing": what `skip_to(next)` would skip over.
+    /// The gap that `skip_to(next)` would skip: "slot 3 from row 4 to slot 5 row 7 is missing".
     [[nodiscard]] std::string missing_before(StreamPosition next) const;
 
   private:

@@ -18,15 +18,15 @@ namespace stipple {
 [[nodiscard]] std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_depth,
                                                        std::uint32_t seed);
 
-/// One packet out of bytes, or why there is none.
+/// A packet decoded from bytes, or the fault.
 struct DecodedSamples {
     SamplePacket packet;
-    std::size_t bytes = 0;  ///< that it fills
+    std::size_t bytes = 0;  ///< length of the packet
     std::string fault;      ///< empty if the packet is good
 };
 
-/// The packet of samples that `bytes` begin with. It is good if its CRCs are, and if it holds what
-/// the schedule of `stream` says for a slot and row not before `expected`.
+/// The packet of samples at the begin of `bytes`. It is good if its CRCs are correct, its slot and
+/// row are not before `expected`, and its number of samples follows the schedule of `stream`.
 [[nodiscard]] DecodedSamples decode_samples(const StreamHeader& stream, const Framing& framing,
                                             std::span<const std::uint8_t> bytes,
                                             StreamPosition expected);

@@ -8,8 +8,8 @@ namespace stipple {
 /// The samples of one slot, or of a band of its rows: for each pixel that `visit_due` visits, row
 /// by row, one DN per plane.
 struct SamplePacket {
-    static constexpr std::uint8_t kOverrun = 1;  ///< the readout did not fit its slot
-    static constexpr std::uint8_t kDropped = 2;  ///< the chip gave up these samples: `dn` is empty
+    static constexpr std::uint8_t kOverrun = 1;  ///< the readout took longer than its slot
+    static constexpr std::uint8_t kDropped = 2;  ///< the chip discarded them: `dn` is empty
 
     std::int64_t slot = 0;
     int first_row = 0;

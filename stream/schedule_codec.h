@@ -15,7 +15,7 @@
 
 namespace stipple {
 
-/// A schedule and how it is stored.
+/// A schedule and its storage.
 struct StoredSchedule {
     ExposureSchedule schedule;
     ScheduleSource source;
@@ -29,16 +29,16 @@ struct ScheduleSection {
     std::size_t offset = 0;
 };
 
-/// What a reader needs of a schedule.
+/// How a reader uses a schedule.
 struct ScheduleUse {
-    /// If set, a random schedule is not kept: its pixels are counted here, and `schedule` has a
-    /// tile of one pixel, the first, by which its figures are those of all.
+    /// If set, a random schedule is not stored: its pixels are counted here, and `schedule` has a
+    /// tile of one pixel, the first, which has the same figures as all others.
     std::optional<DueCounts>* counts = nullptr;
     std::uint64_t input_bytes = kEndlessInput;  ///< as of check_memory
 };
 
-/// The schedule section of a header. \throws InputError at `place` if the schedule is beyond the
-/// limits of the format, or is not what the generator of its source makes.
+/// The schedule section of a header. \throws InputError at `place` if the schedule exceeds the
+/// limits of the format, or differs from the output of its generator.
 [[nodiscard]] std::vector<std::uint8_t> encode_schedule(const StreamHeader& header,
                                                         std::string_view place);
 

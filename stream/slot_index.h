@@ -15,8 +15,8 @@ struct IndexEntry {
 
 inline constexpr std::size_t kIndexEntryBytes = 16;
 
-/// Remembers where slots begin in a file of any length: beyond `most` entries it keeps every
-/// second one only, then every fourth ...
+/// The offsets of slots in a file of any length, in bounded memory: beyond `most` entries it keeps
+/// only every second one, then every fourth, and so on.
 class SlotIndex {
   public:
     explicit SlotIndex(std::size_t most = std::size_t{1} << 16U) : most_(most) {}

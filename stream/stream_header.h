@@ -29,12 +29,12 @@ struct CalibrationTile {
     bool operator==(const CalibrationTile&) const = default;
 };
 
-/// What a decoder needs to turn DN into electrons and to know how far to trust them.
-/// Terms as in EMVA 1288.
+/// The parameters that convert DN to electrons, and their noise. Terms of EMVA 1288. The ranges are
+/// in docs/stream_format.md.
 struct Calibration {
     int bit_depth = 8;  ///< 1..16
     Rounding rounding = Rounding::kNearest;
-    double black_level_dn = 0;  ///< DN of no charge
+    double black_level_dn = 0;  ///< mean DN without charge
     double gain_e_per_dn = 2000.0 / 255;
     double read_noise_e = 10;  ///< standard deviation
     double full_well_e = 20000;
@@ -61,14 +61,14 @@ struct ScheduleSource {
     bool operator==(const ScheduleSource&) const = default;
 };
 
-/// Everything a stream says of itself before the first sample.
+/// The header of a stream.
 struct StreamHeader {
     FrameShape shape;
     double slot_us = 5000;
     Calibration calibration;
     ExposureSchedule schedule;
     ScheduleSource schedule_source;
-    std::string schedule_name;  ///< for people, at most 64 bytes of UTF-8
+    std::string schedule_name;  ///< informative, at most 64 bytes of UTF-8
     std::string provenance;     ///< TOML text: emulator parameters, seed, footage; may be empty
     ColourFilter cfa = ColourFilter::kNone;  ///< of the one plane, if it is a mosaic
 

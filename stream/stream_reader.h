@@ -17,12 +17,12 @@ namespace stipple {
 enum class ReadPolicy {
     kTolerant,  ///< damage costs its own samples and is reported
     kStrict,    ///< the first deviation from the format is an InputError
-    /// As kTolerant, but packets may hold other samples than the schedule says, up to one a site:
-    /// to find out which schedule they follow.
+    /// As kTolerant, but a packet may have any number of samples up to one per site. For the search
+    /// of the schedule that the samples follow.
     kAnySchedule,
-    /// As kTolerant, for those who look at no samples: a random schedule, of which 20 bytes of a
-    /// header can make 800 MB, is gone over and counted, but not kept. The schedule of `header` has
-    /// a tile of one pixel then, and the figures of the whole.
+    /// As kTolerant, for callers that use no samples. A random schedule (20 bytes of a header can
+    /// expand to 800 MB) is counted row by row but not stored: the schedule of `header` has a tile
+    /// of one pixel, with the figures of the whole schedule.
     kCounts,
 };
 
@@ -41,28 +41,27 @@ struct StreamReport {
     std::uint64_t samples = 0;
     std::uint64_t payload_bits = 0;
     /// 1 + the slot of the last packet, or the number in the index once it was read. Up to 2^53 in
-    /// a crafted file: no measure for memory or time.
+    /// a crafted file, so memory and time must not depend on it.
     std::int64_t slots = 0;
-    std::int64_t missing_slots = 0;  ///< with rows that are missing before the last packet read
-    /// The end marker has been read: nothing was cut off, and nobody is writing any more.
+    std::int64_t missing_slots = 0;  ///< slots with missing rows before the last packet read
+    /// True once the end marker has been read: the file is whole and will not grow.
     bool complete = false;
-    std::uint64_t tail_bytes = 0;  ///< of a packet that the file ends in the midst of
+    std::uint64_t tail_bytes = 0;  ///< of an incomplete packet at the end of the file
     std::vector<StreamDamage> damage;
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };
 
-/// Called where a file that is still being written holds no further whole packet; `bytes` of it
-/// have been seen. It waits for more and returns true to look again, false if the file ends here.
+/// Called if a growing file has no further whole packet; `bytes` of it have been read. It waits for
+/// more bytes and returns true to read again, or false if the file ends here.
 using WaitForMore = std::function<bool(std::uint64_t bytes)>;
 
 /// Reads a sample stream packet by packet (docs/stream_format.md). Memory: one packet.
 class StreamReader {
   public:
-    /// \throws InputError naming file and offset if the file is missing, foreign, of an unknown
-    /// version, or its header is damaged (without a header no sample has a meaning); as
-    /// check_memory if its schedule is too large. With `wait` the file is followed while it grows:
-    /// the constructor waits for the header, `next` for whole packets, until the end marker comes
-    /// or `wait` returns false.
+    /// \throws InputError naming file and offset if the file is missing, is no sample stream, has
+    /// an unknown version or a damaged header; as check_memory if its schedule is too large. With
+    /// `wait` the file is followed while it grows: the constructor waits for the header, `next` for
+    /// whole packets, until the end marker comes or `wait` returns false.
     explicit StreamReader(const std::filesystem::path& file,
                           ReadPolicy policy = ReadPolicy::kTolerant, WaitForMore wait = {});
     ~StreamReader();
@@ -70,13 +69,12 @@ class StreamReader {
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
-    /// From here on `header` and `next` go by another schedule than the one in the file.
+    /// Replaces the schedule of the file for later calls of `header` and `next`.
     /// Precondition: no packet has been read.
     void use_schedule(ExposureSchedule schedule);
-    /// Number of slots in the recording, known at once if a good index at the end of the file says
-    /// so (then below the bytes of the file / 36, since each slot takes a packet), else once the
-    /// end marker has been read; nothing if the recording was interrupted, goes on, or comes
-    /// through a pipe.
+    /// Number of slots in the stream. Known at once if the file ends with a good index (then less
+    /// than the bytes of the file / 36, since each slot has a packet), else once the end marker has
+    /// been read. Nothing if the stream was interrupted, is still growing, or comes through a pipe.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the
@@ -84,7 +82,7 @@ class StreamReader {
     /// and if the file cannot be read).
     bool next(SamplePacket& packet);
 
-    /// What has been read so far.
+    /// Report on the bytes read so far.
     [[nodiscard]] const StreamReport& report() const;
 
   private:

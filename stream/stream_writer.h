@@ -24,11 +24,11 @@ class StreamWriter {
     StreamWriter& operator=(const StreamWriter&) = delete;
 
     /// Appends a packet. Precondition: packets come by slot from 0 on and by row, without gaps;
-    /// `dn` holds what the schedule predicts for its slot and rows (or nothing, if dropped), each
+    /// `dn` has one DN for each due pixel and plane of its slot and rows (none if dropped), each
     /// below 2^bit_depth. \throws DeviceError (full disk).
     void write(const SamplePacket& packet);
-    /// Drops the rows that the last slot still misses, writes the index and closes; nothing may be
-    /// written after. \throws DeviceError.
+    /// Marks the missing rows of the last slot as dropped, writes the index and closes the file. No
+    /// call of `write` may follow. \throws DeviceError.
     void finish();
 
     [[nodiscard]] std::uint64_t bytes_written() const;

@@ -11,14 +11,14 @@
 
 namespace stipple {
 
-/// Slots in the recording, by the index that the end marker of a file points to. Nothing if there
-/// is none, if it is damaged, or if it is not where the marker says (bytes of the file are missing
-/// then, and no offset is right).
+/// Slots in the stream, from the index that the end marker of a file points to. Nothing if there is
+/// no index, if it is damaged, or if it is not where the marker says (then bytes of the file are
+/// missing, and no offset is correct).
 [[nodiscard]] std::optional<std::int64_t> slots_by_index(const FileWindow& file,
                                                          const Framing& framing);
 
-/// The first entry of an index that does not name the first packet of its slot, in words. Nothing
-/// is found in a pipe.
+/// Message on the first entry of an index that does not point to the first packet of its slot.
+/// Nothing if all do, or if `file` is a pipe.
 [[nodiscard]] std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
                                                      const FileWindow& file,
                                                      const Framing& framing);

@@ -7,14 +7,14 @@
 
 namespace stipple {
 
-/// A program as it stands in a file.
+/// A program and its name in a file.
 struct NamedProgram {
     std::string name;  ///< of the schedule
     SequencerProgram program;
 };
 
-/// The memory image of `program` as Verilog's $readmemh reads it, with the figures that a reader
-/// needs in comments (docs/sequencer_program.md).
+/// The memory image of `program` for Verilog's $readmemh, with the sizes that a reader needs in
+/// comments (docs/sequencer_program.md).
 [[nodiscard]] std::string program_text(const NamedProgram& program);
 
 /// The inverse. \throws InputError naming `place`, line and problem: a figure is missing, a word is

@@ -8,8 +8,8 @@
 
 namespace stipple {
 
-/// A schedule as the memory that a chip's sequencer steps through (docs/sequencer_program.md): for
-/// each slot of the period, row and column of the tile a few bits, which say what the pixel does.
+/// A schedule as the memory of a chip's sequencer (docs/sequencer_program.md): one to three bits
+/// for each slot of the period, row and column of the tile.
 struct SequencerProgram {
     static constexpr unsigned kRead = 1;   ///< bit 0: read the store at the end of the slot
     static constexpr unsigned kOpen = 2;   ///< bit 1: collect light in this slot
@@ -18,7 +18,7 @@ struct SequencerProgram {
     int tile_rows = 0;
     int tile_cols = 0;
     int period_slots = 0;
-    /// 1: kRead alone, every pixel collects light in every slot; 2: kOpen too; 3: kStore too.
+    /// 1: kRead only, every pixel collects light in every slot; 2: kOpen too; 3: kStore too.
     int bits_per_pixel = 1;
     std::vector<std::uint8_t> pixels;  ///< order (slot, row, col), 0 <= value < 2^bits_per_pixel
 
@@ -32,12 +32,12 @@ struct SequencerProgram {
 /// `SequencerProgram::bits_per_pixel` of a schedule.
 [[nodiscard]] int program_bits_per_pixel(const ExposureSchedule& schedule);
 
-/// The program repeats the schedule's period once, or twice where an exposure changes from one
-/// charge store to the other between repetitions. \throws InputError if two charge stores are too
-/// few.
+/// The program of a schedule. It covers the period once, or twice if an exposure changes its charge
+/// store from one period to the next. \throws InputError if the schedule needs more than two charge
+/// stores.
 [[nodiscard]] SequencerProgram compile_schedule(const ExposureSchedule& schedule);
 
-/// The schedule that `program` steps through: an exposure of a store begins in the first open slot
+/// The schedule of `program`: an exposure of a store begins in the first open slot
 /// after its last reading. `schedule_of(compile_schedule(s)) == s` if the periods are equal.
 /// \throws InputError naming `place`, pixel and slot: a pixel is read while it is closed, is open
 /// and never read, or is open for more than 64 slots from the first to the last.

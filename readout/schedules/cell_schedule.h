@@ -6,13 +6,13 @@
 
 namespace stipple {
 
-/// A cell of pixels that each repeat one exposure at a rate and an offset of their own. Lists have
+/// A cell of pixels. Each pixel repeats one exposure with its own interval and offset. Lists have
 /// one value per pixel, row by row.
 struct Cell {
     int rows = 1;
     int cols = 1;
     std::vector<int> exposure_slots;  ///< 1..64
-    std::vector<int> every_slots;     ///< from the begin of one exposure to that of the next
+    std::vector<int> every_slots;     ///< from one begin of an exposure to the next
     std::vector<int> first_slots;     ///< begin of the first one, 0 or more
 };
 

@@ -11,7 +11,7 @@
 
 namespace stipple {
 
-/// What one group of pixels repeats: a cyclic order of the lengths, from a slot on.
+/// The code of a group of pixels: a cyclic order of the lengths and its first slot.
 struct GroupCode {
     std::uint16_t order = 0;
     std::uint16_t first_slot = 0;
@@ -39,12 +39,12 @@ struct GroupTile {
     }
 };
 
-/// The codes that lengths allow: up to kMaxOrders cyclic orders of them, each from every slot of
-/// the period. Orders are sorted so that those in which long and short exposures alternate come
-/// first (least sum of products of neighbours): then no time is far from a short exposure.
+/// The possible codes of lengths: up to kMaxOrders cyclic orders of them, each from every slot of
+/// the period. Orders are sorted by their sum of products of neighbours, min first: there long and
+/// short exposures alternate, so every slot is close to a short exposure.
 class CodeSet {
   public:
-    static constexpr std::size_t kMaxOrders = 6;  ///< all there are of four different lengths
+    static constexpr std::size_t kMaxOrders = 6;  ///< all orders of four different lengths
     /// `overlap` of equal codes without repeated lengths is this times the number of lengths.
     static constexpr std::int32_t kUnit = 1024;
 
@@ -53,7 +53,7 @@ class CodeSet {
 
     [[nodiscard]] int period() const { return period_; }
     [[nodiscard]] int orders() const { return static_cast<int>(orders_.size()); }
-    /// Orders in which the lengths alternate as well as in the first one: its mirror image, say.
+    /// Number of orders with the same sum of products as the first, such as its mirror image.
     [[nodiscard]] int best_orders() const { return best_orders_; }
     [[nodiscard]] std::size_t lengths() const { return lengths_; }
 
@@ -62,11 +62,10 @@ class CodeSet {
         return due_[static_cast<std::size_t>(order)];
     }
 
-    /// How much light two codes share: the sum over exposures e of one and f of the other of
-    /// overlap(e, f)^2 / (|e| |f|), in 1 / kUnit. Summed over neighbours this is the frame
-    /// potential of their exposures (J. J. Benedetto, M. Fickus, "Finite normalized tight frames",
-    /// Advances in Computational Mathematics 18, 2003): least where the exposures tell most of the
-    /// light.
+    /// Overlap of two codes: the sum over exposures e of one and f of the other of
+    /// overlap(e, f)^2 / (|e| |f|), in 1 / kUnit. Its sum over neighbours is the frame potential of
+    /// their exposures (J. J. Benedetto, M. Fickus, "Finite normalized tight frames", Advances in
+    /// Computational Mathematics 18, 2003), which is small if neighbours are out of phase.
     [[nodiscard]] std::int32_t overlap(GroupCode a, GroupCode b) const {
         const int shift = b.first_slot - a.first_slot;
         const std::size_t pair = a.order * orders_.size() + b.order;
@@ -85,7 +84,7 @@ class CodeSet {
     std::size_t lengths_;
     int period_;
     int best_orders_ = 1;
-    std::vector<std::vector<int>> orders_;  ///< lengths in the order in which they follow
+    std::vector<std::vector<int>> orders_;  ///< the lengths in each order
     std::vector<std::vector<int>> due_;
     std::vector<std::int32_t> likeness_;  ///< by order, order, shift
 };

@@ -9,8 +9,8 @@
 
 namespace stipple {
 
-/// The array as a tile made for the hardware sees it: rows of groups. Groups whose numbers in a row
-/// leave the same remainder by `channel_classes` load the same channels.
+/// The array as rows of groups. Groups with the same (number in the row mod `channel_classes`) load
+/// the same channels.
 struct GroupGrid {
     int group_rows = 1;       ///< pixels
     int group_cols = 1;       ///< pixels
@@ -21,7 +21,7 @@ struct GroupGrid {
 /// \throws InputError if channels or a group is outside 1..65535.
 [[nodiscard]] GroupGrid grid_of(const HardwareTile& tile);
 
-/// A group near another one, and how much it matters that the two differ.
+/// A group near another one, and the weight of their overlap.
 struct Neighbour {
     int row = 0;  ///< relative, in groups
     int col = 0;
@@ -33,13 +33,13 @@ struct Neighbour {
 [[nodiscard]] std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int max_rows,
                                                    int max_cols);
 
-/// What a row of the array loads its channels with, in groups.
+/// Load of the channels by a row of the array, in groups.
 class RowLoadCount {
   public:
     /// For tiles of `tile_cols` groups of which one row is given, and codes of `codes`.
     RowLoadCount(const GroupGrid& grid, const CodeSet& codes);
 
-    /// The most groups that are due in any channel and slot, where a group has the code
+    /// Max number of due groups over channels and slots, if a group has the code
     /// `code_of(group)`.
     template <typename CodeOf>
     [[nodiscard]] int busiest(CodeOf&& code_of) {
@@ -47,9 +47,9 @@ class RowLoadCount {
         for (int group = 0; group < cols_; ++group) add(group % classes_, code_of(group));
         return *std::ranges::max_element(due_);
     }
-    /// The least that is possible: all channels and slots alike.
+    /// Lower bound of `busiest`: equal loads of all channels and slots.
     [[nodiscard]] int even() const;
-    /// Steps that `busiest` takes.
+    /// Number of steps of `busiest`.
     [[nodiscard]] std::int64_t counted() const;
 
   private:

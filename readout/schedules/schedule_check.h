@@ -10,21 +10,21 @@
 
 namespace stipple {
 
-/// Why pixels with `charge_stores` charge stores cannot do what the schedule says: names the first
-/// pixel and slot in which more exposures are under way. Nothing if they can.
+/// Message if the schedule needs more than `charge_stores` charge stores per pixel: names the first
+/// pixel and slot with more exposures under way. Else nothing.
 [[nodiscard]] std::optional<std::string> store_problem(const ExposureSchedule& schedule,
                                                        int charge_stores);
 
-/// Why a sensor cannot read an array of `shape` by this schedule within slots of `slot_us`: names
-/// the slot of the period that takes longest, and what limits it. Nothing if it can, or if nothing
-/// is read. \throws InputError as ReadoutAccount.
+/// Message if a sensor cannot read an array of `shape` by this schedule within slots of `slot_us`:
+/// names the slowest slot of the period and its limit. Nothing if it can, or if nothing is read.
+/// \throws InputError as ReadoutAccount.
 [[nodiscard]] std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                                         const ReadoutTiming& timing,
                                                         FrameShape shape, double slot_us);
 
-/// Names the first pixel whose exposures are not those of the group it is read with. That is no
-/// fault, but the group is transferred whole whenever one of its pixels is due. Nothing if pixels
-/// of a group are alike, or columns are not read in groups.
+/// Remark that names the first pixel whose exposures differ from those of its group. This is
+/// allowed, but the group is transferred whole whenever one of its pixels is due. Nothing if the
+/// pixels of each group are equal, or if columns are not read in groups.
 [[nodiscard]] std::optional<std::string> group_remark(const ExposureSchedule& schedule,
                                                       const ColumnAddressing& addressing,
                                                       FrameShape shape);

@@ -12,64 +12,63 @@
 
 namespace stipple {
 
-/// What a chip does when the readout of a slot takes longer than the slot.
+/// Behaviour of a chip if the readout of a slot takes longer than the slot.
 enum class OverrunPolicy : std::uint8_t {
-    kStretch,  ///< the slot lasts as long as its readout; the light stays that of a slot
-    kDrop      ///< rows that do not fit are reset without being read
+    kStretch,  ///< the slot lasts as long as its readout; its light stays that of one slot
+    kDrop      ///< rows that do not fit are reset without readout
 };
 
-/// What takes most of the time of a readout.
+/// The part of a readout that takes most of its time.
 enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };
 
 /// As a word: "adc", "link", "row_overhead", "code_load".
 [[nodiscard]] std::string_view name_of(ReadoutLimit limit);
 
-/// The time that a readout gives its slot.
+/// Duration of a slot.
 struct SlotBudget {
-    std::int64_t clocks = 0;  ///< 0: as long as it takes
+    std::int64_t clocks = 0;  ///< 0: as long as the readout
     OverrunPolicy policy = OverrunPolicy::kStretch;
 };
 
-/// What a readout has done. The planes of a pixel are read side by side, each by circuits of its
-/// own, so they multiply samples, conversions, bits and energy, but not clocks.
+/// Counts of a readout. The planes of a pixel have separate circuits that work in parallel, so they
+/// multiply samples, conversions, bits and energy, but not clocks.
 struct ReadoutCounts {
-    std::uint64_t samples = 0;          ///< that leave in the stream
-    std::uint64_t dropped_samples = 0;  ///< that were due and did not fit
-    std::uint64_t transferred = 0;      ///< values over the link: those of dark rows and groups too
-    std::uint64_t bits = 0;             ///< over the link
-    std::uint64_t conversions = 0;      ///< of all ADCs
-    std::int64_t rows = 0;              ///< selected, dark ones included
-    std::int64_t readout_clocks = 0;    ///< from the beginning of a slot to the end of its readout
-    std::int64_t convert_clocks = 0;    ///< in which the columns are selected and converted
-    std::int64_t link_clocks = 0;       ///< in which the link transfers
+    std::uint64_t samples = 0;          ///< in the stream
+    std::uint64_t dropped_samples = 0;  ///< due, but did not fit
+    std::uint64_t transferred = 0;  ///< values on the link, those of dark rows and groups included
+    std::uint64_t bits = 0;         ///< on the link
+    std::uint64_t conversions = 0;  ///< of all ADCs
+    std::int64_t rows = 0;          ///< selected, dark ones included
+    std::int64_t readout_clocks = 0;  ///< from the beginning of a slot to the end of its readout
+    std::int64_t convert_clocks = 0;  ///< while columns are selected and converted
+    std::int64_t link_clocks = 0;     ///< while the link transfers
     double energy_pj = 0;
 
     ReadoutCounts& operator+=(const ReadoutCounts& more);
 };
 
-/// A slot, accounted for.
+/// Cost of a slot.
 struct SlotAccount {
     ReadoutCounts counts;
-    std::int64_t clocks = 0;  ///< of the slot: the budget, or what readout and code load take
-    int settle_clocks = 0;    ///< that its rows take
-    int end_row = 0;          ///< rows from here on are dropped; those of the window: none
+    std::int64_t clocks = 0;  ///< of the slot: the budget, or longer by readout or code load
+    int settle_clocks = 0;    ///< of its rows
+    int end_row = 0;          ///< rows from here on are dropped; rows of the window: none
     bool overrun = false;     ///< the budget was too short
     ReadoutLimit limit = ReadoutLimit::kLink;
 };
 
-/// Keeps account of the readout, slot by slot. It depends on the schedule, not on the light.
+/// Cost of the readout slot by slot, and its totals. Depends on the schedule, not on the light.
 class ReadoutAccount {
   public:
-    /// What is read of the array, and how fast. `schedule` must outlive this.
+    /// `shape`: the window that is read. `schedule` must outlive this.
     /// \throws InputError as `check_window`, or if with kDrop not even overhead and code load fit
     /// the budget.
     ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
                    SlotBudget budget);
 
-    /// What `slot` costs. Slots of the same phase are alike once all exposures are under way, and
-    /// then cost no time to account for.
+    /// Cost of `slot`. Steady slots of the same phase are equal and computed once.
     [[nodiscard]] const SlotAccount& of(std::int64_t slot);
-    /// When its rows are read, from `begin` on, without those that are dropped.
+    /// Times of its rows from `begin` on, without dropped rows.
     [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
 
     /// Adds slot `slots()` to the totals and returns it.
@@ -79,13 +78,13 @@ class ReadoutAccount {
     [[nodiscard]] std::int64_t clocks() const { return clocks_; }
     [[nodiscard]] const ReadoutCounts& totals() const { return totals_; }
 
-    /// With the load of the code of these rows in place of the array's.
+    /// The timing, with the code load of the window instead of the array.
     [[nodiscard]] const ReadoutTiming& timing() const { return timing_; }
     [[nodiscard]] const ExposureSchedule& schedule() const { return schedule_; }
     [[nodiscard]] FrameShape shape() const { return shape_; }
     [[nodiscard]] SlotBudget budget() const { return budget_; }
     [[nodiscard]] RowLoads& row_loads() { return row_loads_; }
-    /// Slots before this one miss exposures that would have begun before slot 0.
+    /// Earlier slots lack exposures that would have begun before slot 0.
     [[nodiscard]] std::int64_t first_steady_slot() const { return first_steady_slot_; }
 
   private:
@@ -109,13 +108,12 @@ class ReadoutAccount {
     ReadoutCounts totals_;
 };
 
-/// Clocks of a slot of `slot_us`, the last one that has begun left out.
+/// Whole clocks in a slot of `slot_us`.
 /// \throws InputError if there is none or more than `kMaxReadoutClocks`.
 [[nodiscard]] std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us);
 
-/// Memory of the sequencer that steps through the schedule, in bits: for each slot of the period
-/// and pixel of the tile one, with gaps two, with two charge stores three
-/// (docs/sequencer_program.md).
+/// Memory of the sequencer for the schedule (docs/sequencer_program.md), in bits: per slot of the
+/// period and pixel of the tile one bit, two with gaps, three with two charge stores.
 [[nodiscard]] std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule);
 
 }  // namespace stipple

@@ -16,14 +16,13 @@ struct ReadoutCommand {
                     ///< busiest channel
 };
 
-/// The columns, ADCs and link of a sensor, without a clock of their own: the cycle is an argument.
-/// Whoever drives them asks when a command is possible and issues it then or later; what is not
-/// possible is refused, so that no row, ADC or link is ever used twice at once.
+/// The columns, ADCs and link of a sensor, without a clock: the cycle is an argument. A caller asks
+/// for the earliest cycle of a command and issues it then or later. An earlier command is refused,
+/// so no row, ADC or link is used twice at once.
 ///
 /// Rows rise within a slot; each is selected, converted, transferred. A conversion goes to one of
-/// two row latches (one, where conversion and transfer take turns), so row i + 2 waits until row i
-/// is transferred. Blanking follows each conversion and each transfer; where they take turns,
-/// each row.
+/// two row latches (one with kSequential), so row i + 2 waits until row i is transferred. Blanking
+/// follows each conversion and each transfer; with kSequential, each row.
 class ReadoutPipeline {
   public:
     static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -31,7 +30,7 @@ class ReadoutPipeline {
     /// `timing` must outlive this.
     explicit ReadoutPipeline(const ReadoutTiming& timing) : timing_(timing) {}
 
-    /// Begins the readout of a slot: overhead first, whose rows take `full_row_clocks` each.
+    /// Begins the readout of a slot with its overhead, whose rows take `full_row_clocks` each.
     /// Precondition: the readout before has ended by `cycle`; 0 <= settle.
     void begin_slot(std::int64_t cycle, std::int64_t full_row_clocks, int settle) noexcept;
 
@@ -41,8 +40,8 @@ class ReadoutPipeline {
     /// Begins `command` at `cycle`. False and no effect if that is before `earliest_cycle`.
     [[nodiscard]] bool issue(const ReadoutCommand& command, std::int64_t cycle) noexcept;
 
-    /// When the rows that were read so far are done. The last one takes a whole row time, as in
-    /// between: as long as its conversion at least, unless they take turns.
+    /// End of the readout of the rows so far. The last row takes a whole row time like the others:
+    /// at least the time of its conversion, except with kSequential.
     /// Precondition: all of them are transferred.
     [[nodiscard]] std::int64_t end_cycle() const noexcept;
 
@@ -50,14 +49,14 @@ class ReadoutPipeline {
     [[nodiscard]] std::int64_t clocks(const ReadoutCommand& command) const noexcept;
 
   private:
-    /// What a row has gone through. Cycles are the ends of the steps that were issued.
+    /// State of a row. Cycles are the ends of the issued steps.
     struct Row {
         int row = 0;
         bool selected = false;
         bool converted = false;
         bool transferred = false;
         std::int64_t select_end = 0;
-        std::int64_t convert_clocks = 0;  ///< from its selection, stepping over rows aside
+        std::int64_t convert_clocks = 0;  ///< from its selection, without skipped rows
         std::int64_t convert_end = 0;
         std::int64_t transfer_begin = 0;
         std::int64_t transfer_end = 0;

@@ -10,19 +10,19 @@
 
 namespace stipple {
 
-/// How fast a sensor reads a window in full and by a schedule, each readout right after the last.
+/// Rates of full and of coded readout of a window, each readout right after the previous one.
 struct ReadoutRate {
     UniformReadout full;
-    BalancedReadout even;  ///< the bound: every row reads the mean load, spread evenly
+    BalancedReadout even;  ///< the bound: balanced load
     SlotAccount slowest;   ///< slot of the steady period
     std::int64_t slowest_phase = 0;
     double mean_slot_clocks = 0;
     ReadoutCounts period;         ///< of all slots of a steady period
     double full_hz = 0;           ///< readouts of the whole window per second
     double coded_hz = 0;          ///< slots per second, as the slowest slot allows
-    double mean_coded_hz = 0;     ///< slots per second, if each lasts as long as it takes
+    double mean_coded_hz = 0;     ///< slots per second if each lasts as long as its readout
     double speedup = 0;           ///< coded_hz / full_hz
-    double balanced_speedup = 0;  ///< of `even`, which code load too may hold up
+    double balanced_speedup = 0;  ///< of `even`, limited by the code load too
     double full_energy_pj = 0;
 };
 

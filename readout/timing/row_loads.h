@@ -10,32 +10,32 @@
 
 namespace stipple {
 
-/// What is read of a row in a slot.
+/// Load of a row in a slot.
 struct RowLoad {
     int row = 0;              ///< dark rows are below 0
-    int due = 0;              ///< pixels whose samples leave in the stream
-    int columns = 0;          ///< transferred: those that are due, or all of their groups
+    int due = 0;              ///< pixels with samples in the stream
+    int columns = 0;          ///< transferred: due columns, or all columns of their groups
     int channel_columns = 0;  ///< of the busiest channel
     int conversions = 1;      ///< of the busiest ADC
 
     bool operator==(const RowLoad&) const = default;
 };
 
-/// \throws InputError if `shape`, what is read of the array, is empty or the array is smaller.
+/// \throws InputError if the window `shape` is empty or larger than the array.
 void check_window(const ReadoutTiming& timing, FrameShape shape);
 
-/// The load of a row of which the first `cols` columns are read, all of them.
+/// The load of a row whose first `cols` columns are all read.
 [[nodiscard]] RowLoad full_row(const ReadoutTiming& timing, int cols);
 
-/// Counts what a schedule makes a sensor read, with the sensor's way to address columns.
+/// Loads of the rows by a schedule, with the column addressing of a sensor.
 class RowLoads {
   public:
-    /// `shape` is what is read of the array. `timing` and `schedule` must outlive this.
+    /// `shape`: the window that is read. `timing` and `schedule` must outlive this.
     /// \throws InputError as `check_window`.
     RowLoads(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape);
 
     /// Fills `loads` with the rows that are read at the end of `slot`, in scan order; dark rows
-    /// first, if any row is read. Time grows with the pixels that are due.
+    /// first, if any row is read. Run time grows with the due pixels.
     void list(std::int64_t slot, std::vector<RowLoad>& loads);
 
     /// The columns that each channel transfers of `row` at the end of `slot`; for waveforms.
@@ -48,11 +48,11 @@ class RowLoads {
     const ReadoutTiming& timing_;
     const ExposureSchedule& schedule_;
     FrameShape shape_;
-    int block_rows_;                       ///< rows that are transferred alike
-    bool count_adcs_;                      ///< whether shared ADCs skip columns
+    int block_rows_;                       ///< rows with the same transferred columns
+    bool count_adcs_;                      ///< true if shared ADCs skip columns
     std::vector<std::uint16_t> channel_;   ///< of each column
-    std::vector<std::uint16_t> adc_;       ///< of each column, where ADCs skip
-    std::vector<std::uint16_t> marked_;    ///< first columns of what is transferred in a block
+    std::vector<std::uint16_t> adc_;       ///< of each column, if ADCs skip
+    std::vector<std::uint16_t> marked_;    ///< first columns of the transferred groups of a block
     std::vector<std::uint8_t> is_marked_;  ///< by group
     std::vector<int> due_;                 ///< by row of the block
     std::vector<int> by_channel_;

@@ -11,8 +11,8 @@
 
 namespace stipple {
 
-/// The readout as a value change dump (VCD, IEEE 1364), for a waveform viewer. Times are in ps,
-/// rounded, so that cursors read true times; the vector `cycle` holds the clock, exactly.
+/// The readout as a value change dump (VCD, IEEE 1364) for a waveform viewer. Times are in ps,
+/// rounded; the vector `cycle` holds the exact clock.
 ///
 /// Signals: slot_start (the first clock of a slot), slot, overrun, code_load; row_select (a row is
 /// on the column lines) and row, adc_busy; link_valid and link_row, columns (of that row),
@@ -24,8 +24,8 @@ class Waveform {
 
     /// Declarations and initial values: the beginning of the file.
     [[nodiscard]] std::string head() const;
-    /// The changes of `slot` that `account` gives from clock `begin` on.
-    /// Precondition: slots come in order and `begin` is the end of the one before.
+    /// The changes of `slot`, which begins at clock `begin`, by `account`.
+    /// Precondition: slots are in order and `begin` is the end of the previous one.
     [[nodiscard]] std::string slot(ReadoutAccount& account, std::int64_t slot, std::int64_t begin);
     /// The end of the last slot, at clock `end`.
     [[nodiscard]] std::string tail(std::int64_t end);
