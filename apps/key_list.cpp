@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "apps/command_line.h"
+#include "apps/arguments/command_line.h"
 #include "core/suggestion.h"
 #include "decoder/decode_options.h"
 #include "readout/schedules/schedule_catalogue.h"

@@ -13,10 +13,10 @@
 
 namespace stipple {
 
-/// What identifies a camera, and what it was set to: the session record of a recording.
+/// Identity and settings of a camera: the session record of a recording.
 struct CameraDescription {
     std::string transport;  ///< "GigE Vision", "USB3 Vision", "V4L2", "replay"
-    std::string address;    ///< what `open` takes: "gige:192.168.0.5", "v4l2:/dev/video0"
+    std::string address;    ///< argument of `open`: "gige:192.168.0.5", "v4l2:/dev/video0"
     std::string vendor;
     std::string model;
     std::string serial;
@@ -24,39 +24,39 @@ struct CameraDescription {
     std::string genicam_xml_hash;                 ///< XXH3 as hex; empty without GenICam
     std::map<std::string, std::string> features;  ///< every readable feature or control, as text
     std::map<std::string, std::string> transport_facts;  ///< packet size, MTU, socket buffer, ...
-    std::vector<std::string> warnings = {};  ///< what may cost frames, each with its fix
+    std::vector<std::string> warnings = {};  ///< risks of lost frames, each with its fix
 };
 
 /// Nothing arrived within the timeout.
 struct NoFrame {};
 
-/// The device is gone, or its stream has failed for good; open it again. Or all frames of a replay
-/// have come.
+/// The device is gone or its stream failed, so it has to be opened again; or a replay has reached
+/// its end.
 struct DeviceLost {
     std::string reason;
-    bool at_end = false;  ///< the latter: no fault
-    /// Of a replay: why its file cannot be used any further.
+    bool at_end = false;  ///< end of a replay, no fault
+    /// Replay: why its file cannot be read further.
     std::optional<InputError> bad_file = {};
-    std::string warning = {};  ///< of a replay: what is wrong with its file, which is at its end
+    std::string warning = {};  ///< replay at its end: faults of its file
 };
 
-/// What `Camera::wait` comes back with. Of the frame's record the camera fills what it knows:
-/// wire_id, status, stamps, exposure, gain, black level, layout, bytes_received. Unwrapping of ids,
-/// gaps and epochs is the session's part.
+/// Result of `Camera::wait`. The camera fills these fields of the frame record: wire_id, status,
+/// stamps, exposure, gain, black level, layout, bytes_received. CaptureSession unwraps ids and adds
+/// gaps and epochs.
 using Arrival = std::variant<CapturedFrame, NoFrame, DeviceLost>;
 
-/// Losses that the transport counts but does not tie to a frame, since `start`.
+/// Losses since `start` that the transport counts without naming the frame.
 struct TransportCounts {
-    std::uint64_t underruns = 0;  ///< no buffer was free: for a frame, or a packet (GigE Vision)
+    std::uint64_t underruns = 0;  ///< no free buffer for a frame, or for a packet (GigE Vision)
     std::uint64_t packets_resent = 0;
     std::uint64_t packets_missing = 0;
-    std::uint64_t socket_drops = 0;  ///< datagrams that the host's socket had no room for
-    std::uint64_t link_faults = 0;   ///< frames that the interface dropped, and times its link went
+    std::uint64_t socket_drops = 0;  ///< datagrams dropped by the full socket of the host
+    std::uint64_t link_faults = 0;   ///< frames dropped by the interface, and link failures
     std::uint64_t size_mismatches = 0;
 };
 
-/// A source of frames: GenICam through Aravis, V4L2, or a recording played back. Configured by the
-/// function that opens it, then started once. Used from one thread.
+/// A source of frames: GenICam through Aravis, V4L2, or a replayed recording. The function that
+/// opens it applies the settings; then it is started once. Used from one thread.
 class Camera {
   public:
     virtual ~Camera() = default;
@@ -69,9 +69,9 @@ class Camera {
     [[nodiscard]] virtual std::uint64_t wire_id_period() const = 0;
     [[nodiscard]] virtual TransportCounts counts() const = 0;
 
-    /// \throws DeviceError if the device refuses, with what to do.
+    /// \throws DeviceError if the device refuses; the message says what to do.
     virtual void start() = 0;
-    /// Waits for the next frame. Never throws for what a device does while it streams.
+    /// Waits for the next frame. Faults of a streaming device never throw.
     [[nodiscard]] virtual Arrival wait(std::chrono::milliseconds timeout) = 0;
     virtual void stop() noexcept = 0;
 
@@ -79,15 +79,15 @@ class Camera {
     Camera() = default;
 };
 
-/// Settings of a camera by feature name, as text: GenICam feature or V4L2 control; `Width`,
-/// `Height`, `OffsetX`, `OffsetY`, `PixelFormat`, `AcquisitionFrameRate`, `ExposureTime` mean the
-/// same for all.
+/// Settings of a camera as text, by the name of the GenICam feature or V4L2 control. `Width`,
+/// `Height`, `OffsetX`, `OffsetY`, `PixelFormat`, `AcquisitionFrameRate` and `ExposureTime` mean
+/// the same for all cameras.
 using CameraSettings = std::vector<std::pair<std::string, std::string>>;
 
-/// How frames wait on the host.
+/// Buffers for frames on the host.
 struct CameraBuffers {
     int frames = 32;        ///< 2 to 1024
-    int socket_frames = 4;  ///< GigE Vision: what the socket's receive buffer is to hold
+    int socket_frames = 4;  ///< GigE Vision: frames in the receive buffer of the socket
 };
 
 }  // namespace stipple

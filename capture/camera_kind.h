@@ -12,12 +12,12 @@
 
 namespace stipple {
 
-/// A kind of camera: how its addresses look, and what can be done with one. A function that is null
-/// is not there for this kind.
+/// A kind of camera: the form of its addresses and its functions. A null function does not exist
+/// for this kind.
 struct CameraKind {
     std::string_view prefix;   ///< of its addresses, before the colon
-    std::string_view address;  ///< its form, for people
-    bool is_replay;            ///< of a file: it has an end, and nobody else has it open
+    std::string_view address;  ///< their form, for messages
+    bool is_replay;            ///< a file: it has an end, and no other program controls it
     std::unique_ptr<Camera> (*open)(const std::string& address, const CameraSettings& settings,
                                     const CameraBuffers& buffers);
     std::vector<CameraListing> (*list)();
@@ -25,13 +25,13 @@ struct CameraKind {
     std::vector<DoctorFinding> (*examine_camera)(const std::string& address);
 };
 
-/// Every kind there is. A listing may find cameras of a later kind too.
+/// All kinds. `list` of one kind may also find cameras of a later kind.
 [[nodiscard]] std::span<const CameraKind> camera_kinds();
 
-/// The kind of the camera that an address names. \throws InputError if none.
+/// The kind of the camera at an address. \throws InputError if there is none.
 [[nodiscard]] const CameraKind& camera_kind(std::string_view address);
 
-/// The forms of addresses, for people: "gige:IP, usb:SERIAL ... or replay:FILE".
+/// The forms of addresses, for messages: "gige:IP, usb:SERIAL ... or replay:FILE".
 [[nodiscard]] std::string address_forms();
 
 }  // namespace stipple

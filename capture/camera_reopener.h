@@ -11,22 +11,22 @@
 
 namespace stipple {
 
-/// Opens a camera that is gone, again and again until it is back, in a thread of its own. Closing
-/// the old one, which may take seconds where it does not answer, has another.
+/// Tries to open a lost camera in a thread until it is back. Another thread closes the old one,
+/// which may take seconds if it does not answer.
 class CameraReopener {
   public:
     using Opener = std::function<std::unique_ptr<Camera>()>;
 
-    /// Takes the camera that is gone and begins.
+    /// Takes the lost camera and begins.
     CameraReopener(std::unique_ptr<Camera> gone, Opener open);
     /// Waits for both threads.
     ~CameraReopener() = default;
     CameraReopener(const CameraReopener&) = delete;
     CameraReopener& operator=(const CameraReopener&) = delete;
 
-    /// The camera, open and started; null if it is not back within `timeout`.
+    /// The camera, open and started; null after `timeout`.
     [[nodiscard]] std::unique_ptr<Camera> take(std::chrono::milliseconds timeout);
-    /// Whether the old one is closed and the new one taken, so that nothing is left to wait for.
+    /// Whether the old camera is closed and the new one taken.
     [[nodiscard]] bool is_done() const;
 
   private:
@@ -38,7 +38,7 @@ class CameraReopener {
     bool closed_ = false;
     bool taken_ = false;
     std::unique_ptr<Camera> back_;
-    std::jthread closing_;  ///< last: they use the others
+    std::jthread closing_;  ///< last: the threads use the other members
     std::jthread opening_;
 };
 

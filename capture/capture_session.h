@@ -12,57 +12,57 @@
 
 namespace stipple {
 
-/// What becomes of a frame that did not arrive whole. What is missing of it is zero in any case.
+/// Treatment of incomplete frames. Missing bytes are zero in any case.
 enum class IncompletePolicy : std::uint8_t {
-    kDrop,  ///< it is left out and counted as our own drop
-    kKeep,  ///< it is delivered as it is
-    kMask,  ///< it is delivered with the list of its holes; where they are not known, as kDrop
+    kDrop,  ///< dropped, counted as kOwnDrop
+    kKeep,  ///< delivered without the list of holes
+    kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };
 
 struct SessionOptions {
     IncompletePolicy incomplete = IncompletePolicy::kMask;
-    /// A camera that sends nothing for so long, and for five frame periods, is opened anew. 0: only
-    /// one that is known to be gone. Cameras with TriggerMode On may be silent.
+    /// A camera that is silent for this time and for five frame periods is opened again. 0: no
+    /// limit. Cameras with TriggerMode On may be silent.
     std::chrono::milliseconds stall{250};
-    std::chrono::milliseconds first_frame{2000};  ///< the same, between start and first frame
+    std::chrono::milliseconds first_frame{2000};  ///< the limit between start and first frame
     bool reconnect = true;
 };
 
-/// What became of a session's frames.
+/// Counts of the frames of a session.
 struct SessionTotals {
     std::uint64_t frames = 0;      ///< delivered
-    std::uint64_t incomplete = 0;  ///< of these, those whose status is not kComplete
+    std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
-    std::uint64_t outages = 0;                                ///< times that the camera was gone
-    std::uint64_t repeated = 0;  ///< whole frames that came again, and were left out
+    std::uint64_t outages = 0;   ///< number of times that the camera was gone
+    std::uint64_t repeated = 0;  ///< complete frames that came a second time, left out
 };
 
-/// The camera is gone; it is being opened anew.
+/// The camera is gone; the session is opening it again.
 struct Outage {
     std::string reason;
 };
 
-/// It is back, with the settings applied again.
+/// The camera is back, with its settings.
 struct Recovery {
     double gone_s = 0;
 };
 
-/// What a session has to say; DeviceLost ends it.
+/// Event of a session; DeviceLost is the last one.
 using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, DeviceLost>;
 
-/// Frames of a camera, each accounted for: ids unwrapped to 64 bits, gaps with their number and
-/// cause, and the camera opened anew when it has gone. For any two frames that are delivered one
-/// after the other, b.id = a.id + 1 + b.lost_before.
+/// Frames of a camera with complete accounting: ids unwrapped to 64 bits, gaps with the number and
+/// cause of lost frames, and reconnection when the camera is gone. For consecutive delivered frames
+/// a and b, b.id = a.id + 1 + b.lost_before.
 ///
-/// The cause of a gap is taken from what the transport counted meanwhile: buffers that were not
-/// free, then packets that the network or the socket lost, else it was the camera. Frames lost
-/// while the camera was gone are estimated from the frame period before.
-/// A frame whose id has been before is a repeat, and left out, or the first of a counter that began
-/// anew: the latter if its stamp is newer, or if the next frame follows it.
-/// Used from one thread; opening and closing happen in threads of its own.
+/// The counters of the transport decide the cause of a gap, in this order: no free buffer
+/// (kHostUnderrun), losses of network or socket (kTransport), none (kDevice). The number of frames
+/// lost while the camera was gone is estimated from the earlier frame period.
+/// A frame with an old id is the first of a restarted counter if its stamp is newer, or if the next
+/// frame follows it. Otherwise it is a repeat, and left out.
+/// Used from one thread; other threads open and close the camera.
 class CaptureSession {
   public:
-    /// Opens the camera with its settings; called again after an outage, from another thread.
+    /// Opens the camera with its settings. Called again after an outage, from another thread.
     using Opener = std::function<std::unique_ptr<Camera>()>;
 
     /// Opens and starts. \throws InputError, DeviceError.
@@ -71,17 +71,17 @@ class CaptureSession {
     CaptureSession(const CaptureSession&) = delete;
     CaptureSession& operator=(const CaptureSession&) = delete;
 
-    /// Waits for what happens next, not longer than `timeout`.
+    /// Waits for the next event, at most `timeout`.
     [[nodiscard]] SessionEvent next(std::chrono::milliseconds timeout);
 
-    /// A frame that was delivered was not used (a full queue): it is missing before the next one.
+    /// A delivered frame was dropped by a full queue: it counts as missing before the next one.
     void count_own_drop(const FrameRecord& record) noexcept;
 
-    /// Of the camera as it was opened last.
+    /// Of the camera when it was last opened.
     [[nodiscard]] const CameraDescription& description() const;
     [[nodiscard]] const FrameLayout& layout() const;
     [[nodiscard]] const SessionTotals& totals() const;
-    /// Of all epochs together.
+    /// Sum over all epochs.
     [[nodiscard]] TransportCounts transport() const;
 
   private:

@@ -8,16 +8,16 @@
 
 namespace stipple {
 
-/// Writes a pattern of 8 random bytes over a buffer that a camera is to fill, so that
-/// `clear_holes` finds what was not written.
+/// Fills a buffer with a pattern of 8 random bytes before a camera writes to it, so that
+/// `clear_holes` finds the bytes that were not written.
 void mark_unwritten(std::span<std::uint8_t> buffer) noexcept;
 
-/// The same for the bytes from `begin` to before `end`, which lie in it.
+/// The same for bytes [begin, end) of the buffer. Precondition: they lie in it.
 void mark_unwritten(std::span<std::uint8_t> buffer, std::size_t begin, std::size_t end) noexcept;
 
-/// Finds the bytes of `buffer` that still hold the pattern and sets them to 0. Runs of at least 15
-/// bytes are found, and any run at the end; a pixel beside a hole that happens to equal the pattern
-/// (1 in 256) counts as part of it. Returns [begin, end) of each, in order.
+/// Finds the bytes of `buffer` that still hold the pattern (holes) and sets them to 0. Runs of at
+/// least 15 bytes are found, and any run at the end. A pixel beside a hole that equals the pattern
+/// by chance (1 in 256) counts as part of the hole. Returns [begin, end) of each hole, in order.
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> clear_holes(
     std::span<std::uint8_t> buffer);
 

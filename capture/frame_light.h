@@ -18,16 +18,16 @@ class FrameLight {
     FrameLight(const FrameLayout& layout, double black_level_dn);
 
     [[nodiscard]] FrameShape shape() const { return shape_; }
-    /// Whose mosaic the frames are.
+    /// Colour filter array of the mosaic.
     [[nodiscard]] ColourFilter filter() const { return layout_.format->filter; }
-    /// Fills `light`, order (plane, row, col). What the payload is too short for is black.
+    /// Fills `light`, order (plane, row, col). Missing bytes at the end of the payload are black.
     /// Precondition: light.size() == shape().sites().
     void convert(std::span<const std::uint8_t> payload, std::span<float> light);
 
   private:
     FrameLayout layout_;
     FrameShape shape_;
-    std::vector<float> light_of_dn_;  ///< for all numbers that a sample can hold
+    std::vector<float> light_of_dn_;  ///< for all values of a sample
     std::vector<std::uint16_t> samples_;
 };
 

@@ -7,17 +7,17 @@
 
 namespace stipple {
 
-/// The rate of a camera's frames, lost ones counted: the periods between the first frame and the
-/// last one over the time between them, by the device's stamps or else by their arrival. Measured
-/// anew after an outage.
+/// Frame rate of a camera, with lost frames counted: number of periods between the first and the
+/// last frame over the time between them, by device stamps, or by arrival if there are none. An
+/// outage restarts the measurement.
 class FrameRate {
   public:
     void add(const FrameRecord& record);
 
-    /// From the first frame to the last one.
+    /// Time from the first to the last frame.
     [[nodiscard]] double seconds() const;
     [[nodiscard]] std::uint64_t periods() const;
-    /// Nothing until two frames have come.
+    /// Empty until there are two frames.
     [[nodiscard]] std::optional<double> hz() const;
 
   private:

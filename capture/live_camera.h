@@ -17,36 +17,36 @@ namespace stipple {
 struct LiveCameraOptions {
     SessionOptions session;
     std::size_t waiting_frames = 64;
-    bool from_start = false;  ///< frames wait for `begin`: of a replay, whose first one counts
-    /// Told of outages, recoveries and the end, by the thread that takes the frames.
+    bool from_start = false;  ///< replay: frames wait for `begin`, so that the first one is used
+    /// Called for outages, recoveries and the end, by the thread that receives the frames.
     std::function<void(const SessionEvent&)> tell;
 };
 
-/// A camera whose frames a thread takes and keeps, a few of them, until somebody has time. When as
-/// many as that wait, or as `max_memory` holds, further ones are dropped; the next frame says how
-/// many (kOwnDrop).
+/// A camera with a thread that receives its frames, and a queue of `waiting_frames` frames, fewer
+/// if `max_memory` demands it. A full queue drops frames; the record of the next frame has their
+/// number (kOwnDrop).
 class LiveCamera {
   public:
-    /// Opens and starts the camera; until `begin`, its frames are let go, unless they wait.
+    /// Opens and starts the camera. Frames before `begin` are discarded, except with `from_start`.
     /// \throws InputError, DeviceError.
     LiveCamera(CaptureSession::Opener open, LiveCameraOptions options);
     ~LiveCamera();
     LiveCamera(const LiveCamera&) = delete;
     LiveCamera& operator=(const LiveCamera&) = delete;
 
-    /// As the camera was opened; every frame says its own.
+    /// Layout when the camera was opened; each frame has its own.
     [[nodiscard]] const FrameLayout& layout() const { return layout_; }
     [[nodiscard]] const CameraDescription& description() const { return description_; }
 
     void begin();
-    /// The next frame; nothing if none comes in time or the camera is lost for good. Rethrows what
-    /// kept the frames from being taken: no memory.
+    /// The next frame; empty after the timeout, or if the camera is lost for good. Rethrows an
+    /// exception of the receiving thread (no memory).
     [[nodiscard]] std::optional<CapturedFrame> next(std::chrono::milliseconds timeout);
-    /// Why no frame will come any more; nothing while one may.
+    /// Why no further frame will come; empty as long as one may come.
     [[nodiscard]] std::optional<DeviceLost> end() const;
-    /// Frames that waited at most.
+    /// Maximum number of frames that waited.
     [[nodiscard]] std::size_t peak() const { return frames_.peak(); }
-    /// Stops the camera. What became of its frames.
+    /// Stops the camera. Returns the counts of its frames.
     SessionTotals stop();
     /// Precondition: it is stopped.
     [[nodiscard]] TransportCounts transport() const { return session_.transport(); }
@@ -63,7 +63,7 @@ class LiveCamera {
     std::atomic<bool> begun_ = false;
     std::optional<DeviceLost> end_;  ///< the thread's, until the frames have ended
     std::exception_ptr failure_;     ///< the same
-    std::jthread thread_;            ///< last: starts when all else is there
+    std::jthread thread_;            ///< last: it uses the other members
 };
 
 }  // namespace stipple

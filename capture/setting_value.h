@@ -6,11 +6,11 @@
 
 namespace stipple {
 
-/// The text of a camera setting as a whole number, decimal or 0x...; nothing if it is anything else
-/// or does not fit.
+/// The text of a camera setting as an integer, decimal or 0x...; empty for any other text, or out
+/// of range.
 [[nodiscard]] std::optional<std::int64_t> integer_setting(std::string_view text);
 
-/// As a finite number; nothing if it is anything else.
+/// The same as a finite number; empty for any other text.
 [[nodiscard]] std::optional<double> number_setting(std::string_view text);
 
 }  // namespace stipple

@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-/// The control channel of a GenICam camera: open, its features, what it is.
+/// The control channel of a GenICam camera: access, features, identity.
 class AravisDevice {
   public:
     /// `address` as for open_aravis_camera. \throws InputError, DeviceError.
@@ -29,15 +29,15 @@ class AravisDevice {
     [[nodiscard]] std::string controller() const;
 
     [[nodiscard]] bool has(const std::string& feature) const;
-    /// Value as text; empty optional if there is no such feature or it cannot be read.
+    /// Value as text; empty if the feature does not exist or cannot be read.
     [[nodiscard]] std::optional<std::string> read(const std::string& feature) const;
     [[nodiscard]] std::optional<double> read_number(const std::string& feature) const;
-    /// Sets a feature and reads it back. ExposureTime, Gain, BlackLevel and AcquisitionFrameRate
-    /// reach older cameras under the names that they have for them.
-    /// \throws InputError if there is no such feature, the text is no value of it or out of range;
-    /// DeviceError if the camera refuses or sets something else.
+    /// Sets a feature and reads it back. For older cameras ExposureTime, Gain, BlackLevel and
+    /// AcquisitionFrameRate are translated to their names.
+    /// \throws InputError if the feature does not exist, or the text is no value or out of range;
+    /// DeviceError if the camera refuses or sets another value.
     void set(const std::string& feature, const std::string& value);
-    /// All features under Root that can be read, of the first 20 000.
+    /// All readable features among the first 20 000 under Root.
     [[nodiscard]] std::map<std::string, std::string> features() const;
     [[nodiscard]] std::string genicam_xml() const;
 
@@ -46,15 +46,15 @@ class AravisDevice {
 
   private:
     struct Impl;
-    /// What to do about a name that is no feature.
+    /// Advice for a name that is no feature.
     [[nodiscard]] std::string nearest_feature(const std::string& name) const;
 
     std::string address_;
     std::unique_ptr<Impl> impl_;
 };
 
-/// Applies settings in the order in which a camera accepts them: offsets to 0, then format and
-/// size, then offsets, then the rest as given. \throws InputError, DeviceError as set.
+/// Applies settings in the order that cameras accept: offsets to 0, format and size, offsets, then
+/// the others in the given order. \throws InputError, DeviceError as set.
 void apply_settings(AravisDevice& device, const CameraSettings& settings);
 
 }  // namespace stipple

@@ -10,12 +10,12 @@
 
 namespace stipple {
 
-/// The stream of a GenICam camera: its buffers, what arrives in them, what it costs.
+/// The stream of a GenICam camera: buffers, received frames, losses.
 class AravisStream {
   public:
-    /// Makes stream and buffers; `device` must outlive it and be opened by this program as its
-    /// controller. GigE packets, headers included, have `packet_bytes`, or as many as the path
-    /// carries. \throws DeviceError.
+    /// Makes stream and buffers. `device` must outlive the stream, and this program must control
+    /// it. `packet_bytes` is the size of GigE packets with headers; default: the largest that the
+    /// path carries. \throws DeviceError.
     AravisStream(AravisDevice& device, const FrameLayout& layout, const CameraBuffers& buffers,
                  std::optional<int> packet_bytes);
     ~AravisStream();

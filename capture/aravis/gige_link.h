@@ -13,17 +13,16 @@
 
 namespace stipple {
 
-/// The network under the stream of a GigE Vision camera: size of its packets, socket, and what is
-/// lost there.
+/// The network of the stream of a GigE Vision camera: packet size, socket, losses.
 class GigeLink {
   public:
-    /// Before the stream is made. Packets, headers included, have `packet_bytes`, or as many as the
-    /// path carries. `device` must outlive the link.
+    /// To be made before the stream. `packet_bytes` is the packet size with headers; default: the
+    /// largest that the path carries. `device` must outlive the link.
     GigeLink(AravisDevice& device, std::optional<int> packet_bytes);
 
-    /// `stream` is the ArvStream. Its socket is to hold `frames` of `frame_bytes`.
+    /// Asks for a socket buffer of `frames` frames of `frame_bytes`. `stream` is the ArvStream.
     void set_socket_buffer(void* stream, std::size_t frame_bytes, int frames);
-    /// Adds what socket and interface have lost since.
+    /// Fills in the losses of socket and interface since the construction.
     void count(void* stream, TransportCounts& counts) const;
 
     /// For CameraDescription.

@@ -5,13 +5,13 @@
 
 namespace stipple {
 
-/// One thing that `stipple capture doctor` looked at.
+/// One result of `stipple capture doctor`.
 struct DoctorFinding {
     enum class Level { kGood, kWarning, kProblem };
     Level level = Level::kGood;
     std::string subject;  ///< "receive buffer", "group video"
-    std::string fact;     ///< what was found, with numbers
-    std::string fix;  ///< what to do, a command where there is one; empty if good or said before
+    std::string fact;     ///< finding, with numbers
+    std::string fix;      ///< advice, if possible a command; empty if good or given before
 };
 
 }  // namespace stipple

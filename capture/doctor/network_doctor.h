@@ -8,19 +8,19 @@
 
 namespace stipple {
 
-/// What this machine offers GigE Vision cameras: interfaces with address and MTU, the receive
-/// buffer, whether packet sockets may be opened.
+/// Network of this machine for GigE Vision cameras: interfaces with address and MTU, receive
+/// buffer, permission for packet sockets.
 [[nodiscard]] std::vector<DoctorFinding> examine_network();
 
-/// The receive buffer of a machine whose net.core.rmem_max is `max_bytes` (0: unknown) and that
-/// may or may not open packet sockets.
+/// Finding on the receive buffer for a net.core.rmem_max of `max_bytes` (0: unknown), with or
+/// without packet sockets.
 [[nodiscard]] DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool packet_sockets);
 
-/// The packets that a path of this MTU carries.
+/// Finding on the packet size that a path of this MTU carries.
 [[nodiscard]] DoctorFinding judge_mtu(const std::string& interface, int mtu);
 
-/// One GenICam camera: the interface towards it, who controls it, the packet size, its pixel format
-/// and its features. Opens it for a moment; what is wrong becomes a finding. \throws InputError if
+/// Findings on one GenICam camera: network interface, controlling program, packet size, pixel
+/// format, features. Opens the camera for a moment; errors become findings. \throws InputError if
 /// the address is none.
 [[nodiscard]] std::vector<DoctorFinding> examine_genicam_camera(const std::string& address);
 

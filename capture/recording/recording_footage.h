@@ -13,54 +13,54 @@
 namespace stipple {
 
 struct RecordingFootageOptions {
-    /// Where frames are missing the frame before stands in, so that each slot keeps its time; else
-    /// they are left out.
+    /// True: the previous frame stands in for missing frames, so that each slot keeps its time.
+    /// False: missing frames are left out.
     bool hold_missing = true;
-    /// Incomplete frames count as missing; else they are used, with black holes.
+    /// True: incomplete frames count as missing. False: they are used, with black holes.
     bool drop_incomplete = true;
-    /// Holds for as many frames as are missing, even if these are out of proportion.
+    /// Hold for any number of missing frames, beyond max_missing_slots.
     bool fill_gaps = false;
     double black_level_dn = 0;
 };
 
-/// A place where frames are missing or incomplete.
+/// A gap: consecutive missing or incomplete frames.
 struct RecordingGap {
-    std::int64_t slot = 0;  ///< of the footage: the first that is held, or that comes after them
+    std::int64_t slot = 0;  ///< of the footage: the first held slot, or the slot after the gap
     std::uint64_t frames = 0;
 };
 
-/// A recording as footage, one frame a time slot, read as FootageReader reads: linear light, 1.0 at
-/// full scale.
+/// A recording as footage, one frame per slot, with the interface of FootageReader: linear
+/// light, 1.0 at full scale.
 class RecordingFootage {
   public:
-    /// \throws InputError as RecordingReader, if there is no frame, or for a black level that its
-    /// format does not have.
+    /// \throws InputError as RecordingReader, if there is no frame, or for a black level out of the
+    /// range of its format.
     explicit RecordingFootage(const std::filesystem::path& file,
                               RecordingFootageOptions options = {});
 
     [[nodiscard]] FrameShape shape() const { return light_.shape(); }
-    /// Whose mosaic the frames are.
+    /// Colour filter array of the mosaic.
     [[nodiscard]] ColourFilter filter() const { return light_.filter(); }
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
-    /// Returns false at the end. \throws InputError for a frame of another layout, and where more
-    /// frames are to be held than max_missing_slots.
+    /// Returns false at the end. \throws InputError for a frame of another layout, and if more than
+    /// max_missing_slots would have to be held.
     bool read(std::span<float> frame);
 
-    /// Slots that repeat the frame before.
+    /// Slots that repeat the previous frame.
     [[nodiscard]] std::uint64_t held_slots() const { return held_; }
-    /// Frames that are missing, also by damage of the file, or incomplete, so far.
+    /// Missing or incomplete frames so far; frames lost by damage of the file are missing too.
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
-    /// The camera's, by the frames so far.
+    /// Frame rate of the camera, from the frames so far.
     [[nodiscard]] const FrameRate& rate() const { return rate_; }
     static constexpr std::size_t kMaxListedGaps = 1000;
-    /// The first of the places where they are, so far.
+    /// The first kMaxListedGaps gaps so far.
     [[nodiscard]] const std::vector<RecordingGap>& gaps() const { return gaps_; }
     /// Whether all frames were read, so that the reader's report is complete.
     [[nodiscard]] bool at_end() const { return !has_coming_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
 
   private:
-    /// False at the end; else `coming_` is the next frame that is used and `to_hold_` is set.
+    /// Sets `coming_` to the next used frame, and `to_hold_`. Returns false at the end.
     bool advance();
     void check_proportion(const FrameRecord& record);
     void note(std::uint64_t frames);
@@ -70,17 +70,17 @@ class RecordingFootage {
     RecordingFootageOptions options_;
     std::optional<std::uint64_t> last_id_;  ///< of the frame read last, usable or not
     CapturedFrame coming_;
-    std::int64_t slots_ = 0;  ///< that were read
+    std::int64_t slots_ = 0;  ///< slots read
     std::vector<RecordingGap> gaps_;
     std::int64_t usable_ = 0;    ///< frames so far
-    std::int64_t holding_ = 0;   ///< slots that were or will be held
-    std::uint64_t to_hold_ = 0;  ///< slots before `coming_` that are still missing
+    std::int64_t holding_ = 0;   ///< held slots, with those before `coming_`
+    std::uint64_t to_hold_ = 0;  ///< slots before `coming_` still to be held
     std::uint64_t held_ = 0;
     std::uint64_t missing_ = 0;
     FrameRate rate_;
-    bool has_coming_;  ///< initialised by `advance`, which uses what stands before
+    bool has_coming_;  ///< initialised by `advance`, which uses the members above
     FrameLight light_;
-    std::vector<float> last_;  ///< light of the frame before; empty before the first
+    std::vector<float> last_;  ///< light of the previous frame; empty before the first
 };
 
 }  // namespace stipple

@@ -30,7 +30,7 @@ inline constexpr std::uint64_t kMaxFramePayloadBytes = std::uint64_t{1} << 32U;
 
 enum class BlockKind : std::uint32_t { kSession = 1, kFrame = 2, kEnd = 3 };
 
-/// What stands before each block.
+/// Header of a block.
 struct BlockHeader {
     BlockKind kind = BlockKind::kFrame;
     std::uint32_t number = 0;        ///< of the block, from 0, modulo 2^32
@@ -43,64 +43,64 @@ struct BlockHeader {
     }
 };
 
-/// How a block header begins.
+/// First bytes of a block header.
 inline constexpr std::array<std::uint8_t, 4> kBlockSync{0xC5, 'F', 'R', 'M'};
 
 [[nodiscard]] std::array<std::uint8_t, kBlockHeaderBytes> encode_block_header(
     const BlockHeader& header);
 
-/// The header at the start of `bytes`; nothing if the sync word, the CRC or a limit is wrong.
+/// The header at the start of `bytes`; empty if the sync word, the CRC or a limit is wrong.
 /// Precondition: bytes.size() >= kBlockHeaderBytes.
 [[nodiscard]] std::optional<BlockHeader> decode_block_header(std::span<const std::uint8_t> bytes);
 
-/// The record of a frame and its holes. Holes beyond kMaxHoles become one that covers them all.
+/// The record of a frame and its holes. Further holes are merged into the hole number kMaxHoles.
 /// Precondition: the layout has a format.
 [[nodiscard]] std::vector<std::uint8_t> encode_frame_record(const CapturedFrame& frame);
 
-/// Puts the hash of the payload into an encoded frame record.
+/// Stores the hash of the payload in an encoded frame record.
 void store_payload_hash(std::span<std::uint8_t> record, std::uint64_t hash);
 
-/// Fills `frame.record` and `frame.holes`. Returns what is wrong with `bytes`, or an empty text.
+/// Fills `frame.record` and `frame.holes`. Returns the fault of `bytes`, or an empty text.
 [[nodiscard]] std::string decode_frame_record(std::span<const std::uint8_t> bytes,
                                               std::uint64_t payload_bytes, CapturedFrame& frame);
 
 /// XXH3, 64 bit, seed 0: the payload hash of a frame.
 [[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
 
-/// A field of the frame record as NumPy calls it: name and type string.
+/// A field of the frame record in the notation of NumPy: name and type string.
 struct RecordField {
     std::string_view name;
     std::string_view type;
 };
-/// All fields in order: they fill kFrameRecordBytes without gaps.
+/// All fields in order. They fill kFrameRecordBytes without gaps.
 [[nodiscard]] std::span<const RecordField> frame_record_fields();
 
-/// What a recording says once, at its beginning.
+/// Content of the session block, at the beginning of a recording.
 struct SessionRecord {
     CameraDescription camera = {};
-    CameraSettings settings = {};                  ///< that were asked for
+    CameraSettings settings = {};                  ///< given by the user
     std::map<std::string, std::string> host = {};  ///< versions of kernel, libraries, program
     std::int64_t started_realtime_ns = 0;
 };
 
-/// What a recording says once, at its end.
+/// Content of the end block.
 struct RecordingEnd {
     std::string reason = "stopped";          ///< "stopped", "disk full", "camera lost", ...
-    std::array<std::uint64_t, 6> lost = {};  ///< frames that are missing, by GapCause
+    std::array<std::uint64_t, 6> lost = {};  ///< missing frames by GapCause
     TransportCounts transport = {};
     std::uint64_t frames = 0;      ///< in the file
-    std::uint64_t incomplete = 0;  ///< of these, those whose status is not kComplete
+    std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::uint64_t payload_bytes = 0;
-    std::vector<ClockFit> clocks = {};  ///< one an epoch, if the device gives stamps
+    std::vector<ClockFit> clocks = {};  ///< one per epoch, if the device has stamps
 };
 
-/// Kernel, architecture of this machine: to be put into SessionRecord::host.
+/// Kernel and architecture of this machine, for SessionRecord::host.
 [[nodiscard]] std::map<std::string, std::string> host_facts();
 
-/// JSON; text that is not UTF-8 has its bad bytes replaced.
+/// JSON; bytes that are no UTF-8 are replaced.
 [[nodiscard]] std::string encode_session(const SessionRecord& session);
 [[nodiscard]] std::string encode_end(const RecordingEnd& end);
-/// \throws InputError at `place` if the text is no JSON or holds other types.
+/// \throws InputError at `place` if the text is no JSON or has wrong types.
 [[nodiscard]] SessionRecord decode_session(std::string_view text, std::string_view place);
 [[nodiscard]] RecordingEnd decode_end(std::string_view text, std::string_view place);
 

@@ -11,25 +11,25 @@
 
 namespace stipple {
 
-/// Between a camera and a disk that may be slower for a while: a thread writes what `push` took.
-/// When the queue is full, frames are dropped and counted; whoever numbers the frames says so in
-/// the record of the next one (CaptureSession::count_own_drop).
+/// Queue between a camera and a disk that may be slower for a while; a thread writes the frames. A
+/// full queue drops frames and counts them. The caller reports each drop to
+/// CaptureSession::count_own_drop, which notes it in the record of the next frame.
 class RecordingQueue {
   public:
-    /// `writer` must outlive the queue and belongs to it until `drain` has returned. Frames
-    /// of `max_bytes` in all, and one at least, wait beside the one that is being written.
+    /// `writer` must outlive the queue; nobody else uses it before `drain` has returned. The queue
+    /// holds up to `max_bytes` of frames, and at least one frame.
     RecordingQueue(RecordingWriter& writer, std::size_t max_bytes);
-    /// Writes what waits, as far as it can be written.
+    /// Writes the waiting frames, as far as possible.
     ~RecordingQueue();
     RecordingQueue(const RecordingQueue&) = delete;
     RecordingQueue& operator=(const RecordingQueue&) = delete;
 
     /// Never waits for the disk. False if the frame was dropped.
     bool push(CapturedFrame&& frame);
-    /// True once a write has failed: all further frames are dropped, `drain` tells why.
+    /// True after a failed write: further frames are dropped, `drain` throws the reason.
     [[nodiscard]] bool failed() const { return failed_; }
-    /// Writes what waits and stops. \throws what a write that failed has thrown, now or before:
-    /// DeviceError, std::bad_alloc.
+    /// Writes the waiting frames and stops. \throws the exception of a failed write: DeviceError,
+    /// std::bad_alloc.
     void drain();
 
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
@@ -43,7 +43,7 @@ class RecordingQueue {
     std::atomic<std::uint64_t> dropped_ = 0;
     std::atomic<bool> failed_ = false;
     std::exception_ptr failure_;  ///< the thread's, until it has ended
-    std::thread thread_;          ///< last: starts when all else is there
+    std::thread thread_;          ///< last: it uses the other members
 };
 
 }  // namespace stipple

@@ -11,10 +11,10 @@
 
 namespace stipple {
 
-/// One place where a recording was damaged.
+/// One damaged place of a recording.
 struct RecordingDamage {
     std::uint64_t offset = 0;  ///< byte where the damage was found
-    std::uint64_t bytes = 0;   ///< bytes skipped before the next good block
+    std::uint64_t bytes = 0;   ///< bytes skipped up to the next good block
     std::string cause;
 };
 
@@ -22,17 +22,17 @@ struct RecordingReport {
     static constexpr std::size_t kMaxListedDamage = 1000;
 
     std::uint64_t frames = 0;          ///< delivered
-    std::uint64_t missing_blocks = 0;  ///< that the numbers of the blocks say are gone
-    std::uint64_t tail_bytes = 0;      ///< of a block that the file ends in the midst of
+    std::uint64_t missing_blocks = 0;  ///< by the numbers of the blocks
+    std::uint64_t tail_bytes = 0;      ///< of an unfinished block at the end
     std::vector<RecordingDamage> damage;
-    std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
+    std::uint64_t unlisted_damage = 0;  ///< number of further places, when `damage` is full
 };
 
-/// True if `path` is a regular file that begins as a recording does.
+/// True if `path` is a regular file that begins with the magic of a recording.
 [[nodiscard]] bool is_recording(const std::filesystem::path& path);
 
-/// Reads a recording frame by frame (docs/recording_format.md). Damage costs the frames that it
-/// hits and is reported. Memory: one frame.
+/// Reads a recording frame by frame (docs/recording_format.md). Damage is reported and costs only
+/// the frames that it affects. Memory: one frame.
 class RecordingReader {
   public:
     /// \throws InputError if the file is missing, no recording, or of an unknown version.
@@ -41,18 +41,18 @@ class RecordingReader {
     RecordingReader(RecordingReader&&) noexcept;
     RecordingReader& operator=(RecordingReader&&) noexcept;
 
-    /// Empty if it is damaged; frames can be read even so.
+    /// Empty if the session block is damaged; the frames are still readable.
     [[nodiscard]] const SessionRecord& session() const;
     /// Reads the next good frame. Returns false at the end of the file. \throws InputError if the
-    /// file cannot be read, or is made of overlapping blocks.
+    /// file cannot be read, or consists of overlapping blocks.
     bool next(CapturedFrame& frame);
-    /// The end record, once `next` has returned false; nothing if the recording was cut off.
+    /// The end record, after `next` has returned false; empty if the recording was cut off.
     [[nodiscard]] const std::optional<RecordingEnd>& end() const;
     [[nodiscard]] const RecordingReport& report() const;
-    /// What is wrong with the file, once `next` has returned false: damage, no end. Empty if
-    /// nothing is.
+    /// Faults of the file, after `next` has returned false: damage, missing end. Empty if there are
+    /// none.
     [[nodiscard]] std::vector<std::string> faults() const;
-    /// Begins again with the first frame; the report too. Not possible with a pipe.
+    /// Starts again at the first frame, with a new report. Not possible with a pipe.
     void rewind();
 
   private:

@@ -9,28 +9,28 @@
 
 namespace stipple {
 
-/// Writes a recording (docs/recording_format.md): frames in their wire format, a record each. Every
-/// prefix of the file is readable up to its last whole frame. Used from one thread.
+/// Writes a recording (docs/recording_format.md): frames in their wire format, each with a record.
+/// Every prefix of the file is readable up to its last whole frame. Used from one thread.
 class RecordingWriter {
   public:
-    /// Creates the file and writes the session record. Messages call the output `place` (default:
-    /// the path), for a file that is renamed when it is complete. \throws DeviceError.
+    /// Creates the file and writes the session record. `place` is the name of the output in
+    /// messages (default: the path), for a file that is renamed when it is complete. \throws
+    /// DeviceError.
     RecordingWriter(const std::filesystem::path& file, const SessionRecord& session,
                     std::string place = {});
 
-    /// Appends a frame; the hash of its payload is computed here. Precondition: its layout has a
-    /// format and at most 65535 x 65535 pixels, holes rise and lie in the payload.
-    /// \throws DeviceError (full disk): the file then ends with the frame before, `finish` may
-    /// still be called, and the file is readable with or without.
+    /// Appends a frame and computes the hash of its payload. Precondition: its layout has a format
+    /// and at most 65535 x 65535 pixels, its holes are in ascending order and lie in the payload.
+    /// \throws DeviceError (full disk): the file then ends with the previous frame. It is readable
+    /// with or without a later `finish`.
     void write(const CapturedFrame& frame);
 
-    /// Writes the end record and closes; nothing may be written after. `end` brings the reason, the
-    /// losses and the counts of the transport; frames, bytes and clocks are filled in here.
-    /// \throws DeviceError.
+    /// Writes the end record and closes the file. `end` has the reason, the losses and the counts
+    /// of the transport; `finish` adds frames, bytes and clocks. \throws DeviceError.
     void finish(RecordingEnd end);
 
-    /// What `finish` writes, so far: frames, incomplete, payload bytes, clocks; and the losses as
-    /// the frames tell them.
+    /// The values that `finish` adds (frames, incomplete, payload bytes, clocks), and the losses by
+    /// the records of the frames, so far.
     [[nodiscard]] RecordingEnd totals() const;
     [[nodiscard]] std::uint64_t frames() const { return totals_.frames; }
     [[nodiscard]] std::uint64_t bytes_written() const { return file_.bytes(); }

@@ -18,17 +18,17 @@ inline constexpr std::string_view kReplayPrefix = "replay";
     return rest.starts_with(':') ? rest.substr(1) : std::string_view();
 }
 
-/// A recording, or footage, that comes as if a camera sent it. `address` is "replay:PATH".
+/// A recording, or footage, in the role of a camera. `address` is "replay:PATH".
 ///
-/// Settings: `AcquisitionFrameRate` in Hz, 0 for as fast as it is taken (default: a recording by
-/// its stamps, footage at 200 Hz); `Loop` 0 or 1; `PixelFormat` of footage, Mono8 or Mono16, of
-/// footage in colour RGB8, or BayerRG8 ... BayerBG16.
+/// Settings: `AcquisitionFrameRate` in Hz, 0 for as fast as the caller takes frames (default: the
+/// stamps of a recording, 200 Hz for footage); `Loop` 0 or 1; for footage `PixelFormat`: Mono8 or
+/// Mono16, in colour RGB8 or BayerRG8 ... BayerBG16.
 ///
 /// Payloads, device stamps, exposure, gain, black level, layout, status and holes are those of the
-/// recording, and wire ids leave out what it left out; arrival stamps are new. Whoever takes frames
-/// later than `buffers.frames` of them loses the oldest, as with a camera: they count as underruns.
-/// At the end comes DeviceLost (at_end), of a file that cannot be read further too (bad_file).
-/// \throws InputError if the file is neither, or for a setting that it does not have.
+/// recording. Wire ids skip its missing frames. Arrival stamps are new. A caller that is more than
+/// `buffers.frames` frames late loses the oldest, as with a camera; they count as underruns.
+/// The end is DeviceLost with `at_end`, or with `bad_file` if the file cannot be read further.
+/// \throws InputError if the file is neither recording nor footage, or for an unknown setting.
 [[nodiscard]] std::unique_ptr<Camera> open_replay_camera(const std::string& address,
                                                          const CameraSettings& settings,
                                                          const CameraBuffers& buffers);

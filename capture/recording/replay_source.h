@@ -12,13 +12,13 @@
 
 namespace stipple {
 
-/// Frames to play back, one after the other: of a recording as they are, or of footage as the
-/// numbers round(min(light, 1) x full scale) of a pixel format.
+/// Frames for a replay: those of a recording unchanged, or footage as the numbers
+/// round(min(light, 1) x full scale) of a pixel format.
 class ReplaySource {
   public:
-    /// Opens a recording, or else footage that shall come in `format` ("Mono8" or "Mono16", of
-    /// colour "RGB8" or "BayerRG8" ... "BayerBG16"; empty: Mono16 or RGB8). \throws InputError if
-    /// it is neither, holds no frame, or for a format that it cannot come in.
+    /// Opens a recording, or footage for the pixel format `format` ("Mono8" or "Mono16", in colour
+    /// "RGB8" or "BayerRG8" ... "BayerBG16"; empty: Mono16 or RGB8). \throws InputError if it is
+    /// neither, holds no frame, or does not suit the format.
     ReplaySource(const std::filesystem::path& path, const std::string& format);
 
     [[nodiscard]] bool is_recording() const { return recording_.has_value(); }
@@ -26,12 +26,12 @@ class ReplaySource {
     /// The layout of the first frame.
     [[nodiscard]] const FrameLayout& layout() const { return layout_; }
 
-    /// The next frame; of footage, id counts from 0. False at the end. \throws InputError.
+    /// The next frame; ids of footage count from 0. False at the end. \throws InputError.
     bool next(CapturedFrame& frame);
     void rewind();
-    /// Where footage may not be what it seems, and what of its first frame its format cannot hold.
+    /// Warnings on the footage, and on clipping of its first frame.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    /// What reading to the end has shown to be wrong besides; empty if nothing is.
+    /// Further faults that were found up to the end; empty if there are none.
     [[nodiscard]] std::string end_warning();
 
   private:

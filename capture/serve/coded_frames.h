@@ -12,13 +12,13 @@
 
 namespace stipple {
 
-/// An emulated sensor as a source of frames: each is the packets of one slot (coded_payload.h), the
-/// bytes that `emulate` would write. The frame number is the slot. A start resets the sensor, so
-/// every client gets the same bits.
+/// An emulated sensor as a source of frames. Each frame is the packets of one slot
+/// (coded_payload.h), with the same bytes as `emulate` writes. The frame number is the slot. A
+/// start resets the sensor, so every client gets the same bits.
 class CodedFrames final : public FrameSource {
   public:
-    /// Light of the files of `origin`, which lie at `footage`. Without a rate, that of the sensor's
-    /// slots. \throws InputError as FootageReader and set_up_sensor.
+    /// The light comes from `footage`, the files of `origin`. The default rate is the slot rate of
+    /// the sensor. \throws InputError as FootageReader and set_up_sensor.
     CodedFrames(std::filesystem::path footage, const FootageOrigin& origin,
                 const SensorChoice& sensor, std::optional<double> slots_per_s);
 

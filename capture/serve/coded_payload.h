@@ -14,22 +14,22 @@
 
 namespace stipple {
 
-// A sample stream as the frames of a camera: each frame's payload is the packets of one slot, the
-// very bytes of a .stipple file, and zeros up to the size that all payloads have.
+// A sample stream as the frames of a camera. The payload of a frame is the packets of one slot,
+// with the same bytes as in a .stipple file, then zeros up to the payload size.
 
-/// Width of the image as which a payload goes out: Mono8, one byte a pixel.
+/// Width of the Mono8 image that carries a payload, one byte per pixel.
 inline constexpr int kCodedImageWidth = 1024;
 
-/// The header of a coded stream, and what its packets have from it.
+/// The header of a coded stream, and the framing of its packets that depends on it.
 struct CodedHeader {
     StreamHeader stream;
     Framing framing;
 };
 
-/// That of a stream to be sent. \throws InputError as encode_header.
+/// The header of a stream to be sent. \throws InputError as encode_header.
 [[nodiscard]] CodedHeader coded_header(StreamHeader stream);
 
-/// The image that holds the packets of any slot, and the header for clients.
+/// An image large enough for the packets of any slot, and the header for clients.
 /// \throws InputError if the header is too long to be read through registers (1 MiB).
 [[nodiscard]] ServedImage coded_image(const StreamHeader& header);
 
@@ -38,13 +38,13 @@ struct CodedHeader {
                                                       const CodedHeader& header,
                                                       const ServedImage& image);
 
-/// What a payload holds.
+/// Content of a payload.
 struct CodedSlot {
     std::vector<SamplePacket> packets;
-    std::string fault;  ///< why the bytes after the packets are none; empty if they are zeros
+    std::string fault;  ///< why the bytes after the packets are no packet; empty if zeros
 };
 
-/// Packets are good if they follow `expected` and each other.
+/// Packets are good if they follow `expected` and each other in order.
 [[nodiscard]] CodedSlot decode_coded_payload(const CodedHeader& header,
                                              std::span<const std::uint8_t> payload,
                                              StreamPosition expected);

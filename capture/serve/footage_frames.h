@@ -9,15 +9,15 @@
 namespace stipple {
 
 /// Footage as the frames of a camera without noise: light 1.0 is full scale, DN are rounded to the
-/// nearest and clipped. One plane can be had as Mono8 to Mono16 and the "p" formats whose rows are
-/// whole bytes, three as RGB8. So 8-bit footage as Mono8 and 16-bit footage as Mono16 keep their
-/// numbers. Where the preferred format is of a colour filter array, one plane is what lies behind
-/// it, of three each pixel has the colour of its filter, and all formats with that filter can be
-/// had.
+/// nearest and clipped. Formats of one plane: Mono8 to Mono16, and "p" formats whose rows are whole
+/// bytes; of three planes: RGB8. So 8-bit footage as Mono8 and 16-bit footage as Mono16 keep their
+/// numbers. If the preferred format has a colour filter array, one plane is the mosaic behind it,
+/// and of three planes each pixel has the colour of its filter. All formats with that array are
+/// then offered.
 class FootageFrames final : public FrameSource {
   public:
     /// `preferred` becomes the default format; null: Mono8 or RGB8. \throws InputError as
-    /// FootageReader, and if the footage cannot be had in that format.
+    /// FootageReader, and if the footage does not suit that format.
     FootageFrames(std::filesystem::path footage, const FootageOptions& options, double frames_per_s,
                   const PixelFormat* preferred = nullptr);
 
@@ -38,7 +38,7 @@ class FootageFrames final : public FrameSource {
     const PixelFormat* format_ = nullptr;
     std::uint64_t number_ = 0;
     std::vector<float> light_;
-    std::vector<float> mosaic_;  ///< of light in colour, behind a colour filter array
+    std::vector<float> mosaic_;  ///< colour footage behind a colour filter array
     std::vector<std::uint16_t> dn_;
 };
 

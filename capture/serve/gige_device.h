@@ -14,7 +14,7 @@
 
 namespace stipple {
 
-/// Who a served camera says it is. Addresses in host byte order.
+/// Identity of a served camera. Addresses in host byte order.
 struct GigeIdentity {
     std::uint32_t address = 0x7F000001;
     std::uint32_t netmask = 0xFF000000;
@@ -23,14 +23,14 @@ struct GigeIdentity {
     std::string version;
     std::string serial;
     bool can_resend = true;
-    bool allow_other_destination = false;  ///< else the stream goes to the controller's address
+    bool allow_other_destination = false;  ///< false: only to the address of the controller
 };
 
-/// What the registers say about the stream.
+/// Settings of the stream in the registers.
 struct GigeStreamSettings {
     bool running = false;
     std::uint64_t starts = 0;  ///< AcquisitionStart commands so far
-    UdpEndpoint destination;   ///< address or port 0: nobody listens
+    UdpEndpoint destination;   ///< address or port 0: no receiver
     std::size_t packet_bytes = 0;
     bool do_not_fragment = false;
     std::chrono::nanoseconds packet_delay{0};
@@ -40,35 +40,35 @@ struct GigeStreamSettings {
     std::uint32_t offset_x = 0;
     std::uint32_t offset_y = 0;
     double frames_per_s = 0;
-    std::optional<std::uint64_t> frames;  ///< that are asked for; none: until stopped
+    std::optional<std::uint64_t> frames;  ///< requested number; empty: until stopped
     bool chunk_mode = false;
     std::array<bool, gige::kChunkTypes> chunks = {};
 };
 
-/// What becomes of a command.
+/// Result of a command.
 struct GigeOutcome {
     std::vector<std::uint8_t> reply;  ///< empty: none
     std::optional<GvcpPacketResend> resend;
     bool fire_test_packet = false;
 };
 
-/// The control side of a GigE Vision camera: registers, XML, control privilege, heartbeat. It has
-/// no sockets, no threads and no clock of its own.
+/// The control side of a GigE Vision camera: registers, XML, control privilege, heartbeat. Without
+/// sockets, threads and clock.
 class GigeDevice {
   public:
-    /// Any clock that only goes forward; the device's time begins with the epoch of it.
+    /// Time of any monotonic clock; the device time counts from its epoch.
     using Time = std::chrono::nanoseconds;
 
     GigeDevice(const GigeIdentity& identity, const ServedImage& image);
 
-    /// Carries a command out.
+    /// Executes a command.
     [[nodiscard]] GigeOutcome execute(const GvcpCommand& command, UdpEndpoint peer, Time now);
-    /// Takes the control from a controller that has been silent for the heartbeat timeout, and
-    /// ends its stream. Returns whether it did.
+    /// If the controller has been silent for the heartbeat timeout, removes its control and ends
+    /// its stream. Returns whether it did.
     bool check_heartbeat(Time now);
-    /// When `check_heartbeat` may find something; nothing if nobody is in control.
+    /// Time at which the heartbeat timeout expires; empty without a controller.
     [[nodiscard]] std::optional<Time> heartbeat_due() const;
-    /// The stream has come to its end by itself (if no other began in between).
+    /// The stream number `starts` has ended by itself; ignored if another one has begun.
     void stream_ended(std::uint64_t starts);
 
     [[nodiscard]] GigeStreamSettings stream() const;

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-/// Addresses of the registers of a served camera: those of the GigE Vision bootstrap, and behind
-/// them our own features, which the GenICam XML names.
+/// Addresses of the registers of a served camera: the bootstrap registers of GigE Vision, then our
+/// own features, which the GenICam XML names.
 namespace stipple::gige {
 
 inline constexpr std::uint32_t kVersion = 0x0000;
@@ -69,7 +69,7 @@ inline constexpr std::uint32_t kFireTestPacket = 0x80000000;
 inline constexpr std::uint32_t kDoNotFragment = 0x40000000;
 inline constexpr std::uint32_t kCanResend = 4;
 
-// Limits of what clients may set, so that nobody keeps the camera, or has it flood a network.
+// Limits for clients, so that none can block the camera or make it flood a network.
 inline constexpr std::uint32_t kMinHeartbeatMs = 500;
 inline constexpr std::uint32_t kMaxHeartbeatMs = 10'000;
 inline constexpr std::uint32_t kMaxPacketDelayNs = 100'000'000;

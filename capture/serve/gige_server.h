@@ -15,41 +15,41 @@ struct GigeServerOptions {
     std::string model = "Recording";
     std::string version = {};
     std::string serial = {};  ///< empty: the address
-    bool repeat = false;      ///< begin again at the end of the source
+    bool repeat = false;      ///< start again at the end of the source
     bool can_resend = true;
-    bool allow_other_destination = false;  ///< else frames go to the client's own address
+    bool allow_other_destination = false;  ///< false: only to the address of the client
     GvspFaults faults = {};
 };
 
 struct GigeServerCounts {
     std::uint64_t frames = 0;
-    std::uint64_t late_frames = 0;  ///< sent more than a frame period after their time
+    std::uint64_t late_frames = 0;  ///< sent more than one frame period late
     std::uint64_t packets = 0;
     std::uint64_t packets_resent = 0;
     std::uint64_t starts = 0;
 };
 
-/// A source of frames as a GigE Vision camera on an address of this machine: discovery, registers
-/// and GenICam XML, control privilege and heartbeat, streaming with packet resend and chunk data.
+/// Offers a source of frames as a GigE Vision camera on an address of this machine: discovery,
+/// registers and GenICam XML, control privilege and heartbeat, streaming with packet resend and
+/// chunk data.
 ///
 /// Not implemented: events, triggers, PTP, multicast, more than one stream channel, block ids of 64
 /// bits, FORCEIP.
 class GigeServer {
   public:
-    /// Binds the address; clients can find the camera from then on, and are answered while `run`
-    /// runs. `source` must outlive the server.
-    /// \throws InputError if the address is none, DeviceError if it cannot be had.
+    /// Binds the address. Clients are answered while `run` runs. `source` must outlive the server.
+    /// \throws InputError if the address is none, DeviceError if it cannot be bound.
     GigeServer(FrameSource& source, const GigeServerOptions& options);
     ~GigeServer();
     GigeServer(const GigeServer&) = delete;
     GigeServer& operator=(const GigeServer&) = delete;
 
-    /// Serves until `stop` returns true, which is asked at least every 100 ms.
-    /// \throws InputError if the source has a frame that cannot be read.
+    /// Serves until `stop` returns true; it is called at least every 100 ms.
+    /// \throws InputError if a frame of the source cannot be read.
     void run(const std::function<bool()>& stop);
 
     [[nodiscard]] GigeServerCounts counts() const;
-    /// The client in control, as "10.0.0.5:40112"; empty if there is none.
+    /// The controlling client, as "10.0.0.5:40112"; empty if there is none.
     [[nodiscard]] std::string client() const;
     [[nodiscard]] const std::string& xml() const;
 

@@ -2,7 +2,7 @@
 
 namespace stipple::gige {
 
-/// The files *.xml.in beside this one, as format strings of fmt.
+/// The files *.xml.in of this folder, as format strings of fmt.
 extern const char* const kCameraXml;
 extern const char* const kRegionXml;
 extern const char* const kFixedRegionXml;

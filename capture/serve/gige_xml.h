@@ -6,12 +6,12 @@
 
 namespace stipple {
 
-/// The GenICam description (GenApi 1.1 schema, SFNC names) of a camera that serves such images: it
-/// names the registers of gige_registers.h.
+/// The GenICam description (GenApi 1.1 schema, SFNC names) of a camera that serves `image`, with
+/// the registers of gige_registers.h.
 [[nodiscard]] std::string gige_xml(const ServedImage& image);
 
-/// Pixels by which width and horizontal offset change, so that rows stay whole bytes and whole
-/// cells of a colour filter array in every format.
+/// Increment of width and horizontal offset in pixels, so that rows are whole bytes and whole cells
+/// of a colour filter array in every format.
 [[nodiscard]] int gige_width_step(const ServedImage& image);
 
 }  // namespace stipple

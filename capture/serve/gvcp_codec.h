@@ -10,15 +10,15 @@
 
 namespace stipple {
 
-// The GigE Vision control protocol (GVCP), as bytes: what a device must understand of it. Fields
-// are big-endian. A command: 0x42, flags, command (2), length of what follows the header (2),
-// request id (2). A reply: status (2), command + 1 (2), length (2), id of the request (2).
+// The GigE Vision control protocol (GVCP), as bytes: the part that a device needs. Fields are
+// big-endian. A command: 0x42, flags, command (2), length after the header (2), request id (2). A
+// reply: status (2), command + 1 (2), length (2), id of the request (2).
 
 inline constexpr std::uint16_t kGvcpPort = 3956;
 inline constexpr std::size_t kGvcpHeaderBytes = 8;
-/// What a datagram of 576 bytes leaves after the headers of IP and UDP.
+/// Payload of a datagram of 576 bytes, without the headers of IP and UDP.
 inline constexpr std::size_t kMaxGvcpBytes = 548;
-/// Of one READMEM or WRITEMEM.
+/// Maximum data of one READMEM or WRITEMEM.
 inline constexpr std::size_t kMaxGvcpMemoryBytes = 536;
 
 enum class GvcpCode : std::uint16_t {
@@ -56,14 +56,14 @@ struct GvcpWriteMemory {
     std::uint32_t address = 0;
     std::vector<std::uint8_t> data;  ///< a multiple of 4, up to kMaxGvcpMemoryBytes
 };
-/// Packets first..last of a block shall be sent again.
+/// Request to send packets first..last of a block again.
 struct GvcpPacketResend {
     std::uint16_t channel = 0;
     std::uint16_t block = 0;
     std::uint32_t first = 0;  ///< 24 bits
     std::uint32_t last = 0;   ///< 24 bits
 };
-/// A command that cannot be carried out whatever the device's state.
+/// A command that is refused in any state of the device.
 struct GvcpRefused {
     GvcpStatus status = GvcpStatus::kNotImplemented;
 };
@@ -77,7 +77,7 @@ struct GvcpCommand {
         body;
 };
 
-/// What a datagram asks for; nothing if it is no GVCP command, which a device does not answer.
+/// The command in a datagram; empty if it is no GVCP command, which a device does not answer.
 [[nodiscard]] std::optional<GvcpCommand> decode_gvcp(std::span<const std::uint8_t> datagram);
 
 /// The reply to a command.
@@ -85,7 +85,8 @@ struct GvcpCommand {
                                                           GvcpStatus status,
                                                           std::span<const std::uint8_t> content);
 
-/// A command as a client sends it. Precondition: content fits (kMaxGvcpBytes in all).
+/// A command in the form that a client sends. Precondition: header and content have at most
+/// kMaxGvcpBytes.
 [[nodiscard]] std::vector<std::uint8_t> encode_gvcp_command(GvcpCode code, std::uint16_t id,
                                                             std::span<const std::uint8_t> content);
 

@@ -8,14 +8,14 @@
 
 namespace stipple {
 
-// The GigE Vision streaming protocol (GVSP), as bytes. A block (a frame) goes out as a leader, its
+// The GigE Vision streaming protocol (GVSP), as bytes. A block (a frame) is sent as a leader, its
 // payload in pieces, and a trailer; block ids have 16 bits and skip 0. Fields are big-endian:
 // status (2), block id (2), kind (1), packet id within the block (3).
 
-/// Headers of IP, UDP and GVSP: the packet size of a stream channel counts them.
+/// Headers of IP, UDP and GVSP; the packet size of a stream channel includes them.
 inline constexpr std::size_t kGvspOverheadBytes = 20 + 8 + 8;
 
-/// What the leader says of an image. Region in pixels of the sensor.
+/// Description of an image in the leader. Region in pixels of the sensor.
 struct GvspImage {
     std::uint32_t pixel_format = 0;  ///< PFNC code
     std::uint32_t width = 0;
@@ -43,7 +43,7 @@ enum class GvspStatus : std::uint16_t {
     kPacketUnavailable = 0x800C,
 };
 
-/// A packet: `head`, then `data` (which lies in the block).
+/// A packet: `head`, then `data` (in the memory of the block).
 struct GvspPacket {
     std::array<std::uint8_t, 8 + 36> head = {};
     std::size_t head_bytes = 0;
@@ -54,18 +54,18 @@ struct GvspPacket {
 [[nodiscard]] GvspPacket gvsp_packet(const GvspBlock& block, std::uint32_t index,
                                      GvspStatus status = GvspStatus::kSuccess);
 
-/// The answer to a request for a packet that is not there any more.
+/// The answer to a request for a packet that is no longer in the history.
 [[nodiscard]] GvspPacket gvsp_unavailable(std::uint16_t block, std::uint32_t index);
 
-/// A test packet: what a packet of `packet_bytes` (with the headers of IP and UDP, at least
-/// kGvspOverheadBytes) holds after the UDP header.
+/// The UDP payload of a test packet of `packet_bytes` (with the headers of IP and UDP, at least
+/// kGvspOverheadBytes).
 [[nodiscard]] std::vector<std::uint8_t> gvsp_test_packet(std::size_t packet_bytes);
 
-/// The block id of frame `number` (from 0 on) in a stream that began with `first` (1 to 65535).
+/// The block id of frame `number` (from 0) in a stream whose first id is `first` (1 to 65535).
 [[nodiscard]] std::uint16_t gvsp_block_id(std::uint64_t number, std::uint16_t first = 1);
 
-/// Closes the chunk that the last `bytes` bytes of a payload make up: its id and length follow its
-/// data, for chunks are read from the end on.
+/// Makes a chunk of the last `bytes` bytes of a payload: appends its id and length. Clients read
+/// chunks from the end of the payload.
 void close_chunk(std::vector<std::uint8_t>& payload, std::uint32_t id, std::size_t bytes);
 
 }  // namespace stipple

@@ -15,7 +15,7 @@
 
 namespace stipple {
 
-/// A block with the number of its frame, by which faults are chosen.
+/// A block and the number of its frame, which selects the faults.
 struct NumberedBlock {
     std::uint64_t number = 0;
     GvspBlock block;
@@ -24,27 +24,28 @@ struct NumberedBlock {
 /// The time between two packets.
 struct PacketPace {
     std::chrono::nanoseconds delay{0};
-    /// Waits until then; false: the rest of the block is not wanted any more.
+    /// Waits until that time. False: stop sending the block.
     std::function<bool(std::chrono::steady_clock::time_point)> wait_until;
 };
 
-/// Sends blocks as packets and keeps the last ones, in case some are asked for again. `send` and
-/// `resend` may be called from different threads.
+/// Sends blocks as packets and keeps the last ones for resend requests. `send` and `resend` may be
+/// called from different threads.
 class GvspSender {
   public:
-    /// Blocks that can be sent again: as many as fit into kHistoryBytes, at least one.
+    /// Size of the resend history; it holds at least one block.
     static constexpr std::size_t kHistoryBytes = std::size_t{64} << 20U;
 
-    /// Of one request, so that 20 bytes do not make us flood the network; clients ask again.
+    /// Maximum number of packets per request, so that a request of 20 bytes cannot flood the
+    /// network.
     static constexpr std::uint32_t kMaxResent = 512;
 
     GvspSender(const UdpSocket& socket, const GvspFaults& faults)
         : socket_(socket), faults_(faults) {}
 
-    /// Sends packet by packet. Returns whether all packets were: not if the wait was ended.
+    /// Sends packet by packet. Returns whether all packets were sent: false if `pace` stopped it.
     bool send(const std::shared_ptr<const NumberedBlock>& block, UdpEndpoint to,
               const PacketPace& pace);
-    /// Sends packets of the block again, up to kMaxResent of those that are asked for.
+    /// Sends the requested packets again, up to kMaxResent.
     void resend(const GvcpPacketResend& wanted, UdpEndpoint to);
     void forget();
 
@@ -57,7 +58,7 @@ class GvspSender {
 
     const UdpSocket& socket_;
     GvspFaults faults_;
-    std::mutex mutex_;  ///< of the history
+    std::mutex mutex_;  ///< guards the history
     std::deque<std::shared_ptr<const NumberedBlock>> history_;
     std::size_t history_bytes_ = 0;
     std::atomic<std::uint64_t> sent_{0};

@@ -8,18 +8,18 @@
 
 namespace stipple {
 
-/// A recording as the frames of a camera again: the same bytes and device stamps. Frames that are
-/// missing in it, or incomplete, are left out of the numbers, so that clients count them as lost.
+/// A recording as the frames of a camera, with the same bytes and device stamps. Frame numbers skip
+/// missing and incomplete frames, so clients count them as lost.
 class RecordingFrames final : public FrameSource {
   public:
-    /// Without a rate, that of the stamps. \throws InputError as RecordingReader, if there is no
-    /// complete frame, or if its format cannot go out over GigE Vision.
+    /// The default rate is that of the stamps. \throws InputError as RecordingReader, if there is
+    /// no complete frame, or if GigE Vision has no such format.
     explicit RecordingFrames(const std::filesystem::path& file,
                              std::optional<double> frames_per_s = {});
 
     [[nodiscard]] const ServedImage& image() const override { return image_; }
     void start(const PixelFormat& format) override;
-    /// \throws InputError at a frame of another layout than the first.
+    /// \throws InputError for a frame with another layout than the first.
     [[nodiscard]] std::optional<ServedFrame> next() override;
 
   private:

@@ -8,8 +8,8 @@
 
 namespace stipple {
 
-/// A frame as it goes out: its region, with the chunks that are asked for behind it. The id is left
-/// to the caller. Precondition: frame.payload is a whole image in settings.format.
+/// A frame ready for sending: its region, followed by the enabled chunks. The caller sets the id.
+/// Precondition: frame.payload is a whole image in settings.format.
 [[nodiscard]] GvspBlock served_block(ServedFrame frame, const ServedImage& image,
                                      const GigeStreamSettings& settings,
                                      std::uint64_t timestamp_ns);

@@ -12,7 +12,7 @@ namespace stipple {
 struct UdpEndpoint {
     std::uint32_t address = 0;
     std::uint16_t port = 0;
-    /// Whether it names one receiver.
+    /// Whether address and port are set.
     [[nodiscard]] bool is_somebody() const { return address != 0 && port != 0; }
     bool operator==(const UdpEndpoint&) const = default;
 };
@@ -20,7 +20,7 @@ struct UdpEndpoint {
 struct Datagram {
     std::vector<std::uint8_t> bytes;
     UdpEndpoint from;
-    int interface = 0;  ///< that it came in by
+    int interface = 0;  ///< on which it was received
 };
 
 /// A part of a datagram to be sent: `head`, then `data`.
@@ -31,7 +31,7 @@ struct DatagramParts {
 
 class UdpSocket {
   public:
-    /// Port 0: any. `shared`: others may have the same (for broadcast addresses).
+    /// Port 0: any. `shared`: other sockets may bind the same (for broadcast addresses).
     /// \throws std::system_error.
     explicit UdpSocket(UdpEndpoint local, bool shared = false);
     ~UdpSocket();
@@ -40,13 +40,14 @@ class UdpSocket {
 
     [[nodiscard]] int descriptor() const { return descriptor_; }
     [[nodiscard]] UdpEndpoint local() const;
-    /// A datagram that has come, or nothing. Never waits.
+    /// A received datagram, or empty. Never waits.
     [[nodiscard]] std::optional<Datagram> receive() const;
-    /// Waits for room in the socket's buffer. Whether it was sent: not if it is too large.
+    /// Waits for room in the buffer of the socket. Returns whether it was sent; false if it is too
+    /// large.
     bool send(UdpEndpoint to, std::span<const std::uint8_t> bytes) const;
-    /// The same for many. Returns how many were sent.
+    /// The same for several datagrams. Returns the number sent.
     std::size_t send(UdpEndpoint to, std::span<const DatagramParts> datagrams) const;
-    /// Whether datagrams that are larger than the network takes fail, instead of going in pieces.
+    /// On: datagrams larger than the MTU fail; off: they are fragmented.
     void set_do_not_fragment(bool on) const;
     void set_send_buffer(int bytes) const;
 

@@ -9,45 +9,45 @@
 
 namespace stipple {
 
-/// Whose memory the driver fills.
+/// Owner of the frame memory.
 enum class V4l2Memory {
     kDriver,  ///< the driver's, mapped by us (V4L2_MEMORY_MMAP)
     kOwn,     ///< ours (V4L2_MEMORY_USERPTR)
 };
 
-/// The frame buffers that a V4L2 driver and we hand to each other. A buffer is either queued with
+/// The frame buffers that a V4L2 driver and this program exchange. A buffer is either queued with
 /// the driver or ours.
 class V4l2Buffers {
   public:
     /// A buffer that the driver filled.
     struct Filled {
         int index = 0;
-        std::span<const std::uint8_t> bytes;  ///< what it says to have written
+        std::span<const std::uint8_t> bytes;  ///< written, as the driver says
         std::uint32_t sequence = 0;
         std::uint32_t flags = 0;    ///< V4L2_BUF_FLAG_...
         std::int64_t stamp_ns = 0;  ///< on the clock that `flags` name
         bool overflow = false;      ///< the driver claims more bytes than the buffer has
     };
 
-    /// \throws DeviceError if the driver gives no such buffers, or fewer than two.
+    /// \throws DeviceError if the driver provides no such buffers, or fewer than two.
     V4l2Buffers(const V4l2Device& device, V4l2Memory memory, int frames, std::size_t frame_bytes);
     ~V4l2Buffers();
     V4l2Buffers(const V4l2Buffers&) = delete;
     V4l2Buffers& operator=(const V4l2Buffers&) = delete;
 
     [[nodiscard]] int count() const { return static_cast<int>(places_.size()); }
-    /// Those that the driver may fill now.
+    /// Number of buffers queued with the driver.
     [[nodiscard]] int queued() const { return queued_; }
 
-    /// Hands all buffers that are ours to the driver. A driver may refuse one for once (EINVAL): it
-    /// stays ours and is offered again with the next call. \returns 0 or the last errno
+    /// Queues all buffers that are ours with the driver. A driver may refuse one temporarily
+    /// (EINVAL): it stays ours, and the next call tries again. \returns 0 or the last errno
     int queue_all() noexcept;
     /// Fetches the next filled buffer without waiting. \returns 0, EAGAIN if none is filled yet,
     /// or the errno of the failure
     [[nodiscard]] int fetch(Filled& filled) noexcept;
-    /// Ends the use of what `fetch` gave.
+    /// Ends the use of a fetched buffer.
     void release(int index) noexcept { places_[static_cast<std::size_t>(index)].held = false; }
-    /// After the driver's stream was stopped, which takes all buffers from it.
+    /// To be called after the stream of the driver was stopped, which returns all buffers to us.
     void all_ours() noexcept;
 
   private:

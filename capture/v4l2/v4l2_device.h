@@ -10,16 +10,16 @@ namespace stipple {
 /// An open V4L2 node (/dev/videoN), non-blocking; closed on destruction.
 class V4l2Device {
   public:
-    /// \throws DeviceError if it cannot be opened or is no video capture device that streams; the
+    /// \throws DeviceError if it cannot be opened or is no video capture device with streaming; the
     /// message says what to do.
     explicit V4l2Device(std::string path);
     ~V4l2Device();
     V4l2Device(const V4l2Device&) = delete;
     V4l2Device& operator=(const V4l2Device&) = delete;
 
-    /// ioctl, repeated where a signal interrupts it. \returns 0, or the errno of the failure
+    /// ioctl, repeated if a signal interrupts it. \returns 0, or the errno of the failure
     [[nodiscard]] int call(unsigned long request, void* argument) const noexcept;
-    /// `call`, where a failure is final. \throws DeviceError "cannot <what>: <errno in words>"
+    /// `call` for requests that must succeed. \throws DeviceError "cannot <what>: <errno in words>"
     void demand(unsigned long request, void* argument, std::string_view what) const;
 
     enum class Readiness { kTimeout, kReady, kError };
@@ -33,9 +33,9 @@ class V4l2Device {
     [[nodiscard]] const std::string& driver() const { return driver_; }
     [[nodiscard]] const std::string& card() const { return card_; }
     [[nodiscard]] const std::string& bus() const { return bus_; }
-    /// Of the kernel's media subsystem, "6.1.192".
+    /// Version of the media subsystem of the kernel, "6.1.192".
     [[nodiscard]] const std::string& version() const { return version_; }
-    /// The node speaks the multi-planar API, even if its formats have one plane.
+    /// Whether the node uses the multi-planar API, even if its formats have one plane.
     [[nodiscard]] bool multi_planar() const { return multi_planar_; }
     /// V4L2_BUF_TYPE_VIDEO_CAPTURE or V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE.
     [[nodiscard]] std::uint32_t buffer_type() const;

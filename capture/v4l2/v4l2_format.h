@@ -10,18 +10,17 @@
 
 namespace stipple {
 
-/// What a V4L2 device was set to deliver.
+/// Format of the frames of a V4L2 device.
 struct V4l2Format {
     FrameLayout layout;
-    std::size_t buffer_bytes = 0;              ///< of a buffer, as the driver wants it
-    double frames_per_s = 0;                   ///< 0: the driver does not say
+    std::size_t buffer_bytes = 0;              ///< size of a buffer, as the driver requires
+    double frames_per_s = 0;                   ///< 0: unknown
     std::map<std::string, std::string> facts;  ///< input, crop rectangle
 };
 
-/// Applies those of `settings` that are about pictures (is_v4l2_format_setting) and reads back what
-/// came of it. A driver that answers with another format, size, region or rate than asked for is
-/// refused: nothing is converted or scaled behind the user's back.
-/// \throws InputError for values that cannot be meant, DeviceError for those that the device lacks
+/// Applies the settings of the format (is_v4l2_format_setting) and reads the result back. Another
+/// format, size, region or rate than requested is an error: frames are never converted or scaled
+/// silently. \throws InputError for impossible values, DeviceError for values that the device lacks
 [[nodiscard]] V4l2Format set_v4l2_format(const V4l2Device& device, const CameraSettings& settings);
 
 /// Whether a setting is one of Input, Width, Height, OffsetX, OffsetY, PixelFormat and
