@@ -23,7 +23,7 @@ enum class DecodeMethod {
     kPortz2013,  ///< the method of the paper, in two stages
 };
 
-/// A block of the video, to be decoded.
+/// A block of the video and the context of its decoding.
 struct BlockTask {
     Measurements& measurements;  ///< a method may change them
     const Calibration& calibration;
@@ -32,20 +32,21 @@ struct BlockTask {
     const StageObserver& observer;
 };
 
-/// All that the decoder knows of a method.
+/// A row of the table of methods.
 struct NamedDecodeMethod {
     std::string_view name;
     DecodeMethod method;
-    std::string_view text;        ///< what it is and costs, for people
+    std::string_view text;        ///< description and cost, for users
     std::int64_t max_tile_sites;  ///< larger frames are decoded in tiles
-    std::uint64_t voxel_bytes;    ///< memory of the estimate and all that belongs to it
+    std::uint64_t voxel_bytes;    ///< memory of all arrays of the method, bytes a voxel
     /// The keys of docs/decoder_options.md. \throws InputError as Config.
     void (*read_options)(Config& config, DecodeOptions& options);
-    /// The result may be slightly negative. Nothing if the progress callback has stopped it.
+    /// The result may be slightly negative. Returns nothing if the progress callback has stopped
+    /// it.
     std::optional<FluxVideo> (*decode)(const BlockTask& block);
 };
 
-/// Every method there is, from the simplest on.
+/// All methods, the simplest first.
 [[nodiscard]] std::span<const NamedDecodeMethod> decode_methods();
 
 [[nodiscard]] const NamedDecodeMethod& named(DecodeMethod method);

@@ -13,16 +13,16 @@
 
 namespace stipple {
 
-/// A method and the options of each; those of the others have no effect.
+/// A method and the options of all methods; only those of `method` are used.
 struct DecodeOptions {
     DecodeMethod method = DecodeMethod::kBest;
     MotionTvOptions fast = {};
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
     StageSink stages = {};
-    bool fill_gaps = false;               ///< decode slots that are missing, however many they are
-    std::string place = "sample stream";  ///< its name, for messages
-    std::uint64_t input_bytes = kEndlessInput;  ///< of its file
+    bool fill_gaps = false;                     ///< decode missing slots, whatever their number
+    std::string place = "sample stream";        ///< name of the input in messages
+    std::uint64_t input_bytes = kEndlessInput;  ///< size of the file
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

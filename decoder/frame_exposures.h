@@ -11,7 +11,7 @@ namespace stipple {
 
 struct Measurements;
 
-/// An exposure that all sites share: a frame of a conventional camera.
+/// A frame of a conventional camera: an exposure that all sites share.
 struct FrameExposure {
     int first_slot = 0;
     int last_slot = 0;
@@ -19,20 +19,19 @@ struct FrameExposure {
     float centre_slot = 0;  ///< mean of the open ones
 };
 
-/// The frames of a block, in order, if no two sites expose at different times: a shutter for all,
-/// as in a conventional camera or one that flutters. Samples may be missing. Nothing otherwise, and
-/// where each slot is a frame, so that there is nothing between frames.
+/// The frames of a block in temporal order, if all sites have the same exposures, as in a
+/// conventional camera or one with a flutter shutter. Samples may be missing. Nothing otherwise,
+/// and if each slot is a frame, because there are then no slots between frames.
 [[nodiscard]] std::optional<std::vector<FrameExposure>> frame_exposures(
     const Measurements& measurements);
 
-/// The same samples as those of a camera whose slots are the frames: light per slot, with the noise
-/// that each has.
+/// The samples as those of a camera whose slots are the frames: light per slot, with its noise.
 [[nodiscard]] Measurements measurements_of_frames(const Measurements& measurements,
                                                   std::span<const FrameExposure> exposures,
                                                   const SampleNoise& noise);
 
-/// Adds to the open slots of each exposure what their mean lacks of its frame: what lies between
-/// frames that show the mean of several slots each is that of both, and so blurred twice.
+/// Adds the same light to all open slots of each exposure so that their mean equals its frame.
+/// Interpolation between frames of several slots blurs them a second time; this corrects it.
 void add_what_frames_lack(const Measurements& measurements,
                           std::span<const FrameExposure> exposures, const FluxVideo& frames,
                           FluxVideo& x);

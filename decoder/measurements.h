@@ -11,8 +11,8 @@
 
 namespace stipple {
 
-/// A box of voxels of a recording: `slots` slots from `first_slot` of the pixels from
-/// (first_row, first_col); `shape` is the size of one of its frames.
+/// A box of voxels of a video: `slots` slots from `first_slot`, and the pixels from (first_row,
+/// first_col); `shape` is the size of one of its frames.
 struct VideoWindow {
     std::int64_t first_slot = 0;
     int slots = 0;
@@ -25,12 +25,12 @@ struct VideoWindow {
     }
 };
 
-/// The samples y of a window in the units of FluxVideo, spread out so that a voxel knows its
-/// exposure: arrays of order (slot, plane, row, col). Exposures that reach beyond the window or
-/// whose sample is missing are not in it; their voxels are unobserved, as are those of the colours
-/// that a pixel under a colour filter does not see. Where the exposures of a pixel interleave
-/// (two-bucket pixels) they form two chains, in each of which one follows the other; all bits of a
-/// voxel belong to the one exposure that it is open in.
+/// The samples y of a window in the units of FluxVideo, as arrays of order (slot, plane, row, col),
+/// so that each voxel finds its exposure. Exposures that reach beyond the window, and exposures
+/// without a sample, are omitted; their voxels are unobserved. In a mosaic the colours that a pixel
+/// does not measure are unobserved too. Interleaved exposures of a pixel (two buckets) form two
+/// chains of successive exposures; all bits of a voxel belong to the one exposure in which it is
+/// open.
 struct Measurements {
     static constexpr std::uint8_t kOpen = 1;       ///< the voxel's light is in a sample
     static constexpr std::uint8_t kFirst = 2;      ///< first voxel of an exposure
@@ -46,10 +46,10 @@ struct Measurements {
     std::vector<float> sum;       ///< y: light of the whole exposure, at its last voxel; else 0
     std::vector<float> variance;  ///< of `sum` at the same voxel; else 0
     bool interleaved = false;     ///< there is a second chain
-    bool mosaic = false;          ///< of colours: each pixel is open in one of three planes only
+    bool mosaic = false;          ///< of colours: each pixel is open in only one of three planes
 
-    /// Where pixels differ or have dark current, their own noise at the last voxels: variance of
-    /// an exposure without light, and what each unit of light adds. Else empty.
+    /// If pixels differ or have dark current, the noise of each exposure at its last voxel:
+    /// variance without light, and increase of the variance per unit of light. Otherwise empty.
     std::vector<float> dark_variance = {};
     std::vector<float> variance_per_light = {};
 
@@ -61,15 +61,15 @@ struct Measurements {
     [[nodiscard]] std::size_t voxels() const { return state.size(); }
 };
 
-/// Shape of the frames that a stream decodes to: three planes if its one plane is a mosaic of
-/// colours, else that of the array.
+/// Shape of the decoded frames of a stream: three planes if its plane is a mosaic of colours, else
+/// the shape of the array.
 [[nodiscard]] FrameShape decoded_shape(const StreamHeader& header);
 
-/// Collects the samples of `window` from packets that may hold more, each converted by the response
-/// of its pixel (pixel_response.h). Variances are set as if each sample were its own mean. The
+/// Collects the samples of `window` from packets that may contain more, converted by the response
+/// of each pixel (pixel_response.h). The variances are those for a sample equal to its mean. The
 /// samples of a mosaic go to the planes of their colours.
-/// \throws InputError if more than two exposures of a pixel are under way at once.
-/// Precondition: window.shape.planes == decoded_shape(header).planes.
+/// \throws InputError if a pixel has more than two exposures at once. Precondition:
+/// window.shape.planes == decoded_shape(header).planes.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);

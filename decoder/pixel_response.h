@@ -11,13 +11,13 @@ namespace stipple {
 class SampleNoise {
   public:
     explicit SampleNoise(const Calibration& calibration);
-    /// (r X + sigma^2) / r^2 + q^2 / 12 for an exposure that collected the light X: r electrons
-    /// per unit, read noise sigma, one DN q.
+    /// (r X + sigma^2) / r^2 + q^2 / 12 for an exposure with the collected light X: r electrons per
+    /// unit of light, read noise sigma, one DN q.
     [[nodiscard]] float variance(float light) const {
         return constant_ + per_unit_ * (light > 0 ? light : 0);
     }
 
-    /// What a unit of light adds to the variance: 1 / r.
+    /// Increase of the variance per unit of light: 1 / r.
     [[nodiscard]] float per_light() const { return per_unit_; }
 
     /// Light of one DN.
@@ -29,20 +29,20 @@ class SampleNoise {
     float constant_;
 };
 
-/// What the DN of one pixel say of the light that its exposures collected.
+/// Conversion of the DN of one pixel to the light of its exposures.
 class PixelResponse {
   public:
     PixelResponse(const Calibration& calibration, const CalibrationPixel& pixel);
 
     /// True if the sample is only a lower bound: at full scale, or so near the full well that it
-    /// may have been clipped there. Read noise and rounding come after the well, so clipped samples
-    /// scatter around it; one in 3 million lies more than 5 standard deviations below, and is taken
-    /// for exact.
+    /// may have been clipped there. Read noise and rounding are added after the well, so clipped
+    /// samples scatter around it. One in 3 million lies more than 5 standard deviations below and
+    /// is treated as exact.
     [[nodiscard]] bool saturated(std::uint16_t dn) const { return dn >= saturation_dn_; }
 
     /// ((DN - black level) K^-1 / g - D n) / (r R): g relative gain, R relative responsivity, D
-    /// dark electrons a slot, n open slots. Of a saturated sample the bound, which is where
-    /// saturation begins, whatever noise has added.
+    /// dark electrons per slot, n open slots. For a saturated sample this is the bound at which
+    /// saturation begins, independent of its noise.
     [[nodiscard]] float light(std::uint16_t dn, int open_slots) const {
         const double exact = saturated(dn) ? saturation_dn_ : dn;
         return static_cast<float>((exact - black_level_dn_) * unit_per_dn_ -
@@ -50,13 +50,13 @@ class PixelResponse {
     }
 
     [[nodiscard]] const SampleNoise& noise() const { return noise_; }
-    /// What the dark electrons of an open slot add to the variance.
+    /// Increase of the variance per open slot by dark electrons.
     [[nodiscard]] float dark_variance_per_slot() const { return dark_variance_per_slot_; }
 
   private:
     double black_level_dn_;
     double unit_per_dn_;
-    double dark_per_slot_;  ///< light that the dark electrons of an open slot look like
+    double dark_per_slot_;  ///< light equivalent to the dark electrons of an open slot
     double saturation_dn_;
     SampleNoise noise_;
     float dark_variance_per_slot_;

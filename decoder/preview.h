@@ -14,12 +14,12 @@
 
 namespace stipple {
 
-/// One decoded frame of a stream that is under way.
+/// One decoded frame of a stream that is being written.
 struct PreviewFrame {
     std::int64_t slot = 0;
     FrameShape shape;
     std::vector<float> light;      ///< order (plane, row, col), units of FluxVideo
-    std::vector<bool> too_bright;  ///< by pixel: all its samples of some colour are saturated
+    std::vector<bool> too_bright;  ///< by pixel: all samples of a colour are saturated
     [[nodiscard]] double too_bright_fraction() const;
     [[nodiscard]] double mean_light() const;
 };
@@ -29,20 +29,20 @@ struct PreviewOptions {
     std::optional<FrameShape> size;              ///< rows and columns of the middle of the frame
 };
 
-/// Decodes single frames out of the midst of a stream, from as few slots as hold the exposures
-/// around them. Not so many voxels are decoded that it takes more than some seconds or some hundred
-/// MB: of a frame that is too large only the middle is.
+/// Decodes single frames of a stream, from the minimum number of slots that contain the exposures
+/// around them. The number of voxels is limited, so that a frame takes at most some seconds and
+/// some hundred MB: of a frame that is too large only the middle is decoded.
 class PreviewDecoder {
   public:
     PreviewDecoder(StreamHeader header, const PreviewOptions& options);
 
-    /// Slots that a frame is made of.
+    /// Number of slots that a frame is decoded from.
     [[nodiscard]] int slots() const { return region_.slots; }
-    /// The slot of these that is shown.
+    /// Which of these slots is shown.
     [[nodiscard]] int shown_slot() const { return region_.slots / 2; }
     [[nodiscard]] FrameShape shape() const { return region_.shape; }
 
-    /// From the packets of slots() slots, `first_slot` and those after it. Nothing if `progress`
+    /// Decodes the packets of the slots() slots from `first_slot`. Returns nothing if `progress`
     /// has stopped it. \throws InputError as collect_measurements.
     [[nodiscard]] std::optional<PreviewFrame> decode(std::int64_t first_slot,
                                                      std::span<const SamplePacket> packets,

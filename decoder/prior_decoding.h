@@ -9,7 +9,7 @@ namespace stipple {
 
 class SampleNoise;
 
-/// What a method with a prior on the video is given.
+/// Arguments of a method with a prior on the video.
 struct PriorTask {
     Measurements& measurements;
     const SampleNoise& noise;
@@ -17,9 +17,9 @@ struct PriorTask {
     const ProgressCallback& progress;
 };
 
-/// Decodes a block by such a method. Pixels that are stuck are taken out first; where all pixels
-/// expose alike, as those of a conventional camera, `decode` restores the frames, and the video is
-/// interpolated between them.
+/// Decodes a block by such a method, after the samples of stuck pixels are removed. If all pixels
+/// have the same exposures, as in a conventional camera, `decode` restores the frames, and the
+/// video is interpolated between them.
 [[nodiscard]] std::optional<FluxVideo> decode_with_prior(
     const BlockTask& block, std::optional<FluxVideo> (*decode)(const PriorTask& task));
 

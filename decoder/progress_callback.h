@@ -4,7 +4,7 @@
 
 namespace stipple {
 
-/// Told now and then which fraction of the work is done; false stops.
+/// Receives the completed fraction of the work from time to time; false stops.
 using ProgressCallback = std::function<bool(double fraction)>;
 
 }  // namespace stipple

@@ -17,8 +17,8 @@ void sample(const Measurements& measurements, std::span<const float> x, std::spa
 /// x = A^T sums: each open voxel takes the value of its exposure, others 0.
 void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x);
 
-/// Sets each variance to that of its exposure's light in the estimate x, which is less noisy than
-/// the sample.
+/// Sets each variance to that of the light of its exposure in the estimate x, which has less noise
+/// than the sample.
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,
                        std::span<const float> x);
 

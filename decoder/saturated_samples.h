@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// Counts the samples of packets that are only a lower bound, as PixelResponse tells.
+/// Counts the samples of packets that are only a lower bound (PixelResponse).
 class SaturatedSamples {
   public:
     explicit SaturatedSamples(const StreamHeader& header)

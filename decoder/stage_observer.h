@@ -9,15 +9,15 @@
 
 namespace stipple {
 
-/// What methods that work in stages tell of a block; either may be empty.
+/// Callbacks of methods with stages, for one block; each may be empty.
 struct StageObserver {
-    /// The estimate that a stage has come to.
+    /// Receives the estimate at the end of a stage.
     std::function<void(std::string_view stage, const FluxVideo& estimate)> finished;
-    /// What is minimised, after each iteration (from 0 on).
+    /// Receives the value of the objective after each iteration (from 0).
     std::function<void(std::string_view stage, int iteration, double objective)> iterated;
 };
 
-/// An iteration of a block: the block's first slot, which of the tiles of its frames it is.
+/// An iteration of a block: first slot of the block, number of the tile of its frames.
 struct StageStep {
     std::int64_t first_slot = 0;
     int tile = 0;
@@ -26,10 +26,10 @@ struct StageStep {
     double objective = 0;
 };
 
-/// Takes what the stages of a method come to; either may be empty. Methods without stages tell
-/// nothing.
+/// Receives the results of the stages of a method; each may be empty. Methods without stages do not
+/// call it.
 struct StageSink {
-    /// The frames of each stage, in slot order; as those of the decoded video.
+    /// Receives the frames of each stage in slot order, in the format of the decoded video.
     std::function<void(std::string_view stage, std::int64_t slot, std::span<const float> frame)>
         frame;
     std::function<void(const StageStep& step)> step;

@@ -4,16 +4,16 @@
 
 namespace stipple {
 
-/// Returns when the content of a file, or the names in a folder, are on the disk. What cannot be
-/// synced (a pipe, a file system that is read-only, a folder that may not be read) is left to the
-/// system. \throws std::filesystem::filesystem_error (EIO, ENOSPC).
+/// Returns when the content of a file, or the names in a folder, are on the disk. Pipes, files on
+/// read-only file systems and folders without read permission cannot be synced; they are left to
+/// the system. \throws std::filesystem::filesystem_error (EIO, ENOSPC).
 void sync_to_disk(const std::filesystem::path& file_or_folder);
 
-/// The same for a file, or for a folder and all that is in it.
+/// Syncs a file, or a folder and all its content.
 void sync_all_to_disk(const std::filesystem::path& file_or_folder);
 
-/// While it lives, this thread's calls of the above return at once: for those who can afford to
-/// lose their outputs with the power.
+/// During the life of this object the functions above return at once in this thread: for runs whose
+/// outputs may be lost in a power failure.
 class NoSync {
   public:
     NoSync();

@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-/// One plane of digital numbers as a camera gives them, without any scale.
+/// One plane of digital numbers of a camera, without scaling.
 struct DnImage {
     FrameShape shape{.rows = 0, .cols = 0, .planes = 1};
     std::vector<std::uint16_t> dn;  ///< by row and column

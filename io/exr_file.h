@@ -10,14 +10,14 @@
 
 namespace stipple {
 
-/// Reads an OpenEXR picture (half or float) into `picture`: its channels R, G, B, else Y, else the
-/// only one there is, but no depth. Alpha and further channels are left out; nothing is scaled.
-/// \throws InputError naming the file if it is unreadable, truncated, holds none of these
-/// channels, or stores another rectangle than it displays.
+/// Reads an OpenEXR image (half or float) into `picture`: its channels R, G, B, else Y, else its
+/// only channel if that is not depth. Alpha and other channels are omitted; nothing is scaled.
+/// \throws InputError naming the file if it is unreadable or truncated, has none of these channels,
+/// or stores another rectangle than it displays.
 void read_exr(const std::filesystem::path& file, Picture& picture);
 
-/// Writes an OpenEXR picture: float, ZIP compression, channels R, G, B or Y. The same frame gives
-/// the same bytes. `frame` holds shape.sites() floats, order (plane, row, col); `place` names the
+/// Writes an OpenEXR image: float, ZIP compression, channels R, G, B or Y. The same frame gives the
+/// same bytes. `frame` holds shape.sites() floats, order (plane, row, col); `place` names the
 /// output in messages. \throws DeviceError.
 void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
                std::span<const float> frame);

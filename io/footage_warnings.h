@@ -9,13 +9,13 @@
 
 namespace stipple {
 
-/// What `options` make of numbers of this kind that their user may not expect; `name` begins each.
+/// Effects of `options` on numbers of this kind that users may not expect; each begins with `name`.
 [[nodiscard]] std::vector<std::string> reading_warnings(const SourceTraits& traits,
                                                         const FootageOptions& options,
                                                         const std::string& name);
 
-/// A warning if the mean of `light` is far above 1.0, as of digital numbers stored as
-/// floating-point ones; else empty.
+/// A warning if the mean of `light` is far above 1.0, as with digital numbers stored in floating
+/// point; else empty.
 [[nodiscard]] std::string brightness_warning(std::span<const float> light,
                                              const std::string& place);
 

@@ -14,10 +14,10 @@ struct FrameWriterOptions {
     bool live = false;              ///< frames of a folder appear there one by one
 };
 
-/// Writes a video frame by frame. The name chooses the format: a folder of
-/// `frame_%04d.exr` (float, linear), `.npy` (float32, (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv`
-/// (tone-mapped, 8 bit). Everything is written beside the final name and moved there by `finish`,
-/// so that the final name never holds a partial video; without `finish` nothing is left behind.
+/// Writes a video frame by frame. The name determines the format: a folder of `frame_%04d.exr`
+/// (float, linear), `.npy` (float32, (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv` (tone-mapped, 8 bits).
+/// The output is written under a hidden name in the same folder, and `finish` renames it. So the
+/// final name never holds a partial video; without `finish` nothing remains.
 class FrameWriter {
   public:
     /// \throws InputError if the output exists (and not force) or its folder does not, or the
@@ -31,7 +31,7 @@ class FrameWriter {
     /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError (full
     /// disk).
     void write(std::span<const float> frame);
-    /// Completes the file, however many frames were written. \throws DeviceError.
+    /// Completes the file with any number of frames. \throws DeviceError.
     void finish();
 
   private:

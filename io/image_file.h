@@ -17,7 +17,7 @@ void read_image(const std::filesystem::path& file, Picture& picture);
 /// A page of a TIFF file.
 void to_picture(const TiffPixels& pixels, Picture& picture);
 
-/// Writes linear light as an 8-bit PNG picture through the curve of io/tone_map.h. `frame` holds
+/// Writes linear light as an 8-bit PNG image through the curve of io/tone_map.h. `frame` holds
 /// shape.sites() floats, order (plane, row, col). Replaces `file`. \throws DeviceError.
 void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame);
 

@@ -6,10 +6,10 @@
 
 namespace stipple {
 
-/// Turns samples of interleaved channels into planes: planes[p][i] = to_float(sample p of pixel i).
-/// Channels beyond the `plane_count` first ones (alpha) are left out.
-/// Precondition: bytes.size() == pixels * channels * sizeof(Sample),
-/// planes.size() == pixels * plane_count, plane_count is 1 or 3.
+/// Converts samples of interleaved channels to planes: planes[p][i] = to_float(sample p of pixel
+/// i). Only the first `plane_count` channels are used, without alpha. Precondition: bytes.size() ==
+/// pixels * channels * sizeof(Sample), planes.size() == pixels * plane_count, plane_count is 1 or
+/// 3.
 template <typename Sample, typename ToFloat>
 void split_planes(std::span<const std::byte> bytes, int channels, int plane_count,
                   std::span<float> planes, ToFloat to_float) {
@@ -26,7 +26,7 @@ void split_planes(std::span<const std::byte> bytes, int channels, int plane_coun
     }
 }
 
-/// Integers as a fraction of their largest value.
+/// Integers as fractions of their largest value.
 struct UnitScale {
     float operator()(unsigned char value) const { return static_cast<float>(value) / 255.0F; }
     float operator()(unsigned short value) const { return static_cast<float>(value) / 65535.0F; }

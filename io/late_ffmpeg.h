@@ -12,13 +12,13 @@ struct SwsContext;
 
 namespace stipple {
 
-/// A function of FFmpeg's libraries. They bring 110 others with them, so they are no part of the
-/// start of a program but are loaded when the first function is asked for.
-/// \throws DeviceError if they cannot be loaded.
+/// A function of FFmpeg's libraries. They bring 110 other libraries with them; so they are loaded
+/// when the first function is requested, not at the start of the program. \throws DeviceError if
+/// they cannot be loaded.
 [[nodiscard]] void* ffmpeg_function(const char* name);
 
-/// In a source: the function of FFmpeg's that has this name, in place of the one that would be
-/// linked. An object that converts to the function is called as the function is.
+/// In a source: defines an object with the name of a function of FFmpeg, in place of the linked
+/// function. It converts to the function and is called in the same way.
 // NOLINTBEGIN(bugprone-macro-parentheses): it is a name, no value
 #define STIPPLE_LATE(name)                                                                         \
     const struct {                                                                                 \
@@ -28,7 +28,7 @@ namespace stipple {
     }
 // NOLINTEND(bugprone-macro-parentheses)
 
-/// Ends what FFmpeg has made.
+/// Frees objects of FFmpeg.
 struct FfmpegDeleter {
     void operator()(AVCodecContext* codec) const;
     void operator()(AVFormatContext* file) const;
@@ -40,7 +40,7 @@ struct FfmpegDeleter {
 template <typename Type>
 using FfmpegPtr = std::unique_ptr<Type, FfmpegDeleter>;
 
-/// What an error code of FFmpeg's means.
+/// The meaning of an error code of FFmpeg.
 [[nodiscard]] std::string ffmpeg_reason(int error);
 
 }  // namespace stipple

@@ -15,7 +15,7 @@ enum class NpyType { kUint8, kUint16, kHalf, kFloat, kDouble };
 /// Bytes of one value.
 [[nodiscard]] std::size_t npy_type_bytes(NpyType type);
 
-/// What the header of a .npy video says: an array (T,H,W) or (T,H,W,3) in C order.
+/// Content of the header of a .npy video: an array (T,H,W) or (T,H,W,3) in C order.
 struct NpyHeader {
     NpyType type = NpyType::kFloat;
     int slots = 0;
@@ -25,28 +25,28 @@ struct NpyHeader {
     [[nodiscard]] std::size_t frame_bytes() const { return shape.sites() * npy_type_bytes(type); }
 };
 
-/// The longest start of a file that a header may take.
+/// Maximum length of a header, from the start of the file.
 inline constexpr std::size_t kMaxNpyHeaderBytes = 65536;
 
-/// The Python dictionary of a header, and where the data begin.
+/// The Python dictionary of a header, and the position of the data.
 struct NpyDictionary {
     std::string_view text;
     std::size_t data_offset = 0;
 };
 
-/// Finds the dictionary in `start`, the first bytes of a file. \throws InputError at `place` if it
-/// is no .npy file, of an unknown version, or ends within its header.
+/// Finds the dictionary in `start`, the first bytes of a file. \throws InputError at `place` if the
+/// file is no .npy file, has an unknown version, or ends within its header.
 [[nodiscard]] NpyDictionary find_npy_dictionary(std::string_view start, std::string_view place);
 
 /// Reads the header from `start`, the first min(file_bytes, kMaxNpyHeaderBytes) bytes of a file.
-/// \throws InputError at `place` if it is no .npy file, is not little-endian u1, u2, f2, f4 or f8
-/// in C order, has another shape, is empty, or does not match the file's length.
-/// Source: numpy.lib.format, versions 1.0 to 3.0.
+/// \throws InputError at `place` if the file is no .npy file, is not little-endian u1, u2, f2, f4
+/// or f8 in C order, has another shape, is empty, or does not match the length of the file. Source:
+/// numpy.lib.format, versions 1.0 to 3.0.
 [[nodiscard]] NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_bytes,
                                          std::string_view place);
 
 /// A header of fixed length for float32 frames of `shape`, so that the number of slots can be
-/// filled in when it is known.
+/// written later.
 [[nodiscard]] std::string format_npy_header(int slots, FrameShape shape);
 
 }  // namespace stipple

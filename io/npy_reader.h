@@ -20,7 +20,7 @@ class NpyReader {
 
     [[nodiscard]] FrameShape shape() const { return header_.shape; }
     [[nodiscard]] int slots() const { return header_.slots; }
-    /// The file and the frame read last, for messages.
+    /// The file and the last frame read, for messages.
     [[nodiscard]] std::string place() const;
 
     /// The next frame, order (plane, row, col), integers scaled to 0..1; false at the end.

@@ -11,16 +11,16 @@
 
 namespace stipple {
 
-/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame. The header of one that was
-/// not finished lacks the frames of its last second at most.
+/// Writes a float32 .npy video, (T,H,W) or (T,H,W,3), frame by frame. The header of an unfinished
+/// file lacks at most the frames of the last second.
 class NpyWriter {
   public:
-    /// Creates `file`; messages say `place`. \throws DeviceError.
+    /// Creates `file`; messages name it `place`. \throws DeviceError.
     NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape);
 
     /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
     void write(std::span<const float> frame);
-    /// Fills in the number of frames and closes the file. \throws DeviceError.
+    /// Writes the number of frames and closes the file. \throws DeviceError.
     void finish();
 
   private:
@@ -30,7 +30,7 @@ class NpyWriter {
     OutputFile file_;
     FrameShape shape_;
     int slots_ = 0;
-    int told_slots_ = 0;  ///< by the header
+    int told_slots_ = 0;  ///< number of slots in the header
     Clock::time_point told_at_;
     std::vector<float> pixels_;  ///< by row, column and plane; empty before the first frame
 };

@@ -9,17 +9,17 @@
 
 namespace stipple {
 
-/// A file being written, where each failure (a full disk, say) is a DeviceError that names the
-/// output under the name its user knows.
+/// An output file. Each failure (such as a full disk) is a DeviceError that gives the name that the
+/// user knows.
 class OutputFile {
   public:
-    /// Creates `path`. Messages say `place`. \throws DeviceError.
+    /// Creates `path`; messages name it `place`. \throws DeviceError.
     OutputFile(const std::filesystem::path& path, std::string place);
 
     void write(std::span<const std::byte> bytes);
     /// Continues at `offset` bytes from the start.
     void seek(long offset);
-    /// Hands everything to the disk and closes the file.
+    /// Writes all data to the disk and closes the file.
     void close();
 
   private:

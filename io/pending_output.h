@@ -10,22 +10,22 @@ namespace stipple {
 
 enum class OutputKind { kFile, kFolder };
 
-/// Whether a run of this kind writes a file of this name into its folder.
+/// Whether a run of this kind writes a file with this name into its folder.
 using IsOwnName = bool (*)(std::string_view name);
 /// frame_0000.exr ...
 [[nodiscard]] bool is_frame_name(std::string_view name);
 
-/// An output that appears under its final name only when it is complete and on the disk
-/// (docs/reliability.md). Write to `partial()`, then `commit()`; if it is destroyed without, the
-/// partial file or folder is removed.
+/// An output that gets its final name only when it is complete and on the disk
+/// (docs/reliability.md). Write to `partial()`, then call `commit()`; without `commit` the
+/// destructor removes the partial file or folder.
 class PendingOutput {
   public:
-    /// Creates the folder `partial()` if `kind` is a folder. A link to a file stands for that file.
+    /// Creates the folder `partial()` if `kind` is a folder. A link to a file stands for this file.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
-    /// missing. An empty folder gives way to a folder. With `force` a regular file gives way to a
-    /// file, and a folder that holds nothing but files of our own names to a folder; anything else
-    /// is an InputError, because it may be somebody's work. \throws DeviceError if the folder
-    /// cannot be created.
+    /// missing. An empty folder is replaced by a folder. With `force` a regular file is replaced by
+    /// a file, and a folder that contains only files with names of this program by a folder; for
+    /// anything else InputError, because it may be somebody's work. \throws DeviceError if the
+    /// folder cannot be created.
     PendingOutput(const std::filesystem::path& final_path, bool force,
                   OutputKind kind = OutputKind::kFile, IsOwnName is_own = is_frame_name);
     ~PendingOutput();
@@ -34,16 +34,16 @@ class PendingOutput {
 
     [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
     /// Path to write to: in the same folder, hidden, with the same extension, the process number
-    /// and a random one. Once asked for it is there, new and empty. \throws DeviceError.
+    /// and a random number. The first call creates it, empty. \throws DeviceError.
     [[nodiscard]] const std::filesystem::path& partial() const;
-    /// Waits until the partial output is on the disk (but see NoSync), and moves it to its final
-    /// name. \throws DeviceError if that fails; the partial output is then kept, and an output that
-    /// was to be replaced too. \throws std::bad_alloc likewise. If another program has made a file
-    /// of that name since, and not `force`, what was written is kept as "name_2.ext" or so on. The
-    /// message says where.
+    /// Waits until the partial output is on the disk (but see NoSync), and gives it its final name.
+    /// \throws DeviceError if that fails; then the partial output and the old output are kept.
+    /// \throws std::bad_alloc likewise. If another program has created a file with this name
+    /// meanwhile, and not `force`, the output is named "name_2.ext" or similar. The message gives
+    /// the name.
     void commit();
     [[nodiscard]] bool committed() const { return committed_; }
-    /// Whether `commit` was called: what was written stays, under whichever name.
+    /// Whether `commit` was called: the output is kept, under some name.
     [[nodiscard]] bool kept() const { return kept_; }
 
   private:
@@ -61,15 +61,16 @@ class PendingOutput {
     OutputKind kind_;
     IsOwnName is_own_;
     mutable bool created_ = false;
-    bool kept_ = false;      ///< whatever becomes of this object
+    bool kept_ = false;      ///< not removed by the destructor
     bool replaced_ = false;  ///< partial_ is now the folder that was final_
     bool committed_ = false;
     std::unique_ptr<char[]> listed_;  ///< partial_, for the list, which may outlive this object
-    std::size_t place_in_list_;       ///< of partial outputs that no message names
+    std::size_t place_in_list_;       ///< in the list of partial outputs that no message names
 };
 
 /// Calls `visit` with the partial path of each output that is neither committed nor removed, nor
-/// told in an exception; of more than some dozens with the first ones. Safe in a signal handler.
+/// named in an exception; only with the first ones if there are more than some dozens. Safe in a
+/// signal handler.
 void visit_partial_outputs(void (*visit)(const char* path)) noexcept;
 
 }  // namespace stipple

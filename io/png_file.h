@@ -14,21 +14,22 @@ namespace stipple {
 struct PngPixels {
     int rows = 0;
     int cols = 0;
-    int channels = 1;  ///< grey, or 3: red, green, blue
+    int channels = 1;  ///< 1: grey; 3: red, green, blue
     int bytes_a_sample = 1;
-    std::vector<std::uint8_t> bytes;  ///< row after row; samples of 2 bytes as the machine has them
+    std::vector<std::uint8_t>
+        bytes;  ///< by rows; samples of 2 bytes in the byte order of the machine
 };
 
 struct PngImage {
     PngPixels pixels;
     SourceTraits traits;
-    bool as_stored = true;  ///< grey of 8 or 16 bits, without alpha: the numbers of the file
+    bool as_stored = true;  ///< the numbers of the file: grey of 8 or 16 bits, without alpha
 };
 
-/// Decodes the bytes of a PNG file. A palette becomes colours, fewer than 8 bits of grey become 8;
-/// alpha is left out.
-/// \throws InputError if it is none, is damaged or ends too early, with the byte offset of the
-/// chunk; or if the picture is larger than it may be.
+/// Decodes the bytes of a PNG file. Palettes are converted to colours, grey of fewer than 8 bits to
+/// 8 bits; alpha is omitted.
+/// \throws InputError if it is no PNG file, is damaged or truncated, with the byte offset of the
+/// chunk; or if the image exceeds the maximum size.
 [[nodiscard]] PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place);
 
 /// \throws DeviceError if the file cannot be written.

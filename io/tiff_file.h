@@ -10,20 +10,20 @@
 
 namespace stipple {
 
-/// The pixels of a TIFF page as they are stored, but interleaved: by row, column and channel.
+/// The pixels of a TIFF page as stored, but interleaved: by row, column and channel.
 struct TiffPixels {
     enum class Sample { kU8, kU16, kF32 };
 
     FrameShape shape;
     Sample sample = Sample::kU8;
-    int channels = 1;  ///< the planes, and alpha
+    int channels = 1;  ///< planes and alpha
     std::vector<std::byte> bytes;
 
     [[nodiscard]] std::size_t sample_bytes() const;
 };
 
-/// A TIFF file (6.0 or BigTIFF) of grey or RGB pages, in strips or tiles, its channels together or
-/// apart. Nothing is written to standard error.
+/// A TIFF file (6.0 or BigTIFF) of grey or RGB pages, in strips or tiles, with interleaved or
+/// separate channels. Nothing is written to standard error.
 class TiffFile {
   public:
     /// \throws InputError if the file is missing, unreadable or no TIFF.
@@ -33,10 +33,10 @@ class TiffFile {
     TiffFile& operator=(TiffFile&&) noexcept;
 
     [[nodiscard]] int pages() const;
-    /// Page 0, 1, ... < pages(). \throws InputError naming the file, and the page of several, if it
-    /// is damaged or of a kind that is not read.
+    /// Page 0, 1, ... < pages(). \throws InputError naming the file, and the page if there are
+    /// several, if it is damaged or of an unsupported kind.
     void read(int page, TiffPixels& pixels);
-    /// The file, and the page of several, for messages.
+    /// The file, and the page if there are several, for messages.
     [[nodiscard]] std::string place(int page) const;
 
   private:

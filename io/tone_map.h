@@ -10,13 +10,13 @@
 
 namespace stipple {
 
-/// Light that is shown as white; brighter light is clipped.
+/// Light that is displayed as white; brighter light is clipped.
 inline constexpr float kWhiteLight = 4.0F;
 
-/// Display value 0..255 of linear light, for films and pictures that people look at: Reinhard's
-/// global curve with a white point, x (1 + x / w^2) / (1 + x), w = kWhiteLight, then the power
-/// 1/2.2. Light 0.18 becomes 109, 1 becomes 191, 2 becomes 224. NaN and negative light are black.
-/// Source: Reinhard et al., "Photographic tone reproduction for digital images", 2002, Eq. 4.
+/// Display value 0..255 of linear light, for videos and images for viewing: Reinhard's global curve
+/// with a white point, x (1 + x / w^2) / (1 + x), w = kWhiteLight, then the power 1/2.2. Light 0.18
+/// becomes 109, 1 becomes 191, 2 becomes 224. NaN and negative light are black. Source: Reinhard et
+/// al., "Photographic tone reproduction for digital images", 2002, Eq. 4.
 [[nodiscard]] inline std::uint8_t tone_mapped(float light) {
     if (!(light > 0.0F)) return 0;
     const float x = std::min(light, kWhiteLight);

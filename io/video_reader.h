@@ -12,27 +12,27 @@
 
 namespace stipple {
 
-/// True if the extension is one of a video file.
+/// True for the extension of a video file.
 [[nodiscard]] bool is_video_name(const std::filesystem::path& file);
 
-/// Reads a video file frame by frame, at its own depth, upright; grey as one plane, all others as
-/// RGB (video_planes.h).
+/// Reads a video file frame by frame, at its own bit depth, upright; grey as one plane, all others
+/// as RGB (video_planes.h).
 class VideoReader {
   public:
     /// Decodes the first frame. \throws InputError if the file is missing, damaged or empty, or its
-    /// pixels are of a kind that is not read.
+    /// pixel format is unsupported.
     explicit VideoReader(const std::filesystem::path& file);
     ~VideoReader();
     VideoReader(VideoReader&&) noexcept;
     VideoReader& operator=(VideoReader&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
-    /// Frames a second at which it plays, if it tells.
+    /// Playback rate in frames per second, if the file gives it.
     [[nodiscard]] std::optional<double> film_hz() const;
     [[nodiscard]] const SourceTraits& traits() const;
-    /// Signs, so far, that frames are damaged or missing.
+    /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;
-    /// The file and the frame read last, for messages.
+    /// The file and the last frame read, for messages.
     [[nodiscard]] std::string place() const;
 
     /// The next frame, order (plane, row, col), scaled to 0..1; false at the end.

@@ -9,12 +9,12 @@
 
 namespace stipple {
 
-/// Writes a film for people to look at: tone-mapped (io/tone_map.h), H.264 of 8 bits by FFmpeg's
-/// libraries, Y'CbCr by BT.709 in limited range, which it declares. Odd sizes, and fewer than four
+/// Writes a video for viewing: tone-mapped (io/tone_map.h), H.264 of 8 bits by FFmpeg's libraries,
+/// Y'CbCr by BT.709 in limited range, which the file declares. Odd sizes, and fewer than four
 /// columns, are padded by repeating the last row or column. The same bits on any machine.
 class VideoWriter {
   public:
-    /// Creates `file` (.mp4 or .mkv); messages say `place`. \throws DeviceError.
+    /// Creates `file` (.mp4 or .mkv); messages name it `place`. \throws DeviceError.
     VideoWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape,
                 double frames_per_second);
     ~VideoWriter();

@@ -9,24 +9,24 @@
 namespace stipple {
 
 struct QualityOptions {
-    int margin = 0;                        ///< frames left out at each end
-    std::optional<double> max_value = {};  ///< clamp both sides to it first
-    double peak = 1;                       ///< light, of linear PSNR and, as luminance, of PU21
+    int margin = 0;                        ///< frames omitted at each end
+    std::optional<double> max_value = {};  ///< both videos are clipped to it first
+    double peak = 1;                       ///< peak light of linear PSNR and, as luminance, of PU21
     double unit_cd_per_m2 = 100;           ///< luminance of light 1.0, for PU21
 };
 
 /// Quality of a video against its reference; all in dB except `ssim` (up to 1). Identical videos
 /// have infinite PSNR.
 struct VideoQuality {
-    double psnr_db = 0;             ///< pooled over everything, linear, not clamped
-    double psnr_gamma_db = 0;       ///< after clamping to 0..1 and the power 1/2.2
+    double psnr_db = 0;        ///< from the mean square error of all values, linear, not clamped
+    double psnr_gamma_db = 0;  ///< after clamping to 0..1 and the power 1/2.2
     double psnr_frame_mean_db = 0;  ///< mean of per-frame linear PSNR
     double pu21_psnr_db = 0;        ///< PU21 of each plane, its peak that of `peak`
-    double ssim = 0;                ///< clamped, 1/2.2; mean over frames and planes; see ssim.h
+    double ssim = 0;  ///< after clamping and 1/2.2; mean over frames and planes; see ssim.h
 };
 
-/// Adds up quality frame by frame, so that videos longer than memory compare. The same bits for
-/// any thread count.
+/// Accumulates quality frame by frame, so that videos larger than memory can be compared. The same
+/// bits for any thread count.
 class QualityMeter {
   public:
     /// \throws InputError if the shape is empty, the margin negative, or `max_value`,
@@ -39,7 +39,7 @@ class QualityMeter {
     [[nodiscard]] VideoQuality quality() const;
 
   private:
-    /// Squared errors summed over something, in three scales.
+    /// Sums of squared errors on three scales.
     struct SquaredErrors {
         double linear = 0;
         double gamma = 0;
@@ -54,8 +54,8 @@ class QualityMeter {
 
     FrameShape shape_;
     QualityOptions options_;
-    std::vector<FrameQuality> frames_;  ///< all of them: which ones count is known at the end
-    std::vector<float> result_gamma_;   ///< the frame being added after the 1/2.2 curve
+    std::vector<FrameQuality> frames_;  ///< all frames: the margin at the end is known last
+    std::vector<float> result_gamma_;   ///< the present frame after the 1/2.2 curve
     std::vector<float> reference_gamma_;
 };
 

@@ -8,12 +8,13 @@
 
 namespace stipple {
 
-/// Dice bouncing and tumbling over an inlaid board beside a steel ball, ray-cast in space.
-/// World: the board's top is z = 0, x to the right, y away from the camera; unit: about the
-/// distance that fills a picture height at the board's centre.
+/// Dice that bounce and tumble over an inlaid board beside a steel ball, ray-cast in space. World:
+/// the top of the board is z = 0, x to the right, y away from the camera; a length of 1 fills about
+/// the image height at the centre of the board.
 class DiceScene {
   public:
-    static constexpr Vec3 kBall{0.50F, -0.29F, 0.085F};  ///< centre; it lies on the board
+    static constexpr Vec3 kBall{0.50F, -0.29F,
+                                0.085F};  ///< centre of the ball, which lies on the board
 
     explicit DiceScene(const SceneTextures& textures);
 
@@ -23,9 +24,9 @@ class DiceScene {
     struct Die {
         float half = 0;  ///< half edge
         Vec2 home;
-        Vec2 sweep;       ///< half width of its path
-        float hop = 0;    ///< height of its bounces
-        float start = 0;  ///< 0..1, where in its cycles it is at time 0
+        Vec2 sweep;       ///< half width of the path
+        float hop = 0;    ///< height of the bounces
+        float start = 0;  ///< 0..1, phase of its cycles at time 0
         Rgb colour;
         Rgb pips;
     };
@@ -46,7 +47,7 @@ class DiceScene {
 
     /// The scene at one instant.
     struct Instant {
-        /// `stratum` chooses the point of the lamp that casts the shadow.
+        /// `stratum` selects the point of the lamp for the shadow.
         [[nodiscard]] Rgb radiance(Vec2 point, Vec2 stratum) const noexcept;
 
         [[nodiscard]] std::optional<Hit> nearest_die(const Ray& ray) const noexcept;

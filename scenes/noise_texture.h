@@ -24,8 +24,8 @@ class SceneRandom {
 };
 
 /// Band-limited fractal noise, periodic with period 1 in both coordinates: octaves of random
-/// lattices from 4 to texels/4 cells, each interpolated by cubic B-splines, whose amplitude falls
-/// by `persistence` per octave (1 = the equal variance per octave of natural images).
+/// lattices from 4 to texels/4 cells, each interpolated by cubic B-splines. The amplitude decreases
+/// by the factor `persistence` per octave (1 = equal variance per octave, as in natural images).
 /// Mean 0, standard deviation about 1, limited to +-kLimit.
 class NoiseTexture {
   public:
@@ -44,9 +44,9 @@ class NoiseTexture {
     std::vector<float> values_;
 };
 
-/// What all scenes draw their surfaces from.
+/// Textures of the surfaces of all scenes.
 struct SceneTextures {
-    /// `rows` of the picture: the finest detail is about two of its pixels.
+    /// `rows` of the image: the finest detail is about two pixels wide.
     SceneTextures(int rows, std::uint64_t seed);
 
     SceneRandom random;

@@ -17,12 +17,12 @@ struct House {
     int window_columns = 3;
     std::uint32_t lit = 0;  ///< one bit per window
     bool brick = false;
-    Vec2 stain;  ///< where its wall lies in the textures
+    Vec2 stain;  ///< position of its wall in the textures
 };
 
-/// A street at dusk seen from a moving carriage. World: X along the street (everything repeats
-/// after 8), heights above the ground; a thing at scale s is seen at x = (X - camera) s, so that
-/// near things (large s) move faster. Picture height = 1 unit, y down, origin in the centre.
+/// A street at dusk seen from a moving carriage. World: X along the street (with period 8), heights
+/// above the ground. An object at scale s appears at x = (X - camera) s, so near objects (large s)
+/// move faster. Image height = 1 unit, y down, origin in the centre.
 class PanScene {
   public:
     static constexpr float kHouseScale = 1;  ///< 2.5 px per slot
@@ -34,11 +34,11 @@ class PanScene {
 
     /// The scene at one instant.
     struct Instant {
-        /// Light coming from a point of the picture. `stratum` (0..1 each way) is not used here.
+        /// Light from a point of the image. `stratum` (0..1 in each direction) is not used here.
         [[nodiscard]] Rgb radiance(Vec2 point, Vec2 stratum) const noexcept;
 
         const PanScene* scene = nullptr;
-        float camera = 0;  ///< X seen in the middle
+        float camera = 0;  ///< X in the middle of the image
         float eye = 0;     ///< height of the eye above the ground
         Vec2 tilt;         ///< (cos, sin) of the camera's rotation
 

@@ -9,19 +9,19 @@
 
 namespace stipple {
 
-/// Coloured pencils, each sliding and turning its own way over a desk with squared paper and a
-/// deep steel cup, seen from above in leaning sunlight. Picture height = 1 unit, y down, origin
-/// in the centre.
+/// Coloured pencils with individual sliding and turning motions over a desk with squared paper and
+/// a deep steel cup, seen from above in low sunlight. Image height = 1 unit, y down, origin in the
+/// centre.
 class PencilsScene {
   public:
-    /// `aspect` is width / height of the picture.
+    /// `aspect` is width / height of the image.
     PencilsScene(const SceneTextures& textures, float aspect);
 
     static constexpr float kCupRadius = 0.135F;
     static constexpr std::size_t kPencils = 128;
     using PencilSet = std::array<std::uint64_t, kPencils / 64>;  ///< one bit each
 
-    /// A pencil and its motion in slots. Frozen into a `Posed` at each instant.
+    /// A pencil and its motion in slots; a `Posed` is the pencil at one instant.
     struct Pencil {
         Vec2 start;
         Vec2 velocity;
@@ -46,7 +46,7 @@ class PencilsScene {
 
         const PencilsScene* scene = nullptr;
         std::array<Posed, kPencils> posed;
-        std::vector<PencilSet> near;  ///< per tile: pencils that it or their shadow may touch
+        std::vector<PencilSet> near;  ///< per tile: pencils that may cover or shadow it
     };
 
     [[nodiscard]] Instant at(double time) const;
@@ -62,7 +62,7 @@ class PencilsScene {
     Rgb cup(Vec2 from_centre) const noexcept;
 
     const SceneTextures* textures_;
-    Vec2 extent_;  ///< the area in which pencils wrap around, beyond the picture
+    Vec2 extent_;  ///< the area in which pencils wrap around, larger than the image
     int tile_cols_;
     std::array<Pencil, kPencils> pencils_;
 };

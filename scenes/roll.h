@@ -7,13 +7,13 @@
 
 namespace stipple {
 
-/// Two inlaid discs rolling to and fro on the boards of a sunlit room, the rear one against the
-/// front one. Picture height = 1 unit, y down, origin in the centre.
+/// Two inlaid discs that roll to and fro on the floor boards of a sunlit room, in opposite
+/// directions. Image height = 1 unit, y down, origin in the centre.
 class RollScene {
   public:
-    static constexpr float kFloorLine = 0.14F;  ///< where the wall meets the floor
+    static constexpr float kFloorLine = 0.14F;  ///< edge between wall and floor
 
-    /// `aspect` is width / height of the picture.
+    /// `aspect` is width / height of the image.
     RollScene(const SceneTextures& textures, float aspect);
 
     struct Disc {
@@ -45,7 +45,7 @@ class RollScene {
     Rgb ground(Vec2 point, float shadow) const noexcept;
 
     const SceneTextures* textures_;
-    double amplitude_;  // of the front disc's way
+    double amplitude_;  // of the path of the front disc
     float phase_;
 };
 

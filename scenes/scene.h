@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-/// The embedded scenes; docs/scenes.md shows what is in each of them.
+/// The embedded scenes; docs/scenes.md describes them.
 enum class SceneName {
     kPan,
     kRoll,
@@ -21,7 +21,7 @@ enum class SceneName {
 struct NamedScene {
     std::string_view name;
     SceneName scene;
-    std::string_view text;  ///< what it shows, a line
+    std::string_view text;  ///< one line of description
 };
 
 [[nodiscard]] std::span<const NamedScene> scenes();
@@ -32,15 +32,15 @@ struct NamedScene {
 struct SceneOptions {
     int slots = 48;                                           ///< 1..1 000 000
     FrameShape shape{.rows = 240, .cols = 320, .planes = 3};  ///< 8..4096 each way; 1 or 3 planes
-    std::uint64_t seed = 1;    ///< textures, colours and arrangement; the motion stays alike
-    double slot_duration = 1;  ///< in 1/200 s, for which the speeds are made; 0.01..8
+    std::uint64_t seed = 1;    ///< of textures, colours and arrangement; the motion is similar
+    double slot_duration = 1;  ///< in 1/200 s, the unit of the speeds; 0.01..8
     int time_samples = 8;      ///< per 1/200 s and 240 rows, 1..64; 8 keeps steps below a pixel
 };
 
-/// A synthetic HDR scene in linear light, 1.0 = the sensor's `photons_per_unit`. A frame is the
-/// integral over its whole slot and over the whole area of each pixel, by stratified samples.
-/// At least 14 stops between the darkest 0.1 % and the brightest site; mean 0.2..0.4.
-/// The first slots of a longer scene are a shorter one. One plane means Rec. 709 luminance.
+/// A synthetic HDR scene in linear light, 1.0 = `photons_per_unit` of the sensor. A frame is the
+/// integral over its whole slot and the whole area of each pixel, by stratified sampling. At least
+/// 14 stops between the darkest 0.1 % and the brightest site; mean 0.2..0.4. A scene of fewer slots
+/// equals the first slots of a longer one. One plane is Rec. 709 luminance.
 class Scene {
   public:
     /// \throws InputError naming the option that is out of range.

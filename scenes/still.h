@@ -7,9 +7,9 @@
 
 namespace stipple {
 
-/// A quiet room held in the hand: a bright window with the sun in it, a hanging lamp, shelves
-/// with deep shadows, a table. Everything moves less than a pixel or so per slot.
-/// Picture height = 1 unit, y down, origin in the centre.
+/// A quiet room seen by a hand-held camera: a bright window with the sun, a hanging lamp, shelves
+/// with deep shadows, a table. All motion is below about a pixel per slot. Image height = 1 unit, y
+/// down, origin in the centre.
 class StillScene {
   public:
     static constexpr float kTableEdge = 0.245F;  ///< height of the far edge of the table
@@ -21,8 +21,8 @@ class StillScene {
         [[nodiscard]] Rgb radiance(Vec2 point, Vec2 stratum) const noexcept;
 
         const StillScene* scene = nullptr;
-        Vec2 sway;         ///< of the hand, for things as far as the wall
-        Vec2 lamp;         ///< where the lamp hangs, on the wall's scale
+        Vec2 sway;         ///< of the camera, for objects at the distance of the wall
+        Vec2 lamp;         ///< position of the lamp, on the scale of the wall
         Vec2 lamp_axis;    ///< (cos, sin) of its swing
         float breeze = 0;  ///< -1..1, moves curtain and leaves
         float leaf_turn = 0;

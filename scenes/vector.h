@@ -70,7 +70,7 @@ constexpr float smooth_step(float from, float to, float x) {
     return t * t * (3 - 2 * t);
 }
 
-/// Greatest integer <= x. Precondition: |x| < 2^31. (std::floor is a call without SSE4.1.)
+/// Largest integer <= x. Precondition: |x| < 2^31. (std::floor is a call without SSE4.1.)
 constexpr int floor_int(float x) {
     const int whole = static_cast<int>(x);
     return whole - (x < static_cast<float>(whole) ? 1 : 0);
@@ -78,13 +78,13 @@ constexpr int floor_int(float x) {
 constexpr float fraction(float x) {
     return x - static_cast<float>(floor_int(x));
 }
-/// x brought into [0, period). For times and camera paths, which grow without bound.
+/// x modulo period, in [0, period). For times and camera paths, which have no upper limit.
 inline double wrapped(double x, double period) {
     return x - period * std::floor(x / period);
 }
 
-/// (cos, sin) of an angle in full turns; polynomials, so the same bits with every C library.
-/// Error below 1e-7.
+/// (cos, sin) of an angle in full turns; polynomials, which give the same bits with every C
+/// library. Error below 1e-7.
 [[nodiscard]] Vec2 direction(double turns);
 
 /// Angle of `a` in turns, -0.5..0.5, y towards positive; polynomial, error below 1e-5 turns.

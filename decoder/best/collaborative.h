@@ -13,10 +13,9 @@ class Config;
 class SampleNoise;
 struct Measurements;
 
-/// What is different where the planes are a mosaic of colours: two of three voxels are filled by
-/// the filter alone, which takes more iterations and stronger ones at first. In those it looks for
-/// similar patches nearby rather than in other slots, where a static object is under the same
-/// filters of the array.
+/// Options for a mosaic of colours. The filter alone fills two of three voxels, which takes more
+/// iterations, and a stronger filter in the first ones. The first iterations match patches nearby
+/// instead of in other slots, where a static object has the same filters of the array.
 struct MosaicFilterOptions {
     int iterations = 60;
     float first_sigma = 0.2F;
@@ -33,28 +32,29 @@ struct CollaborativeOptions {
     int match_every = 6;    ///< iterations
     int patch_stride = 5;   ///< pixels between reference patches, 1..6
     MatchingOptions matching = {};
-    /// Standard deviation that the filter takes for noise, on the scale 2 sqrt(light): falls
-    /// geometrically from the first iteration to the last. The last is in shot noise of one slot,
-    /// 1 / sqrt(electrons_per_unit), but not below `min_sigma`.
+    /// Standard deviation of the noise that the filter assumes, on the scale 2 sqrt(light). It
+    /// falls geometrically from the first iteration to the last. The unit of `last_noise` is the
+    /// shot noise of one slot, 1/sqrt(electrons_per_unit); the last value is at least `min_sigma`.
     float first_sigma = 0.13F;
     float last_noise = 1.1F;
     float min_sigma = 0.01F;
-    /// Flux that is added before the square root, at least; more where read noise is larger.
+    /// Minimum of the offset that is added before the square root, flux; larger if read noise is
+    /// large.
     float light_offset = 0.002F;
-    float offset_slots = 32;  ///< of an exposure whose read noise sets that offset
-    float min_light = 0;      ///< flux; what noise makes less counts as that, at least -offset
-    /// Residual feedback: r <- decay r + gain (y - A x); the samples are taken as y + r.
+    float offset_slots = 32;  ///< length of the exposure whose read noise sets the offset
+    float min_light = 0;      ///< minimum of the light, flux; at least -offset
+    /// Residual feedback: r <- decay r + gain (y - A x); y + r replaces the samples y.
     float residual_gain = 0.25F;
     float residual_decay = 0.9F;
     float momentum = 0.6F;  ///< beta of x + beta (x - x_previous)
     MosaicFilterOptions mosaic = {};
 };
 
-/// Decodes one block: the estimate of `decode_motion_tv`, then iterations of (collaborative filter,
-/// proximal map of the data term), half-quadratic splitting with a denoiser as its prior
-/// (Venkatakrishnan et al., GlobalSIP 2013; Danielyan et al., IEEE TIP 21(4), 2012). A frame too
-/// small for patches stays as the start has left it. Changes the sums of `measurements` meanwhile.
-/// Nothing if `progress` has stopped it.
+/// Decodes one block: the estimate of `decode_motion_tv`, then iterations of collaborative filter
+/// and proximal map of the data term, which is half-quadratic splitting with a denoiser as its
+/// prior (Venkatakrishnan et al., GlobalSIP 2013; Danielyan et al., IEEE TIP 21(4), 2012). A frame
+/// smaller than a patch keeps the start estimate. Changes the sums of `measurements` during the
+/// call. Returns nothing if `progress` has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_collaborative(
     Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
     const ProgressCallback& progress = [](double) { return true; });

@@ -12,13 +12,14 @@
 
 namespace stipple {
 
-/// Side of the square patches that are compared and filtered, in pixels, and patches of a group.
+/// Side in pixels of the square patches that are compared and filtered, and number of patches in a
+/// group.
 inline constexpr int kPatchSide = 6;
 inline constexpr int kGroupPatches = 16;
 
-/// Top left corners of the reference patches of a frame: `offset` pixels back from every `step`th
-/// pixel, moved into the frame where they reach beyond it. So every pixel is in a patch.
-/// Precondition: rows, cols >= kPatchSide; 1 <= step <= kPatchSide; 0 <= offset < step.
+/// Top left corners of the reference patches of a frame: `offset` pixels before every `step`th
+/// pixel, moved into the frame if they reach beyond it. So every pixel is in a patch. Precondition:
+/// rows, cols >= kPatchSide; 1 <= step <= kPatchSide; 0 <= offset < step.
 struct ReferenceGrid {
     FrameShape shape;
     int step = 5;
@@ -39,17 +40,17 @@ struct ReferenceGrid {
     }
 };
 
-/// Where similar patches are looked for.
+/// Search range of similar patches.
 struct MatchingOptions {
     int slots = 10;       ///< before and after the slot of the reference
     int own_radius = 2;   ///< pixels around the reference, in its own slot
-    int path_radius = 1;  ///< pixels around where motion has taken it, in the other slots
+    int path_radius = 1;  ///< pixels around its position along motion, in other slots
 };
 
-/// A patch of a group is at most so many rows from its reference, wherever motion has led.
+/// Maximum distance in rows of a patch from its reference, for any motion.
 inline constexpr int kMaxPatchRows = 24;
 
-/// Where a patch of a group lies as seen from its reference patch.
+/// Position of a patch relative to its reference patch.
 struct PatchOffset {
     std::int16_t slots = 0;
     std::int16_t rows = 0;
@@ -73,9 +74,9 @@ struct PatchGroups {
 };
 
 /// For each reference patch of the grid the kGroupPatches patches with the smallest sum of squared
-/// differences to it, beginning with itself, the most similar first; where there are fewer, they
-/// are repeated. They are compared in the first plane; `motion` leads to other slots and is empty
-/// or as `estimate_motion` returns it. The same bits for any thread count and SIMD target.
+/// differences to it, the most similar first, beginning with itself; they are repeated if there are
+/// fewer. Only the first plane is compared. `motion` leads to other slots; it is empty or the
+/// result of `estimate_motion`. The same bits for any thread count and SIMD target.
 [[nodiscard]] PatchGroups match_patches(const FluxVideo& video, const ReferenceGrid& grid,
                                         std::span<const MotionField> motion,
                                         const MatchingOptions& options);

@@ -9,12 +9,12 @@ namespace stipple {
 class SampleNoise;
 struct Measurements;
 
-/// Samples of DN 0, behind which noise below zero hides: taken for equalities they make dark light
-/// brighter. While it lives, their sums are what they are expected to have been (the E-step of a
-/// Tobit model; Dempster, Laird and Rubin, J. R. Stat. Soc. B 39(1), 1977): of a normal
-/// distribution with the sample's variance around the light of an estimate, the mean of what lies
-/// below half a DN. The estimate's mean over 7 x 7 pixels is taken, for its own noise would come
-/// back larger; near something bright that is no less than the light, and changes little.
+/// Samples of DN 0, which hide noise below zero: as equalities they make dark light too bright.
+/// During the life of this object their sums are expected values (the E-step of a Tobit model;
+/// Dempster, Laird and Rubin, J. R. Stat. Soc. B 39(1), 1977): the mean below half a DN of a normal
+/// distribution with the variance of the sample, centred at the light of an estimate. The estimate
+/// is averaged over 7 x 7 pixels first, because its own noise would be amplified. Near bright light
+/// this average is not below the light, and the sum changes little.
 class CensoredSamples {
   public:
     CensoredSamples(Measurements& measurements, const SampleNoise& noise);
@@ -23,9 +23,9 @@ class CensoredSamples {
     CensoredSamples(const CensoredSamples&) = delete;
     CensoredSamples& operator=(const CensoredSamples&) = delete;
 
-    /// Changes the sums to those expected where the video is `x`, in `copy`, if it is not empty, as
-    /// well. Light below 0 counts as 0. Precondition: the variances are those of `x`. The same bits
-    /// for any thread count.
+    /// Sets the sums to the expected values for the video `x`, and in `copy` too if it is not
+    /// empty. Light below 0 counts as 0. Precondition: the variances are those of `x`. The same
+    /// bits for any thread count.
     void expect(std::span<const float> x, std::span<float> copy = {});
 
   private:
@@ -33,8 +33,8 @@ class CensoredSamples {
 
     struct Sample {
         std::size_t voxel;
-        float sum;       ///< as it was read
-        float expected;  ///< as it is
+        float sum;       ///< of the sample
+        float expected;  ///< present value
     };
 
     Measurements& measurements_;
@@ -42,8 +42,8 @@ class CensoredSamples {
     std::vector<Sample> samples_;
 };
 
-/// phi(z) / Phi(z) of the standard normal distribution, to 1e-4: by how many standard deviations
-/// the mean of what lies below z of them falls short of the mean of all. The same bits everywhere.
+/// phi(z) / Phi(z) of the standard normal distribution, to 1e-4: minus the mean of its part below
+/// z. The same bits everywhere.
 [[nodiscard]] float inverse_mills_ratio(float z);
 
 }  // namespace stipple

@@ -6,11 +6,11 @@
 
 namespace stipple {
 
-/// How a dual moves and where it must stay. At a voxel whose primal step is s, the dual step is
-/// 1 / (coupling s) and the largest norm of the dual weight sqrt(reference_step / s).
+/// Step size and bound of a dual. At a voxel with primal step size s the dual step size is 1 /
+/// (coupling s), and the largest norm of the dual is weight sqrt(reference_step / s).
 struct DualStep {
-    const float* step = nullptr;  ///< primal step of each pixel of the frame, order (row, col)
-    float coupling = 8;           ///< bound of the squared norm of all differences together
+    const float* step = nullptr;  ///< primal step size of each pixel of the frame, order (row, col)
+    float coupling = 8;           ///< bound of the squared norm of the operator of all differences
     float weight = 1;             ///< above 0
     float reference_step = 1;
 };
@@ -22,7 +22,7 @@ struct GradientDual {
     float* row = nullptr;
 };
 
-/// The same frame of the array in two slots.
+/// One frame of the array in two successive slots.
 struct SlotPair {
     const float* now = nullptr;
     const float* next = nullptr;

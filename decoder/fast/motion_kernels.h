@@ -20,12 +20,12 @@ struct MotionLink {
 
 // Kernels on whole frames of at least 2 x 2 pixels; every SIMD target gives the same bits.
 
-/// dual = project(dual + sigma D x), its largest norm being that of `dual_step` times
-/// confidence / 255; then gradient -= dual, the part of D^T dual that falls on x.now.
+/// dual = project(dual + sigma D x) with the largest norm of `dual_step` times confidence / 255,
+/// then gradient -= dual, which is the part of D^T dual at x.now.
 void update_motion_dual(const MotionLink& link, const DualStep& dual_step, const SlotPair& x,
                         float* gradient) noexcept;
 
-/// gradient += the part of D^T dual that falls on x.next.
+/// gradient += the part of D^T dual at x.next.
 void add_partner_gradient(const MotionLink& link, float* gradient) noexcept;
 
 }  // namespace stipple

@@ -13,10 +13,10 @@ class Config;
 class SampleNoise;
 struct Measurements;
 
-/// What is different where the planes are a mosaic of colours: a third of the samples, so the prior
-/// weighs less, but colours that change from pixel to pixel are hardly true.
+/// Options for a mosaic of colours. It has a third of the samples, so the weight of the prior is
+/// smaller; changes of colour between pixels have a larger weight, because they are mostly wrong.
 struct MosaicTvOptions {
-    float spatial_weight = 1.8F;  ///< along motion
+    float spatial_weight = 1.8F;  ///< instead of that along motion
     float chroma_weight = 2;
     int last_iterations = 60;
 };
@@ -24,22 +24,22 @@ struct MosaicTvOptions {
 /// The method `fast`; the values were found on natural and high-speed footage
 /// (docs/notes/decoder_experiments.md).
 struct MotionTvOptions {
-    /// The estimate in which motion is first searched: static total variation, without motion.
+    /// Static total variation, without motion: motion is first estimated in its result.
     TotalVariationOptions static_tv{.iterations = 20, .spatial_weight = 20, .temporal_weight = 4};
-    /// Along motion, once a round.
+    /// Total variation along motion, once per round.
     TotalVariationOptions along_motion{.iterations = 8};
     int rounds = 3;
-    int last_iterations = 26;  ///< of the last round, instead of those of `along_motion`
+    int last_iterations = 26;  ///< of the last round, instead of `along_motion.iterations`
     MosaicTvOptions mosaic;
-    float step = 0.005F;  ///< primal step at `step_flux`, flux^2
+    float step = 0.005F;  ///< primal step size at `step_flux`, flux^2
     float step_flux = 0.3F;
-    float max_step_ratio = 2;  ///< links to pixels with a step larger by more are cut
+    float max_step_ratio = 2;  ///< links to pixels whose step size is larger by more are cut
 };
 
-/// Decodes one block: what the nearest samples say of light that no sample knows is presumed
-/// (presumed_samples.h); then static total variation, then rounds of (variances, motion, total
-/// variation along it), each from the estimate of the last. The result may be slightly negative.
-/// Nothing if `progress` has stopped it.
+/// Decodes one block. Samples are presumed for voxels that no sample determines
+/// (presumed_samples.h). Static total variation follows, then rounds of variances, motion, and
+/// total variation along motion, each from the estimate of the previous round. The result may be
+/// slightly negative. Returns nothing if `progress` has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_motion_tv(
     Measurements& measurements, const SampleNoise& noise, const MotionTvOptions& options,
     const ProgressCallback& progress = [](double) { return true; });

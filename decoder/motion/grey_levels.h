@@ -7,8 +7,8 @@
 
 namespace stipple {
 
-/// What optical flow looks at: 255 sqrt(luminance) of a slot, order (row, col). The square root,
-/// unlike a power of 1/2.2, is the same bits everywhere.
+/// Input of the optical flow: 255 sqrt(luminance) of a slot, order (row, col). The square root
+/// gives the same bits everywhere; a power of 1/2.2 does not.
 [[nodiscard]] std::vector<std::uint8_t> grey_levels(const FluxVideo& video, int slot);
 
 }  // namespace stipple

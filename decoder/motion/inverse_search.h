@@ -6,13 +6,13 @@
 
 namespace stipple {
 
-/// Pixels that are repeated around the image of a flow, so that patches may leave it.
+/// Pixels repeated around the image of a flow, so that patches may leave the image.
 inline constexpr int kFlowBorder = 16;
 
-/// Side of the patches that the flow follows, in pixels.
+/// Side of the patches of the flow, in pixels.
 inline constexpr int kFlowPatchSide = 8;
 
-/// One level of an image's pyramid, 8 bits; kFlowBorder pixels more can be read on each side.
+/// One level of an image pyramid, 8 bits; kFlowBorder more pixels can be read on each side.
 struct FlowImage {
     const std::uint8_t* pixels = nullptr;
     std::ptrdiff_t stride = 0;  ///< between rows
@@ -20,8 +20,8 @@ struct FlowImage {
     int cols = 0;
 };
 
-/// Where each pixel of an image is found in another one: at its place plus the shift.
-/// Order (row, col), in 1 / kFlowShiftsPerPixel pixels.
+/// Shift of each pixel of an image to its position in another image. Order (row, col), in 1 /
+/// kFlowShiftsPerPixel pixels.
 struct DenseFlow {
     int rows = 0;
     int cols = 0;
@@ -32,14 +32,15 @@ inline constexpr int kFlowShiftsPerPixel = 64;
 
 struct InverseSearchOptions {
     int patch_stride_px = 4;       ///< between patches
-    float range_sigma_px = 0.03F;  ///< shifts that differ by this count half when they are averaged
+    float range_sigma_px = 0.03F;  ///< range sigma of the bilateral filter; see below
 };
 
-/// Follows patches from one image to another of the same shape by dense inverse search (Kroeger et
-/// al., ECCV 2016): each begins with the flow at half the resolution (null: at rest) or, if better,
-/// where its neighbours went, and descends the squared difference less that of the means. In place
-/// of variational refinement, shifts are averaged with those around that differ little. A pixel
-/// moves as the patches that cover it, each with a weight that falls with its difference there. The
+/// Dense inverse search (Kroeger et al., ECCV 2016) of patches between two images of the same
+/// shape. Each patch starts with the flow at half resolution (null: no motion) or, if better, with
+/// the shift of a neighbour, and minimises the squared difference after subtraction of the means by
+/// gradient descent. Variational refinement is replaced by a bilateral filter of the shifts: a
+/// shift that differs by `range_sigma_px` has half the weight. The flow of a pixel is the mean over
+/// the patches that contain it, with weights that decrease with their difference at the pixel. The
 /// same bits for any SIMD target.
 [[nodiscard]] DenseFlow inverse_search(const FlowImage& from, const FlowImage& to,
                                        const DenseFlow* coarser,

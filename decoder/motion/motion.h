@@ -8,9 +8,9 @@
 
 namespace stipple {
 
-/// Motion from every slot to the one `step` slots away; arrays of order (slot, row, col), one for
-/// all planes. The scene at pixel (row, col) is found at (row, col) + shift / 64 in the other slot:
-/// inside the frame wherever the confidence is above 0. Slots without a partner have none.
+/// Motion from every slot to the slot `step` slots away; arrays of order (slot, row, col), for all
+/// planes. The point at pixel (row, col) is at (row, col) + shift / 64 in the other slot, within
+/// the frame if the confidence is above 0. Slots without a partner have no confidence.
 struct MotionField {
     static constexpr int kShiftsPerPixel = kFlowShiftsPerPixel;
 
@@ -22,17 +22,18 @@ struct MotionField {
 
 struct MotionOptions {
     /// At half resolution, and averaged with the motion of the slots before and after: for first
-    /// estimates, where things stand still for some slots and then jump.
+    /// estimates, in which objects stand still for some slots and then jump.
     bool coarse = false;
     InverseSearchOptions search = {};
 };
 
-/// Smallest frame, in rows and columns, that motion can be estimated in.
+/// Minimum of the rows and columns of a frame for motion estimation.
 inline constexpr int kMinMotionSide = 16;
 
 /// Motion forwards and backwards in time by dense inverse search (inverse_search.h) on the square
-/// root of luminance. The confidence is exp(-e^2 / 2) where forth and back again lead e pixels
-/// away. The same bits for any thread count. Precondition: rows, cols >= kMinMotionSide.
+/// root of luminance. The confidence is exp(-e^2 / 2), where e is the distance in pixels between a
+/// point and its position after forward and backward motion. The same bits for any thread count.
+/// Precondition: rows, cols >= kMinMotionSide.
 [[nodiscard]] std::vector<MotionField> estimate_motion(const FluxVideo& video,
                                                        const MotionOptions& options);
 

@@ -15,11 +15,11 @@ struct SiteExposure {
     int open_slots = 0;
     bool saturated = false;
     std::uint8_t chain = 0;       ///< 0, or Measurements::kSecond
-    float light_per_slot = 0;     ///< at least, if saturated
-    float variance_per_slot = 0;  ///< of that
+    float light_per_slot = 0;     ///< a lower bound if saturated
+    float variance_per_slot = 0;  ///< of `light_per_slot`
 };
 
-/// `list` becomes the exposures of a site whose samples are there, in the order of their ends.
+/// Sets `list` to the exposures of a site that have samples, in the order of their ends.
 void list_exposures(const Measurements& measurements, std::size_t site,
                     std::vector<SiteExposure>& list);
 

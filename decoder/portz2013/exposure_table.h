@@ -11,18 +11,17 @@ namespace stipple {
 
 struct Measurements;
 
-/// One sample of a site and the slots that it collected.
+/// One sample of a site and the slots of its exposure.
 struct TimedSample {
     std::uint64_t open_slots = 0;  ///< bit i: open in slot first_slot + i; bit 0 is set
     int first_slot = 0;            ///< of the block
     int span_slots = 0;            ///< from the first open slot to the last one
     int open_count = 0;            ///< open slots
     float light = 0;               ///< y, of the whole exposure
-    bool saturated = false;        ///< the light is `light` or more
+    bool saturated = false;        ///< `light` is a lower bound
 };
 
-/// The samples of a block, found by (site, slot): for methods that follow a pixel through time.
-/// A site is (plane, row, col) as one index.
+/// The samples of a block, indexed by (site, slot). A site is (plane, row, col) as one index.
 class ExposureTable {
   public:
     explicit ExposureTable(const Measurements& measurements);
@@ -31,8 +30,8 @@ class ExposureTable {
     [[nodiscard]] FrameShape shape() const { return shape_; }
     [[nodiscard]] int longest_open_count() const { return longest_open_count_; }
 
-    /// The sample that a site's light of a slot is in, or null. Precondition: both are in the
-    /// block.
+    /// The sample that contains the light of a site in a slot, or null. Precondition: both are in
+    /// the block.
     [[nodiscard]] const TimedSample* at(std::size_t site, int slot) const {
         const std::uint32_t i =
             index_[site * static_cast<std::size_t>(slots_) + static_cast<std::size_t>(slot)];
@@ -49,7 +48,7 @@ class ExposureTable {
     std::vector<std::uint32_t> index_;  ///< order (site, slot)
 };
 
-/// `open_slots` as seen from a first slot that is `slots` later: bits before it fall off.
+/// `open_slots` relative to a first slot that is `slots` later: earlier bits are dropped.
 [[nodiscard]] constexpr std::uint64_t seen_from(std::uint64_t open_slots, int slots) {
     if (slots <= -64 || slots >= 64) return 0;
     return slots >= 0 ? open_slots >> static_cast<unsigned>(slots)

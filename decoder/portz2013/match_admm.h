@@ -10,17 +10,17 @@ namespace stipple {
 struct MatchAdmmOptions {
     int iterations = 10;
     float rho = 2;               ///< larger: smaller steps; per unit of light
-    int cg_iterations = 10;      ///< of conjugate gradients in each iteration, at most
+    int cg_iterations = 10;      ///< maximum of conjugate gradients, in each iteration
     float cg_tolerance = 1e-3F;  ///< of the residual, relative to the right side; 1.2e-7 at least
 };
 
-/// Told the objective (Eq. 4) after each iteration; false stops.
+/// Receives the objective (Eq. 4) after each iteration; false stops.
 using AfterAdmmIteration = std::function<bool(int iteration, double objective)>;
 
 /// Minimises ||A x - b||_1* + gamma ||F x||_1 from the start x by Algorithm 1 of Portz et al. 2013:
 /// M^-1 by conjugate gradients from the last x, with M = K^T K applied and never formed. x has the
-/// order of `problem`. `progress` is asked more often, between steps of conjugate gradients. The
-/// same bits for any number of threads. Memory: 4 bytes a row of K, 52 a voxel.
+/// order of `problem`. `progress` is also called between iterations of conjugate gradients. The
+/// same bits for any number of threads. Memory: 4 bytes per row of K, 52 per voxel.
 void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
                       const AfterAdmmIteration& after_iteration,
                       const std::function<bool()>& progress, std::span<float> x);

@@ -10,15 +10,15 @@
 
 namespace stipple {
 
-/// K = [A; gamma F] of Eq. 4 of Portz et al. 2013, never stored: its rows are found anew from the
-/// match lists whenever it is applied. For each match j of a reference patch i,
+/// K = [A; gamma F] of Eq. 4 of Portz et al. 2013, never stored: its rows are computed from the
+/// match lists each time it is applied. For each match j of a reference patch i,
 ///   A: for each sample of patch j, w_ij tau_max / tau times the sum of x over the sample's open
-///      slots, at the place and time of patch i; with b = w_ij tau_max / tau times the sample.
-///      Rows that reach beyond the block are left out;
+///      slots, at the position and time of patch i; b = w_ij tau_max / tau times the sample.
+///      Rows that reach beyond the block are omitted;
 ///   gamma F: gamma w_ij (x_i - x_j) for each voxel of the patches.
-/// x has the order (plane, row, col, slot): what a row needs lies side by side. All results are the
-/// same bits for any number of threads: the groups are dealt to a fixed number of parts, whose sums
-/// are added in a fixed order.
+/// x has the order (plane, row, col, slot), so that the data of a row are adjacent. All results
+/// have the same bits for any number of threads: the groups are divided into a fixed number of
+/// parts, whose sums are added in a fixed order.
 class MatchOperator {
   public:
     /// `table` and `lists` must outlive it.
@@ -34,10 +34,10 @@ class MatchOperator {
     /// out = K^T K x
     void normal(std::span<const float> x, std::span<float> out);
 
-    // What Algorithm 1 does with z and u. Both are kept as v = r + u, of which z is the soft
-    // threshold and u = v - z the rest; the one-sided one where a sample is saturated.
+    // The steps of Algorithm 1 for z and u. Both are stored as v = r + u: z is the soft threshold
+    // of v (one-sided for saturated samples), and u = v - z.
 
-    /// v of z = u = 0, but where a sample is saturated and x explains it: there z is its residual.
+    /// v for z = u = 0, except for saturated samples that x explains: their z is the residual.
     void start_duals(std::span<const float> x, std::span<float> v);
     /// v = K x - [b; 0] + u. Returns the objective (Eq. 4) of x.
     double update_duals(std::span<const float> x, float threshold, std::span<float> v);
@@ -48,8 +48,8 @@ class MatchOperator {
     struct Sampled;
     struct Pairs;
     struct Match;
-    /// Groups [begin, end) of all lists in a row, their rows of K from `first_row` on, and the
-    /// rows of the frame that they touch.
+    /// Groups [begin, end) of all lists in sequence, their rows of K from `first_row`, and the rows
+    /// of the frame that they contain.
     struct Part {
         std::size_t begin = 0;
         std::size_t end = 0;
@@ -62,14 +62,15 @@ class MatchOperator {
     [[nodiscard]] std::size_t voxel(std::size_t site, int slot) const {
         return site * static_cast<std::size_t>(table_.slots()) + static_cast<std::size_t>(slot);
     }
-    /// Calls sampled(Sampled) and pairs(Pairs) for all rows of groups, in the order of the rows.
+    /// Calls sampled(Sampled) and pairs(Pairs) for all rows of the groups, in the order of the
+    /// rows.
     template <typename OnSampled, typename OnPairs>
     std::size_t visit(const Part& part, const OnSampled& sampled, const OnPairs& pairs) const;
-    /// The rows of one match, the first of them number `row`; returns the number after them.
+    /// The rows of one match, from number `row`; returns the number after the last one.
     template <typename OnSampled, typename OnPairs>
     std::size_t visit_match(const Match& match, std::size_t row, const OnSampled& sampled,
                             const OnPairs& pairs) const;
-    /// out = the sum of what scatter(part, sums) adds to zeros, for all parts.
+    /// out = the sum over all parts of the sums that scatter(part, sums) adds to zeros.
     template <typename Scatter>
     void accumulate(const Scatter& scatter, std::span<float> out);
     template <typename OnPart>
@@ -79,7 +80,7 @@ class MatchOperator {
     const ExposureTable& table_;
     std::span<const MatchList> lists_;
     float gamma_;
-    std::array<float, 65> exposure_weight_{};  ///< tau_max / tau of samples of so many open slots
+    std::array<float, 65> exposure_weight_{};  ///< tau_max / tau by number of open slots
     std::size_t voxels_ = 0;
     std::size_t rows_ = 0;
     std::vector<Part> parts_;

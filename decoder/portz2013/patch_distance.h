@@ -20,34 +20,35 @@ struct PatchPosition {
     int col = 0;
 };
 
-/// One pixel's share in the distance of two patches.
+/// Contribution of one pixel to the distance of two patches.
 struct SampleDifference {
     float error = 0;   ///< sum of weight (y - z)^2
     float weight = 0;  ///< sum of cover / (1 + variance of z)
-    int cover = 0;     ///< slots of the patch that were compared
+    int cover = 0;     ///< compared slots of the patch
 };
 
-/// A site, and the slot that the patch begins in.
+/// A site and the first slot of the patch.
 struct SiteInPatch {
     std::size_t site = 0;
     int slot = 0;
 };
 
 /// Compares the samples of two pixels over the `slots` slots of a patch (Portz et al. 2013, Fig.
-/// 2). In each slot the longer of the two samples, or of two equal ones the one that covers more of
-/// the patch, is the target y, once each; the other pixel's samples over the target's exposure are
-/// blurred to it:
+/// 2). In each slot the longer of the two samples is the target y; of two equal ones it is the one
+/// with more slots in the patch. Each target counts once. The samples of the other pixel during the
+/// target's exposure are blurred to it:
 ///     z = sum_k o_k / n_k y_k,   variance of z = sum_k (o_k / n_k)^2,
-/// with n_k the open slots of sample k, o_k those that the target shares. The target counts with
-/// weight c / (1 + variance), c its open slots in the patch. Where the target is saturated and z
-/// >= y, or one of the y_k is and z <= y, the error is 0; where both are, nothing is compared, nor
-/// where z is not known for the whole target.
+/// where n_k are the open slots of sample k and o_k those that it shares with the target. The
+/// weight of the target is c / (1 + variance), where c is the number of its open slots in the
+/// patch. The error is 0 if the target is saturated and z >= y, or if one of the y_k is saturated
+/// and z <= y. Nothing is compared if both are saturated, or if z is not known for the whole
+/// target.
 [[nodiscard]] SampleDifference compare_samples(const ExposureTable& table, const SiteInPatch& first,
                                                const SiteInPatch& second, int slots) noexcept;
 
-/// The mean error of two patches, all planes together, in flux^2: of patches of the same light one
-/// to three times the variance of a sample. Infinite if less than an eighth of the patch can be
-/// compared, or as soon as it is certain to exceed `bound`. Precondition: both lie in the block.
+/// Mean error of two patches over all planes, in flux^2: for patches of the same light one to three
+/// times the variance of a sample. Infinite if less than an eighth of the patch can be compared, or
+/// as soon as it must exceed `bound`. Precondition: both patches lie in the block.
 [[nodiscard]] float patch_distance(const ExposureTable& table, const PatchSize& size,
                                    const PatchPosition& reference, const PatchPosition& other,
                                    float bound) noexcept;

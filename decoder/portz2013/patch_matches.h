@@ -11,7 +11,7 @@
 
 namespace stipple {
 
-/// A patch that looks like another one, and w of Eq. 3: how much.
+/// A similar patch and its weight w of Eq. 3.
 struct PatchMatch {
     std::int16_t slot = 0;
     std::int16_t row = 0;
@@ -19,8 +19,8 @@ struct PatchMatch {
     float weight = 0;
 };
 
-/// The matches of a reference patch: those of `MatchList::matches` up to `end`, from where the
-/// group before ends.
+/// The matches of a reference patch: the elements of `MatchList::matches` from the end of the
+/// previous group to `end`.
 struct MatchGroup {
     PatchPosition reference;
     std::size_t end = 0;
@@ -37,26 +37,26 @@ struct MatchList {
     }
 };
 
-/// Where reference patches lie and where matches are looked for.
+/// Positions of reference patches and search range of their matches.
 struct MatchSearch {
     PatchSize size;        ///< cut to the block where that is smaller
-    int step_px = 3;       ///< of reference patches, in rows and columns; none overlap in time
-    int window_px = 8;     ///< up to so many rows and columns away
-    int window_slots = 2;  ///< and so many slots
+    int step_px = 3;       ///< stride of reference patches, rows and columns; no overlap in time
+    int window_px = 8;     ///< maximum distance in rows and in columns
+    int window_slots = 2;  ///< maximum distance in slots
     float sigma = 0.05F;   ///< of Eq. 3, flux: w = weight exp(-d / (2 sigma^2))
     float weight = 1;
-    bool with_itself = true;  ///< each patch is a match of its own, beside the `most`
+    bool with_itself = true;  ///< each patch matches itself, in addition to `most`
 };
 
-/// Distances above so many 2 sigma^2 are no matches: their weight would be below 0.0004.
+/// Largest distance of a match in units of 2 sigma^2: beyond it the weight is below 0.0004.
 inline constexpr float kFaintestMatch = 8;
 
-/// Distance of the patch at `other` from that at `reference`, mean square error in flux^2; anything
-/// larger than `bound` will do if it exceeds that.
+/// Distance of the patch at `other` from the patch at `reference`, mean square error in flux^2. If
+/// it exceeds `bound`, any value above `bound` may be returned.
 using PatchMeasure = std::function<float(const PatchSize& size, const PatchPosition& reference,
                                          const PatchPosition& other, float bound)>;
 
-/// How many matches a reference patch may have.
+/// Maximum number of matches of a reference patch.
 using MatchCount = std::function<int(const PatchSize& size, const PatchPosition& reference)>;
 
 struct VideoSize {
@@ -65,19 +65,19 @@ struct VideoSize {
 };
 
 /// The nearest patches of each reference patch, by exhaustive search of its space-time window; of
-/// equally near ones the earlier, higher, further left. The same for any number of threads. Not
-/// complete if `progress` has stopped it.
+/// equally near patches the earlier, higher, further left one. The same for any number of threads.
+/// Incomplete if `progress` has stopped it.
 [[nodiscard]] MatchList find_matches(const VideoSize& video, const MatchSearch& search,
                                      const PatchMeasure& measure, const MatchCount& most,
                                      const ProgressCallback& progress);
 
-/// Mean square difference of two patches of a video, all planes together; more than `bound` stands
-/// for anything above it.
+/// Mean square difference of two patches of a video over all planes; a value above `bound` means
+/// any value above it.
 [[nodiscard]] float patch_difference(const FluxVideo& video, const PatchSize& size,
                                      const PatchPosition& reference, const PatchPosition& other,
                                      float bound) noexcept;
 
-/// w of Eq. 3 without its factor.
+/// w of Eq. 3 for `MatchSearch::weight` 1.
 [[nodiscard]] float match_weight(float distance, float sigma) noexcept;
 
 }  // namespace stipple

@@ -16,17 +16,17 @@ class Config;
 
 struct Measurements;
 
-/// The method `portz2013`. docs/decoder_portz2013.md says which values are published, how the
-/// others were found, and where the method differs from the paper's.
+/// Options of the method `portz2013`. docs/decoder_portz2013.md lists the published values and the
+/// deviations from the paper.
 struct Portz2013Options {
     struct Stage1 {
         MatchSearch search{.size = {6, 6, 4}, .step_px = 3, .sigma = 0.15F};
         int max_matches = 12;
-        float gamma = 0.5F;  ///< not published, as are sigma, the window and conjugate gradients
+        float gamma = 0.5F;  ///< not published; nor are sigma, window and conjugate gradients
         MatchAdmmOptions admm{.iterations = 10, .rho = 2};
     };
     struct Stage2 {
-        FlowMatchOptions flow{.sigma = 0.1F};  ///< block_px: 4 or 2, by clip
+        FlowMatchOptions flow{.sigma = 0.1F};  ///< block_px 4 or 2 in the paper, by clip
         MatchSearch search{
             .size = {6, 6, 3}, .step_px = 3, .sigma = 0.1F, .weight = 0.5F, .with_itself = false};
         int max_matches = 20;  ///< of both kinds together
@@ -35,19 +35,19 @@ struct Portz2013Options {
     };
     Stage1 stage1;
     Stage2 stage2;
-    /// Y of Eq. 1 for light 1.0, r / s of the paper's sensor: the published rho are in that unit.
+    /// Y of Eq. 1 for light 1.0, r / s of the paper's sensor: the published values of rho have this
+    /// unit.
     float values_per_flux = 0.5F;
 };
 
-/// Sites of a tile's core at most: a block of 64 slots then needs some 3 GB.
+/// Maximum number of sites in the core of a tile: a block of 64 slots then needs about 3 GB.
 inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
 
-/// Random Coded Sampling for High-Speed HDR Video (Portz, Zhang, Jiang, ICCP 2013), Sec. 4: patches
-/// of the samples that look alike, each explained by the samples of the others; then the same
-/// again, with patches found along the motion in the estimate and by search in it. Observed stages:
-/// `start` (nearest samples), `stage1`, `stage2`. Memory: 4 bytes for each row of the problem, some
-/// 490 bytes a voxel. Nothing if `progress` has stopped it. The same bits for any number of
-/// threads.
+/// Random Coded Sampling for High-Speed HDR Video (Portz, Zhang, Jiang, ICCP 2013), Sec. 4. Stage 1
+/// explains each patch by the samples of similar patches. Stage 2 repeats this with patches found
+/// along motion in the estimate and by search in it. Observed stages: `start` (nearest samples),
+/// `stage1`, `stage2`. Memory: 4 bytes per row of the problem, about 490 bytes per voxel. Returns
+/// nothing if `progress` has stopped it. The same bits for any number of threads.
 [[nodiscard]] std::optional<FluxVideo> decode_portz2013(
     const Measurements& measurements, const Portz2013Options& options,
     const StageObserver& observer = {},

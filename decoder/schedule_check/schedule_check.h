@@ -8,33 +8,33 @@
 
 namespace stipple {
 
-/// Whether the samples of a recording follow the schedule that its header states.
+/// Whether the samples of a stream follow the schedule in its header.
 struct ScheduleCheck {
     enum class Verdict {
-        kAgrees,      ///< they do
+        kAgrees,      ///< they follow it
         kShifted,     ///< they follow it with a shift
         kCannotTell,  ///< too dark, flat or short, or a schedule whose shifts look alike
-        kNoneFits,    ///< the header's does not fit, and no shift does that was tried
+        kNoneFits,    ///< neither the header's schedule nor a tested shift of it fits
     };
     Verdict verdict = Verdict::kCannotTell;
-    ScheduleShift shift;  ///< the best; each number as small as may be, so rather -1 than 14
+    ScheduleShift shift;  ///< the best one; numbers of minimum size, such as -1 instead of 14
     /// Mean disagreement of neighbouring samples, 0..1 (ScheduleResidual): with the header's
-    /// schedule, nothing if the numbers of samples contradict it; with the best shift; and the
-    /// median of all shifts that are possible.
+    /// schedule (nothing if the numbers of samples contradict it); with the best shift; median of
+    /// all possible shifts.
     std::optional<double> header_residual;
     std::optional<double> best_residual;
     std::optional<double> median_residual;
     std::size_t tried = 0;     ///< shifts
-    std::size_t possible = 0;  ///< of these, by the numbers of samples
+    std::size_t possible = 0;  ///< shifts that the numbers of samples do not contradict
 };
 
-/// Finds the shift of the header's schedule that its samples follow, by trying all: every slot of
-/// the period, all rows and columns of a tile up to 33, of a larger one up to 16 to each side. It
-/// reads 24 slots, from the first on that no exposure begun before slot 0 would be read in. Shifts
-/// that contradict the numbers of samples are out; of the others the residual decides, if the best
-/// lies a tenth below the median and five standard errors below the header's.
-/// The reader stands at its beginning, with ReadPolicy::kAnySchedule. The same result for any
-/// number of threads.
+/// Finds the shift of the header's schedule that the samples follow, by testing all shifts: every
+/// slot of the period, all rows and columns of a tile up to 33, up to 16 to each side of a larger
+/// tile. It reads 24 slots, beginning after the end of all exposures that began before slot 0.
+/// Shifts that contradict the numbers of samples are excluded. The best of the others is taken if
+/// its residual is at most 0.9 of the median and five standard errors below all shifts that do not
+/// look the same. The reader stands at its beginning, with ReadPolicy::kAnySchedule. The same
+/// result for any number of threads.
 [[nodiscard]] ScheduleCheck check_schedule(StreamReader& reader);
 
 }  // namespace stipple

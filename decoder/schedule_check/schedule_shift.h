@@ -7,9 +7,9 @@
 
 namespace stipple {
 
-/// How a schedule is displaced against its samples: pixel (row, col) does in slot t what the
-/// schedule says of pixel (row + rows, col + cols) in slot t + slots. Each number is taken modulo
-/// the period or the tile.
+/// Shift of a schedule relative to its samples: pixel (row, col) in slot t follows the schedule of
+/// pixel (row + rows, col + cols) in slot t + slots. Each number is taken modulo the period or the
+/// tile.
 struct ScheduleShift {
     int slots = 0;
     int rows = 0;
@@ -18,7 +18,7 @@ struct ScheduleShift {
     bool operator==(const ScheduleShift&) const = default;
 };
 
-/// The schedule that a chip follows which runs `schedule` with this shift.
+/// The schedule of a chip that runs `schedule` with this shift.
 [[nodiscard]] ExposureSchedule shifted_schedule(const ExposureSchedule& schedule,
                                                 const ScheduleShift& shift);
 
@@ -29,8 +29,8 @@ struct RowInSlot {
     int cols = 0;
 };
 
-/// `visit_due_pixels` of the shifted schedule, without making it. Precondition: 0 <= shift.slots <
-/// period, 0 <= shift.rows, 0 <= shift.cols < tile columns.
+/// `visit_due_pixels` of the shifted schedule, without creating it. Precondition: 0 <= shift.slots
+/// < period, 0 <= shift.rows, 0 <= shift.cols < tile columns.
 template <typename Visit>
 void visit_due_shifted(const ExposureSchedule& schedule, const ScheduleShift& shift,
                        const RowInSlot& at, Visit&& visit) {

@@ -9,7 +9,7 @@
 
 namespace stipple::emva1288 {
 
-/// What a series says of a camera, in the terms of EMVA 1288 (linear cameras); formulas in
+/// Figures of a camera from a series, in the terms of EMVA 1288 (linear cameras); formulas in
 /// docs/characterize.md.
 struct CameraFigures {
     double gain_dn_per_e = 0;            ///< K
@@ -27,8 +27,8 @@ struct CameraFigures {
 /// One exposure of the photon transfer curve.
 struct TransferPoint {
     double photons = 0;
-    double mean_dn = 0;       ///< less the dark images of the same exposure time
-    double variance_dn2 = 0;  ///< temporal, likewise
+    double mean_dn = 0;       ///< minus that of the dark images of the same exposure time
+    double variance_dn2 = 0;  ///< temporal, minus that of the dark images
 };
 
 struct Evaluation {
@@ -37,21 +37,21 @@ struct Evaluation {
     std::size_t saturation = 0;           ///< index of the point with the largest variance
     double dark_mean_dn = 0;
     double dark_variance_dn2 = 0;
-    /// Part of the values of the dark stack that are 0; where it is much, the black level cuts the
-    /// noise off and all figures are biased.
+    /// Fraction of the values of the dark stack that are 0. If it is large, the black level clips
+    /// the noise, and all figures are biased.
     double dark_zero_fraction = 0;
 };
 
-/// The statistics of one group of images, and the part of its values that are 0.
+/// Statistics of one group of images, and the fraction of its values that are 0.
 struct GroupStatistics {
     ImageStatistics images;
     double zero_fraction = 0;
 };
 
-/// Evaluates a series whose groups have these statistics, in their order.
-/// \throws InputError at `place` if the series lacks what an evaluation needs: ten bright pairs,
-/// with dark images of their exposure time, at least five of them below 70 % of saturation, more
-/// light giving more signal, and one stack of more than two images each, bright and dark.
+/// Evaluates a series; `statistics` has the statistics of its groups in their order.
+/// \throws InputError at `place` if the series does not have the necessary images: ten bright pairs
+/// with dark images of their exposure times, at least five of them below 70 % of saturation, signal
+/// that increases with light, and one stack of more than two images each, bright and dark.
 [[nodiscard]] Evaluation evaluate(const Series& series,
                                   const std::vector<GroupStatistics>& statistics,
                                   const std::string& place);

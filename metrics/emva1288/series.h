@@ -7,15 +7,15 @@
 
 namespace stipple::emva1288 {
 
-/// Images of one exposure: two for the temporal noise, more for the spatial one.
+/// Images of one exposure: two for temporal noise, more for spatial noise.
 struct ImageGroup {
     double exposure_ns = 0;
-    double photons = 0;  ///< mean number per pixel; 0 of dark images
+    double photons = 0;  ///< mean number per pixel; 0 for dark images
     bool dark = false;
-    std::vector<std::string> files;  ///< as the descriptor has them, relative to it
+    std::vector<std::string> files;  ///< names in the descriptor, relative to it
 };
 
-/// A measurement after EMVA 1288: what the descriptor file of the reference software says.
+/// A measurement by EMVA 1288: the content of a descriptor file of the reference software.
 struct Series {
     int bits = 0;
     int cols = 0;
@@ -24,9 +24,9 @@ struct Series {
 };
 
 /// Reads a descriptor (release 4.0 of its format): `v 4.0`, `n bits width height`, then groups that
-/// begin with `b exposure_ns photons` or `d exposure_ns` and list their images, `i file`. Lines
-/// that are empty or begin with # mean nothing; backslashes in file names are taken as slashes.
-/// \throws InputError naming `place` and line for anything else, for numbers outside their limits
+/// begin with `b exposure_ns photons` or `d exposure_ns` and list their images, `i file`. Empty
+/// lines and lines that begin with # are ignored; backslashes in file names are read as slashes.
+/// \throws InputError naming `place` and line for all other text, for numbers outside their limits
 /// and for a group without two images.
 [[nodiscard]] Series parse_series(std::string_view text, std::string_view place);
 
