@@ -68,7 +68,7 @@ class CompletionTest(ProgramTest):
         self.assertEqual(complete("stipple emulate --sensor lux"), ["lux1310", "lux2100"])
         self.assertEqual(complete("stipple decode a.stipple --method por"), ["portz2013"])
         self.assertEqual(complete("stipple schedule show random_"), ["random_subset"])
-        self.assertEqual(complete("stipple list sens"), ["sensors"])
+        self.assertEqual(complete("stipple list meth"), ["methods"])
 
     def test_bash(self):
         script = self.script_of("bash")
@@ -102,7 +102,7 @@ class CompletionTest(ProgramTest):
             self.assertRegex(shown, pattern)
         until("re" + "ady", f"PS1=; autoload -U compinit; compinit -u -D; source {script}; echo re''ady\n")
         for begun, whole in (("stipple emu", "late"), ("stipple capture rec", "ord"), ("stipple emulate --sched", "ule"),
-                             ("stipple decode a --method por", "tz2013"), ("stipple list sens", "ors")):
+                             ("stipple decode a --method por", "tz2013"), ("stipple list meth", "ods")):
             until(whole, begun + "\t")
             os.write(terminal, b"\x15")
         os.write(terminal, b"exit\n")
