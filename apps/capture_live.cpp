@@ -13,7 +13,6 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
-#include "apps/footage_origin.h"
 #include "apps/interrupt.h"
 #include "apps/live_preview.h"
 #include "apps/report/json_file.h"
@@ -27,6 +26,7 @@
 #include "apps/subcommands.h"
 #include "capture/recording/replay_camera.h"
 #include "core/error.h"
+#include "readout/footage_origin.h"
 
 namespace stipple {
 namespace {
@@ -54,7 +54,8 @@ std::string new_recording_name() {
 FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
     FootageOrigin origin{.name = camera.model};
     if (is_replay(arguments.camera))
-        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{});
+        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{},
+                           [] { throw_if_stopped(); });
     else
         origin.recording = new_recording_name();
     origin.black_level_dn = arguments.black_level_dn;
