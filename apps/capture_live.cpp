@@ -13,12 +13,11 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
-#include "apps/footage_origin.h"
 #include "apps/interrupt.h"
-#include "apps/live_preview.h"
 #include "apps/report/json_file.h"
 #include "apps/report/live_report.h"
 #include "apps/report/number_text.h"
+#include "apps/report/preview_picture.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
@@ -27,6 +26,8 @@
 #include "apps/subcommands.h"
 #include "capture/recording/replay_camera.h"
 #include "core/error.h"
+#include "io/disk_sync.h"
+#include "readout/footage_origin.h"
 
 namespace stipple {
 namespace {
@@ -54,7 +55,8 @@ std::string new_recording_name() {
 FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
     FootageOrigin origin{.name = camera.model};
     if (is_replay(arguments.camera))
-        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{});
+        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{},
+                           [] { throw_if_stopped(); });
     else
         origin.recording = new_recording_name();
     origin.black_level_dn = arguments.black_level_dn;
@@ -94,6 +96,25 @@ LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& r
     if (!rate_compared && result.latencies.count() > 0)
         say_warning(camera_rate_warning(result.rate, sensor));
     return result;
+}
+
+LivePreviewOptions show_in(const std::string& file) {
+    return {.show =
+                [file](const PreviewFrame& frame) {
+                    const NoSync no_sync;  // the next picture comes soon
+                    write_preview(file, frame);
+                },
+            .tell =
+                [](const std::string& failure) {
+                    say_error("no preview: {}; the recording goes on", failure);
+                },
+            .goes_on = [] { return stop_signal() == 0; }};
+}
+
+void say_slow_preview() {
+    say_error(
+        "the recording is complete; its preview ends slowly, as the machine is busy. Ctrl-C twice "
+        "does not wait");
 }
 
 /// Puts the stream in place, as far as it goes. \throws DeviceError.
@@ -142,9 +163,11 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
     std::optional<LivePreview> preview;
-    if (!arguments.preview.file.empty())
-        preview.emplace(arguments.preview.file, PreviewDecoder(stream_header_of(setup, {}),
-                                                               preview_options(arguments.preview)));
+    const std::string& preview_file = arguments.preview.file;
+    if (!preview_file.empty())
+        preview.emplace(
+            PreviewDecoder(stream_header_of(setup, {}), preview_options(arguments.preview)),
+            show_in(preview_file));
     LiveEmulatorOptions options{.limits = arguments.limits,
                                 .late_after_slots = arguments.late_after_slots,
                                 .tell = [&](const LeftOut& left_out) {
@@ -156,14 +179,14 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     emulation.totals.repeated = camera.stop().repeated;
     if (emulation.latencies.count() == 0) fail_without_frame(emulation, arguments.camera.address);
     put_in_place(recorder, emulation, arguments.output);
-    if (preview) preview->finish();
+    if (preview) preview->finish(say_slow_preview);
     check_end(emulation, arguments);
     const LiveReport report{emulation, recorder, camera};
     auto figures = live_json(report);
-    if (preview) figures["preview"] = preview->json();
+    if (preview) figures["preview"] = preview_json(preview_file, *preview);
     json.write(figures);
     run.say(live_text(report, arguments.output, arguments.late_after_slots) +
-            (preview ? "\n" + preview->text() : ""));
+            (preview ? "\n" + preview_text(preview_file, *preview) : ""));
 }
 
 }  // namespace

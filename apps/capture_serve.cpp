@@ -5,14 +5,12 @@
 #include <string>
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/footage.h"
-#include "apps/arguments/sensor.h"
+#include "apps/arguments/served_source.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/session_report.h"
 #include "apps/report/standard_error.h"
-#include "apps/served_source.h"
 #include "apps/subcommands.h"
 #include "capture/serve/gige_server.h"
 #include "core/version.h"
@@ -88,31 +86,6 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     throw_if_stopped();  // there is no output that could be shorter
 }
 
-void add_source_arguments(Command& command, ServedSourceChoice& source) {
-    command
-        .add_option("SOURCE", source.path,
-                    "footage, or in mode frames a recording of \"capture record\"")
-        .required()
-        .input();
-    command
-        .add_option("--mode", source.mode,
-                    "frames: as they are; coded: the samples of a sensor (frames)")
-        .one_of({"frames", "coded"})
-        .type_name("frames|coded");
-    command
-        .add_option("--fps", source.frames_per_s,
-                    "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
-        .check(number_check(0.01, 100000.0))
-        .type_name("N");
-    command.add_option("--format", source.format, "pixel format of footage (Mono8)")
-        .type_name("NAME");
-    add_sensor_arguments(command, source.sensor);
-    add_settings(command, sensor_sections(source.sensor),
-                 "change a key of the sensor or of the schedule");
-    add_footage_arguments(command, source.reading);
-    add_max_value(command, source.reading.max_value);
-}
-
 /// What a served camera shall do wrong: `--fault-...`, for tests of clients.
 void add_fault_arguments(Command& command, GigeServerOptions& options) {
     constexpr auto kGroup = "Faults, for tests of clients";
@@ -171,7 +144,7 @@ void check_faults(const Command& command, const GvspFaults& faults) {
 void add_capture_serve(Command& capture, Action& action) {
     Command command = capture.add_command("serve", "Frames or a coded stream as a GigE camera");
     const auto options = std::make_shared<ServeOptions>();
-    add_source_arguments(command, options->source);
+    add_served_source(command, options->source);
     command.add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
         .type_name("IP");
     command.add_option("--serial", options->server.serial, "serial number (the address)")

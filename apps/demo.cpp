@@ -6,10 +6,10 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
+#include "apps/demo_trial.h"
 #include "apps/demo_trials.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
-#include "apps/trial.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "apps/demo_trial.h"
 #include "apps/report/side_by_side.h"
-#include "apps/trial.h"
 #include "io/frame_writer.h"
 
 namespace stipple {

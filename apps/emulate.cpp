@@ -8,7 +8,6 @@
 #include "apps/arguments/footage.h"
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/sensor.h"
-#include "apps/footage_origin.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
 #include "apps/report/json_file.h"
@@ -22,6 +21,7 @@
 #include "capture/recording/read_ahead.h"
 #include "core/joined.h"
 #include "io/frame_writer.h"
+#include "readout/footage_origin.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {
@@ -62,7 +62,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         say_leftover(options.truth);
     }
     StreamRecorder recorder =
-        open_stream_output(options.output, run, setup, origin_of(options.footage, options.reading));
+        open_stream_output(options.output, run, setup,
+                           origin_of(options.footage, options.reading, [] { throw_if_stopped(); }));
     Progress progress(run, "emulating", footage.slots());
     auto frame = footage.next();
     for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/info_recording.h"
 #include "apps/interrupt.h"
-#include "apps/recording_info.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/stream_text.h"
@@ -33,7 +33,7 @@ std::string stretched_text(const StretchedSlots& stretched, const StreamReader& 
 }
 
 void info(const std::string& file, const RunOptions& run) {
-    if (is_recording(file)) return recording_info(file, run);
+    if (is_recording(file)) return info_recording(file, run);
     StreamReader reader(file, ReadPolicy::kCounts);
     JsonFile json(run);
     SamplePacket packet;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/trial.h"
+#include "apps/demo_trial.h"
 
 namespace stipple {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/report/side_by_side.h"
@@ -40,6 +41,38 @@ void write_preview(const std::filesystem::path& file, const PreviewFrame& frame)
     FrameWriter writer(file, frame.shape, {.force = true});
     writer.write(frame.light);
     writer.finish();
+}
+
+nlohmann::ordered_json preview_json(const std::string& file, const LivePreview& preview) {
+    const FrameShape shape = preview.decoder().shape();
+    const PreviewCounts counts = preview.counts();
+    nlohmann::ordered_json json{{"file", file},
+                                {"width", shape.cols},
+                                {"height", shape.rows},
+                                {"slots", preview.decoder().slots()},
+                                {"made", counts.made},
+                                {"failed", counts.failed},
+                                {"skipped_slots", counts.skipped_slots},
+                                {"last_slot", nullptr},
+                                {"delay_ms", nullptr}};
+    if (counts.made == 0) return json;
+    json["last_slot"] = counts.last_slot;
+    json["delay_ms"] = {{"median", counts.delays.quantile_us(0.5) * 1e-3},
+                        {"max", counts.delays.longest_us() * 1e-3}};
+    return json;
+}
+
+std::string preview_text(const std::string& file, const LivePreview& preview) {
+    const FrameShape shape = preview.decoder().shape();
+    const PreviewCounts counts = preview.counts();
+    std::string text =
+        fmt::format("preview {}: {} x {} from {} slots; made {}, failed {}", file, shape.cols,
+                    shape.rows, preview.decoder().slots(), counts.made, counts.failed);
+    if (counts.made > 0)
+        text +=
+            fmt::format("; {:.1f} s behind its slot, at most {:.1f} s",
+                        counts.delays.quantile_us(0.5) * 1e-6, counts.delays.longest_us() * 1e-6);
+    return text;
 }
 
 }  // namespace stipple

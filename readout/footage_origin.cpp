@@ -1,4 +1,4 @@
-#include "apps/footage_origin.h"
+#include "readout/footage_origin.h"
 
 #include <fmt/format.h>
 #include <openssl/crypto.h>
@@ -13,7 +13,6 @@
 #include <system_error>
 #include <vector>
 
-#include "apps/interrupt.h"
 #include "core/error.h"
 #include "io/footage_files.h"
 
@@ -28,7 +27,7 @@ std::vector<fs::path> files_of(const fs::path& footage) {
     return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage).files;
 }
 
-std::string sha256_of(const std::vector<fs::path>& files) {
+std::string sha256_of(const std::vector<fs::path>& files, const std::function<void()>& check) {
     // OpenSSL 3.0 uses its own state even if it had no memory for it.
     if (OSSL_LIB_CTX_get0_global_default() == nullptr) throw std::bad_alloc();
     const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(),
@@ -38,7 +37,7 @@ std::string sha256_of(const std::vector<fs::path>& files) {
     for (const fs::path& path : files) {
         std::ifstream file(path, std::ios::binary);
         while (file) {
-            throw_if_stopped();
+            check();
             file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
             EVP_DigestUpdate(hash.get(), bytes.data(), static_cast<std::size_t>(file.gcount()));
         }
@@ -56,11 +55,12 @@ std::string sha256_of(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-FootageOrigin origin_of(const std::string& footage, const FootageOptions& reading) {
+FootageOrigin origin_of(const std::string& footage, const FootageOptions& reading,
+                        const std::function<void()>& check) {
     const fs::path path(footage);
     const auto files = files_of(path);
     return {.name = (path.has_filename() ? path : path.parent_path()).filename().string(),
-            .sha256 = files.empty() ? "" : sha256_of(files),
+            .sha256 = files.empty() ? "" : sha256_of(files, check),
             .reading = reading};
 }
 

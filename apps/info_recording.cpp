@@ -1,4 +1,4 @@
-#include "apps/recording_info.h"
+#include "apps/info_recording.h"
 
 #include <fmt/format.h>
 
@@ -151,7 +151,7 @@ std::string condition_text(const RecordingReader& reader) {
 
 }  // namespace
 
-void recording_info(const std::string& file, const RunOptions& run) {
+void info_recording(const std::string& file, const RunOptions& run) {
     RecordingReader reader(file);
     JsonFile json(run);
     FrameSummary frames;

@@ -8,6 +8,6 @@ namespace stipple {
 
 /// Says what a recording of a camera is and holds: frames, rate, gaps, settings, and how far it is
 /// whole. \throws InputError if it is damaged (once all was said), DeviceError, Interrupted.
-void recording_info(const std::string& file, const RunOptions& run);
+void info_recording(const std::string& file, const RunOptions& run);
 
 }  // namespace stipple

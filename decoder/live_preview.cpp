@@ -1,24 +1,16 @@
-#include "apps/live_preview.h"
+#include "decoder/live_preview.h"
 
-#include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "apps/interrupt.h"
-#include "apps/report/preview_picture.h"
-#include "apps/report/standard_error.h"
-#include "capture/host_clock.h"
 #include "core/parallel.h"
-#include "io/disk_sync.h"
 
 namespace stipple {
 namespace {
@@ -35,16 +27,21 @@ void stop_waiting_for_idle(std::thread& thread) {
     static_cast<void>(pthread_setschedparam(thread.native_handle(), SCHED_OTHER, &parameters));
 }
 
-constexpr std::chrono::seconds kPollInterval{2};
+constexpr std::chrono::seconds kPatience{2};
+
+/// CLOCK_MONOTONIC.
+std::int64_t now_ns() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
-LivePreview::LivePreview(std::filesystem::path file, PreviewDecoder decoder)
-    : file_(std::move(file)), decoder_(std::move(decoder)), thread_([this] { run(); }) {}
+LivePreview::LivePreview(PreviewDecoder decoder, LivePreviewOptions options)
+    : decoder_(std::move(decoder)), options_(std::move(options)), thread_([this] { run(); }) {}
 
 LivePreview::~LivePreview() {
     give_up_ = true;
-    finish();
+    finish([] {});
 }
 
 void LivePreview::add(std::span<const SamplePacket> packets, std::int64_t arrival_ns) {
@@ -70,7 +67,6 @@ void LivePreview::add(std::span<const SamplePacket> packets, std::int64_t arriva
 
 void LivePreview::run() {
     run_when_idle();
-    const NoSync no_sync;  // the next picture comes soon
     for (;;) {
         wake_.acquire();
         if (!handed_over_.load(std::memory_order_acquire)) break;  // `finish` has called
@@ -86,57 +82,34 @@ void LivePreview::run() {
 
 void LivePreview::show() {
     try {
-        const auto goes_on = [this](double) { return !give_up_ && stop_signal() == 0; };
+        const auto goes_on = [this](double) { return !give_up_ && options_.goes_on(); };
         if (!goes_on(0)) return;
         const auto frame =
             decoder_.decode(first_slot_, std::span(packets_).first(packet_count_), goes_on);
         if (!frame) return;
-        write_preview(file_, *frame);
+        options_.show(*frame);
         ++made_;
         last_slot_ = frame->slot;
-        delays_.add(static_cast<double>(monotonic_ns() - shown_arrival_ns_) * 1e-3);
+        delays_.add(static_cast<double>(now_ns() - shown_arrival_ns_) * 1e-3);
         failure_.clear();
     } catch (const std::exception& e) {
         ++failed_;
         if (std::exchange(failure_, e.what()) == failure_) return;
-        say_error("no preview: {}; the recording goes on", failure_);
+        options_.tell(failure_);
     }
 }
 
-void LivePreview::finish() {
+void LivePreview::finish(const std::function<void()>& slow) {
     if (!thread_.joinable()) return;
     if (made_ + failed_ > 0) give_up_ = true;
     wake_.release();
     stop_waiting_for_idle(thread_);
-    if (!ended_.try_acquire_for(kPollInterval))
-        say_error(
-            "the recording is complete; its preview ends slowly, as the machine is "
-            "busy. Ctrl-C twice does not wait");
+    if (!ended_.try_acquire_for(kPatience)) slow();
     thread_.join();
 }
 
-nlohmann::ordered_json LivePreview::json() const {
-    const FrameShape shape = decoder_.shape();
-    nlohmann::ordered_json json{
-        {"file", file_.string()},    {"width", shape.cols},  {"height", shape.rows},
-        {"slots", decoder_.slots()}, {"made", made_.load()}, {"failed", failed_.load()},
-        {"skipped_slots", skipped_}, {"last_slot", nullptr}, {"delay_ms", nullptr}};
-    if (made_ == 0) return json;
-    json["last_slot"] = last_slot_;
-    json["delay_ms"] = {{"median", delays_.quantile_us(0.5) * 1e-3},
-                        {"max", delays_.longest_us() * 1e-3}};
-    return json;
-}
-
-std::string LivePreview::text() const {
-    const FrameShape shape = decoder_.shape();
-    std::string text =
-        fmt::format("preview {}: {} x {} from {} slots; made {}, failed {}", file_.string(),
-                    shape.cols, shape.rows, decoder_.slots(), made_.load(), failed_.load());
-    if (made_ > 0)
-        text += fmt::format("; {:.1f} s behind its slot, at most {:.1f} s",
-                            delays_.quantile_us(0.5) * 1e-6, delays_.longest_us() * 1e-6);
-    return text;
+PreviewCounts LivePreview::counts() const {
+    return {made_, failed_, skipped_, last_slot_, delays_};
 }
 
 }  // namespace stipple

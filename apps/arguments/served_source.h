@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/arguments/command_line.h"
 #include "capture/serve/frame_source.h"
 #include "io/footage_reader.h"
 #include "readout/sensor_file.h"
@@ -19,6 +20,10 @@ struct ServedSourceChoice {
     FootageOptions reading;
     SensorChoice sensor;  ///< of mode coded
 };
+
+/// SOURCE and how it is served: `--mode`, `--fps`, `--format`, and the arguments of footage and
+/// sensor.
+void add_served_source(Command& command, ServedSourceChoice& source);
 
 /// \throws InputError naming what cannot be used.
 [[nodiscard]] std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice);

@@ -1,4 +1,4 @@
-#include "apps/trial.h"
+#include "apps/demo_trial.h"
 
 #include <fmt/format.h>
 

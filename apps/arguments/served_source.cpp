@@ -1,16 +1,19 @@
-#include "apps/served_source.h"
+#include "apps/arguments/served_source.h"
 
 #include <fmt/format.h>
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
-#include "apps/footage_origin.h"
+#include "apps/arguments/sensor.h"
+#include "apps/arguments/settings.h"
+#include "apps/interrupt.h"
 #include "apps/report/session_report.h"
 #include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
 #include "core/error.h"
 #include "core/suggestion.h"
+#include "readout/footage_origin.h"
 
 namespace stipple {
 namespace {
@@ -37,11 +40,37 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
 
 }  // namespace
 
+void add_served_source(Command& command, ServedSourceChoice& source) {
+    command
+        .add_option("SOURCE", source.path,
+                    "footage, or in mode frames a recording of \"capture record\"")
+        .required()
+        .input();
+    command
+        .add_option("--mode", source.mode,
+                    "frames: as they are; coded: the samples of a sensor (frames)")
+        .one_of({"frames", "coded"})
+        .type_name("frames|coded");
+    command
+        .add_option("--fps", source.frames_per_s,
+                    "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
+        .check(number_check(0.01, 100000.0))
+        .type_name("N");
+    command.add_option("--format", source.format, "pixel format of footage (Mono8)")
+        .type_name("NAME");
+    add_sensor_arguments(command, source.sensor);
+    add_settings(command, sensor_sections(source.sensor),
+                 "change a key of the sensor or of the schedule");
+    add_footage_arguments(command, source.reading);
+    add_max_value(command, source.reading.max_value);
+}
+
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
     if (choice.mode == "coded" || !is_recording(choice.path)) say_warnings_of_footage(choice);
     if (choice.mode == "coded")
-        return std::make_unique<CodedFrames>(choice.path, origin_of(choice.path, choice.reading),
-                                             choice.sensor, choice.frames_per_s);
+        return std::make_unique<CodedFrames>(
+            choice.path, origin_of(choice.path, choice.reading, [] { throw_if_stopped(); }),
+            choice.sensor, choice.frames_per_s);
     if (!is_recording(choice.path)) return open_footage(choice);
     if (!choice.format.empty())
         throw InputError("--format " + choice.format,

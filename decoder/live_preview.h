@@ -1,0 +1,84 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <semaphore>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/duration_histogram.h"
+#include "decoder/preview.h"
+
+namespace stipple {
+
+struct LivePreviewOptions {
+    std::function<void(const PreviewFrame&)> show;  ///< what it throws is a failure
+    /// Told of a failure that is not that of the frame before.
+    std::function<void(const std::string&)> tell;
+    std::function<bool()> goes_on;  ///< asked while a frame is decoded; false gives it up
+};
+
+/// What has become of a preview.
+struct PreviewCounts {
+    int made = 0;
+    int failed = 0;
+    std::int64_t skipped_slots = 0;  ///< that came while a frame was decoded
+    std::int64_t last_slot = -1;     ///< that was shown
+    DurationHistogram delays;        ///< from the light of the slot to its frame shown
+};
+
+/// Shows what the decoder makes of a stream that is under way. A thread of idle priority decodes
+/// the newest slots; while it is busy, slots pass it by. Whoever records never waits for it: the
+/// slots are handed over without a lock, in memory that stays the recorder's. After a failure it
+/// goes on with the next frame. The options are called by the thread.
+class LivePreview {
+  public:
+    LivePreview(PreviewDecoder decoder, LivePreviewOptions options);
+    ~LivePreview();
+    LivePreview(const LivePreview&) = delete;
+    LivePreview& operator=(const LivePreview&) = delete;
+
+    /// The packets of the next slot, whose light came at `arrival_ns` (CLOCK_MONOTONIC).
+    void add(std::span<const SamplePacket> packets, std::int64_t arrival_ns);
+    /// No more slots come. A frame that is being decoded is given up, but not the first one.
+    /// `slow` is called if that takes longer than 2 s.
+    void finish(const std::function<void()>& slow);
+
+    /// Precondition: `finish` has returned.
+    [[nodiscard]] PreviewCounts counts() const;
+    [[nodiscard]] const PreviewDecoder& decoder() const { return decoder_; }
+
+  private:
+    void run();
+    void show();
+
+    const PreviewDecoder decoder_;
+    const LivePreviewOptions options_;
+
+    // Written by the recorder while `handed_over_` is false, read by the thread while it is true.
+    std::vector<SamplePacket> packets_;
+    std::size_t packet_count_ = 0;  ///< of packets_ that are in use
+    std::int64_t first_slot_ = 0;
+    std::int64_t shown_arrival_ns_ = 0;
+    std::atomic<bool> handed_over_ = false;
+    std::counting_semaphore<> wake_{0};
+
+    std::binary_semaphore ended_{0};  ///< the thread
+
+    std::int64_t next_slot_ = 0;  ///< of the recorder
+    int gathered_ = 0;            ///< slots in packets_
+    std::int64_t skipped_ = 0;
+
+    std::atomic<bool> give_up_ = false;
+    std::atomic<int> made_ = 0;
+    std::atomic<int> failed_ = 0;
+    std::int64_t last_slot_ = -1;  ///< that was shown
+    DurationHistogram delays_;
+    std::string failure_;  ///< the last one that was told
+    std::thread thread_;   ///< last: starts when all else is there
+};
+
+}  // namespace stipple

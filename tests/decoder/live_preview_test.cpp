@@ -1,0 +1,95 @@
+#include "decoder/live_preview.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <semaphore>
+#include <stdexcept>
+
+#include "tests/decoder/recordings.h"
+
+namespace stipple {
+namespace {
+
+const ExposureSchedule kEverySlot{1, 1, 1, {0, 1}, {{.first_slot = 0, .open_slots = 1}}};
+
+FluxVideo uniform_video() {
+    FluxVideo video(20, {.rows = 32, .cols = 32, .planes = 1});
+    std::ranges::fill(video.data(), 0.5F);
+    return video;
+}
+
+class LivePreviewTest : public ::testing::Test {
+  protected:
+    [[nodiscard]] PreviewDecoder decoder() const { return {recorded_.header, {}}; }
+    /// Hands over all slots of the recording; a slot is a packet.
+    void add_all(LivePreview& preview) const {
+        for (const SamplePacket& packet : recorded_.packets) preview.add({&packet, 1}, 0);
+    }
+
+    Recorded recorded_ = record(uniform_video(), kEverySlot);
+};
+
+// A pixel's 500 electrons have a noise of sqrt(500 + 10^2) = 24.5 electrons, 0.0245 of light; the
+// mean of 1024 pixels a 32nd of that, of which 5 are allowed.
+TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
+    std::counting_semaphore<> shown{0};
+    PreviewFrame frame;
+    LivePreview preview(decoder(), {.show =
+                                        [&](const PreviewFrame& made) {
+                                            if (frame.light.empty()) frame = made;
+                                            shown.release();
+                                        },
+                                    .tell = [](const std::string& what) { FAIL() << what; },
+                                    .goes_on = [] { return true; }});
+    add_all(preview);
+    shown.acquire();
+    preview.finish([] {});
+    EXPECT_EQ(frame.slot, decoder().shown_slot());
+    EXPECT_EQ(frame.shape, recorded_.header.shape);
+    EXPECT_NEAR(frame.mean_light(), 0.5, 5 * 0.0245 / 32);
+    EXPECT_GE(preview.counts().made, 1);
+    EXPECT_EQ(preview.counts().failed, 0);
+}
+
+TEST_F(LivePreviewTest, SlotsPassByWhileAFrameIsMade) {
+    std::binary_semaphore all_added{0};
+    LivePreview preview(decoder(), {.show = [&](const PreviewFrame&) { all_added.acquire(); },
+                                    .tell = [](const std::string& what) { FAIL() << what; },
+                                    .goes_on = [] { return true; }});
+    add_all(preview);
+    all_added.release();
+    preview.finish([] {});
+    const PreviewCounts counts = preview.counts();
+    EXPECT_EQ(counts.made, 1);
+    EXPECT_EQ(counts.last_slot, decoder().shown_slot());
+    EXPECT_EQ(counts.skipped_slots,
+              static_cast<std::int64_t>(recorded_.packets.size()) - decoder().slots());
+}
+
+TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {
+    std::counting_semaphore<> tried{0};
+    int told = 0;
+    LivePreview preview(decoder(), {.show =
+                                        [&](const PreviewFrame&) {
+                                            tried.release();
+                                            throw std::runtime_error("no space");
+                                        },
+                                    .tell =
+                                        [&](const std::string& what) {
+                                            EXPECT_EQ(what, "no space");
+                                            ++told;
+                                        },
+                                    .goes_on = [] { return true; }});
+    for (int made = 0; made < 2;) {
+        add_all(preview);
+        if (tried.try_acquire()) ++made;
+    }
+    preview.finish([] {});
+    EXPECT_EQ(preview.counts().made, 0);
+    EXPECT_GE(preview.counts().failed, 2);
+    EXPECT_EQ(told, 1);
+}
+
+}  // namespace
+}  // namespace stipple
