@@ -24,6 +24,7 @@
 #include "apps/report/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
+#include "capture/recording/recording_reader.h"
 #include "capture/recording/replay_camera.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
@@ -52,13 +53,15 @@ std::string new_recording_name() {
 }
 
 /// What the stream says of where its light came from: no address, no time.
-FootageOrigin origin_of(const LiveArguments& arguments, const CameraDescription& camera) {
-    FootageOrigin origin{.name = camera.model};
-    if (is_replay(arguments.camera))
-        origin = origin_of(std::string(replayed_file(arguments.camera.address)), FootageOptions{},
-                           [] { throw_if_stopped(); });
-    else
+FootageOrigin origin_of(const LiveArguments& arguments, const LiveCamera& camera) {
+    FootageOrigin origin{.name = camera.description().model};
+    if (is_replay(arguments.camera)) {
+        const std::string file(replayed_file(arguments.camera.address));
+        origin = origin_of(file, FootageOptions{}, [] { throw_if_stopped(); });
+        if (!is_recording(file)) origin.pixel_format = camera.layout().format->name;
+    } else {
         origin.recording = new_recording_name();
+    }
     origin.black_level_dn = arguments.black_level_dn;
     return origin;
 }
@@ -158,8 +161,8 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
         camera_options(arguments));
     const FrameLight to_light(camera.layout(), arguments.black_level_dn);
     const SensorSetup setup = set_up_sensor(arguments.sensor, to_light.shape(), to_light.filter());
-    StreamRecorder recorder = open_stream_output(arguments.output, run, setup,
-                                                 origin_of(arguments, camera.description()));
+    StreamRecorder recorder =
+        open_stream_output(arguments.output, run, setup, origin_of(arguments, camera));
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
     std::optional<LivePreview> preview;

@@ -62,6 +62,7 @@ toml::table footage_table(const FootageOrigin& footage) {
                       {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
+    if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
     if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
     return table;
@@ -163,8 +164,9 @@ std::string command_of(const std::string& provenance) {
     const toml::table table = table_of(provenance);
     const auto footage = table["footage"];
     std::string name = text_of(footage["name"]);
-    // Light of a camera, and what was taken off it, is in no file that `emulate` reads.
-    if (name.empty() || !footage["sha256"] || footage["black_level_dn"] || !table["options"])
+    // `emulate` has no options for a camera, its pixel format and its black level.
+    if (name.empty() || !footage["sha256"] || footage["pixel_format"] ||
+        footage["black_level_dn"] || !table["options"])
         return {};
     if (name.starts_with('-')) name.insert(0, "./");
     std::string command =

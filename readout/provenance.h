@@ -13,6 +13,7 @@ struct FootageOrigin {
     std::string name = {};       ///< without folders
     std::string sha256 = {};     ///< of its files, concatenated; empty without files
     std::string recording = {};  ///< random, unique per run of a camera; empty for files
+    std::string pixel_format = {};  ///< of the camera that replays footage; empty otherwise
     FootageOptions reading = {};
     double black_level_dn = 0;  ///< subtracted from the input
 };

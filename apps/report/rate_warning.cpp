@@ -33,8 +33,8 @@ std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sen
     const auto hz = other_rate(frames, sensor);
     if (!hz) return {};
     return fmt::format(
-        "the camera sends {:.4g} frames/s, but {}: times in the stream are wrong. Set "
-        "AcquisitionFrameRate={:.4g} of the camera, or slot_us={:.5g} of the sensor",
+        "the camera sends {:.4g} frames/s, but {}: times in the stream are wrong; "
+        "use --set camera.AcquisitionFrameRate={:.4g} or --set sensor.slot_us={:.5g}",
         *hz, slot_text(sensor), 1e6 / sensor.slot_us, 1e6 / *hz);
 }
 
@@ -43,8 +43,8 @@ std::string recording_rate_warning(const std::string& file, const FrameRate& fra
     const auto hz = other_rate(frames, sensor);
     if (!hz) return {};
     return fmt::format(
-        "{}: the camera sent {:.4g} frames/s, but {}: times in the stream are wrong. Set "
-        "slot_us={:.5g} of the sensor",
+        "{}: the camera sent {:.4g} frames/s, but {}: times in the stream are wrong; "
+        "use --set sensor.slot_us={:.5g}",
         file, *hz, slot_text(sensor), 1e6 / *hz);
 }
 
@@ -53,7 +53,7 @@ std::string film_rate_warning(const std::string& file, double frames_hz,
     if (agree(frames_hz, sensor)) return {};
     return fmt::format(
         "{}: plays {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "
-        "slot_us={:.5g} of the sensor keeps the speed",
+        "--set sensor.slot_us={:.5g} keeps the speed",
         file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
 }
 

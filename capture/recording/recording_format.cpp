@@ -220,7 +220,7 @@ std::string decode_frame_record(std::span<const std::uint8_t> bytes, std::uint64
     const auto cause = fields.take<std::uint8_t>();
     const auto status = fields.take<std::uint8_t>();
     const auto stamp_source = fields.take<std::uint8_t>();
-    if (cause >= kGapCauseNames.size() || status > 3 || stamp_source > 3)
+    if (cause >= kGapCauseNames.size() || status > 3 || stamp_source > 4)
         return "a cause, status or clock that is not known";
     record.cause = static_cast<GapCause>(cause);
     record.status = static_cast<FrameStatus>(status);

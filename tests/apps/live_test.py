@@ -85,6 +85,18 @@ class PreviewTest(LiveTest):
         self.live("light.npy", *FAST)
         self.assertEqual(clip.read_bytes(), with_preview)
 
+    def test_a_replay_of_footage_is_no_emulation_of_it(self):
+        """The replay quantises light to Mono16, so `emulate` makes other bytes: the header says so."""
+        self.write_array("light.npy", moving_light(12))
+        self.live("light.npy", *FAST)
+        info = self.figures("info", "clip.stipple")
+        self.assertIn('pixel_format = "Mono16"', info["provenance"].replace("'", '"'))
+        self.assertIsNone(info["command"])
+        self.succeed("capture", "record", "replay:light.npy", "-o", "light.strec", *FAST)
+        self.live("light.strec", *FAST)
+        self.assertEqual(self.figures("info", "clip.stipple")["command"],
+                         "stipple emulate light.strec -o again.stipple")
+
     def test_the_picture_is_replaced_while_the_recording_goes_on(self):
         program = self.start_loop("--preview", "now.png", "--preview-method", "naive")
         picture = self.folder / "now.png"
@@ -169,8 +181,8 @@ class RateTest(LiveTest):
     def test_frames_that_come_at_another_rate_than_slots_are_said(self):
         slow = ("--set", "camera.AcquisitionFrameRate=160", "--buffers", "1024")
         said, frames_hz, slots_hz = self.warning(*slow)
-        for part in ("sends 160 frames/s", "5000 us (200 a second)", "AcquisitionFrameRate=200",
-                     "slot_us=6250"):
+        for part in ("sends 160 frames/s", "5000 us (200 a second)", "--set camera.AcquisitionFrameRate=200",
+                     "--set sensor.slot_us=6250"):
             self.assertIn(part, said)
         self.assertAlmostEqual(frames_hz, 160, places=3)
         self.assertEqual(slots_hz, 200)

@@ -86,7 +86,7 @@ class RecordingTest(ProgramTest):
                 self.assertEqual(done.stderr, "")
                 continue
             for part in ("film.strec: the camera sent 50 frames/s", "takes 5000 us (200 a second)",
-                         "slot_us=20000"):
+                         "--set sensor.slot_us=20000"):
                 self.assertIn(part, done.stderr)
 
     def test_the_emulator_says_that_a_film_has_another_rate_than_slots(self):
@@ -95,7 +95,7 @@ class RecordingTest(ProgramTest):
         done = self.run_program(*emulate)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        for part in ("film.mp4: plays 30 frames/s", "6.67 times as fast", "slot_us=33333"):
+        for part in ("film.mp4: plays 30 frames/s", "6.67 times as fast", "--set sensor.slot_us=33333"):
             self.assertIn(part, done.stderr)
         self.assertEqual(self.run_program(*emulate, "--set", "sensor.slot_us=33333").stderr, "")
 

@@ -91,6 +91,17 @@ TEST(RecordingTest, AFrameWithTooManyHolesKeepsThemAllInTheLast) {
     EXPECT_EQ(frames[0].holes.back().second, frame.holes.back().second);
 }
 
+TEST(RecordingTest, EachClockOfAStampIsRead) {
+    const TemporaryFolder folder;
+    auto frames = test_frames(5);
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        frames[i].record.stamp_source = static_cast<StampSource>(i);
+    ASSERT_EQ(frames.back().record.stamp_source, StampSource::kUnnamedClock);
+    write_recording(folder / "a", frames);
+    RecordingReader reader(folder / "a");
+    EXPECT_TRUE(same(read_frames(reader), frames));
+}
+
 TEST(RecordingTest, ItCanBeReadTwice) {
     const TemporaryFolder folder;
     write_recording(folder / "a", test_frames(3));
