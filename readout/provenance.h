@@ -10,9 +10,9 @@ namespace stipple {
 
 /// Source of the light and reading options, as the provenance of a stream names them.
 struct FootageOrigin {
-    std::string name = {};       ///< without folders
-    std::string sha256 = {};     ///< of its files, concatenated; empty without files
-    std::string recording = {};  ///< random, unique per run of a camera; empty for files
+    std::string name = {};          ///< without folders
+    std::string sha256 = {};        ///< of its files, concatenated; empty without files
+    std::string recording = {};     ///< random, unique per run of a camera; empty for files
     std::string pixel_format = {};  ///< of the camera that replays footage; empty otherwise
     FootageOptions reading = {};
     double black_level_dn = 0;  ///< subtracted from the input

@@ -54,6 +54,11 @@ class ExamplesTest(unittest.TestCase):
                                   "--method", "portz2013", env=os.environ | {"LD_DEBUG": "files"})
         self.assertRegex(loaded, f"calling init: {self.prefix}/.*/stipple/libstipple_opencv.so")
 
+    def test_manual_pages_and_completions_are_installed(self):
+        for name in ("man/man1/stipple-capture-record.1", "bash-completion/completions/stipple",
+                     "zsh/vendor-completions/_stipple", "fish/vendor_completions.d/stipple.fish"):
+            self.assertGreater((self.prefix / "share" / name).stat().st_size, 1000)
+
     def test_emulate_and_decode_are_those_of_the_program(self):
         self.example("emulate_decode", "clip.npy", "light.npy")
         self.program("emulate", "clip.npy", "-o", "program.stipple", "--sensor", "lux1310")
