@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cstddef>
 
-#include "capture/pixel_unpack.h"
+#include "capture/frame_unpack.h"
 #include "core/error.h"
 
 namespace stipple {

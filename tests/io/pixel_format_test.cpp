@@ -1,12 +1,12 @@
-#include "capture/pixel_format.h"
+#include "io/pixel_format.h"
 
 #include <gtest/gtest.h>
 #include <linux/videodev2.h>
 
 #include <set>
 
-#include "capture/pixel_unpack.h"
 #include "core/philox.h"
+#include "io/pixel_unpack.h"
 
 namespace stipple {
 namespace {
@@ -173,15 +173,6 @@ TEST(PixelFormatTest, CodesOfV4l2AreThoseOfTheKernel) {
         ASSERT_NE(pixel_format_named(name), nullptr) << name;
         EXPECT_EQ(pixel_format_named(name)->v4l2, code) << name;
     }
-}
-
-TEST(PixelFormatTest, RowsOfAFrameAreStrideApartAndWhatIsCutOffIsZero) {
-    FrameLayout layout{
-        .format = pixel_format_named("Mono12p"), .width = 2, .height = 3, .stride_bytes = 5};
-    const Bytes payload{0x23, 0x61, 0x45, 9, 9, 0x23, 0x61, 0x45, 9, 9, 0x23};
-    Samples samples;
-    unpack_frame(layout, payload, samples);
-    EXPECT_EQ(samples, (Samples{0x123, 0x456, 0x123, 0x456, 0x023, 0}));
 }
 
 }  // namespace

@@ -2,9 +2,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "capture/frame_record.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 
@@ -14,10 +13,5 @@ namespace stipple {
 /// format.row_bytes(samples.size() / planes).
 void unpack_row(const PixelFormat& format, std::span<const std::uint8_t> row,
                 std::span<std::uint16_t> samples) noexcept;
-
-/// The samples of a frame by row, column and plane; `samples` is resized. What `payload` is too
-/// short for is 0.
-void unpack_frame(const FrameLayout& layout, std::span<const std::uint8_t> payload,
-                  std::vector<std::uint16_t>& samples);
 
 }  // namespace stipple
