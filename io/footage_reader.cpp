@@ -11,10 +11,12 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "io/cine_file.h"
 #include "io/footage_files.h"
 #include "io/footage_warnings.h"
 #include "io/image_file.h"
 #include "io/npy_reader.h"
+#include "io/raw_video.h"
 #include "io/tiff_file.h"
 #include "io/video_reader.h"
 
@@ -74,7 +76,7 @@ class ImageSequence {
     FrameShape shape_;
 };
 
-using Source = std::variant<ImageSequence, NpyReader, VideoReader>;
+using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader>;
 
 /// Why a file of this extension is no footage.
 const char* not_footage(const std::string& extension) {
@@ -83,10 +85,11 @@ const char* not_footage(const std::string& extension) {
     if (extension == ".strec")
         return "is no recording of a camera: it is empty, or does not begin as one";
     return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
-           "pictures, a video file, or .npy";
+           "pictures, a video file, or .npy; a file without a header needs --raw";
 }
 
-Source open_source(const fs::path& source) {
+Source open_source(const fs::path& source, const FootageOptions& options) {
+    if (options.raw) return RawVideoReader(open_raw_file(source, *options.raw));
     const std::string name = source.string();
     std::error_code error;
     const auto status = fs::status(source, error);
@@ -99,6 +102,7 @@ Source open_source(const fs::path& source) {
                                    : "there is no such file or folder");
     }
     if (lower_extension(source) == ".npy") return NpyReader(source);
+    if (lower_extension(source) == ".cine") return RawVideoReader(open_cine(source));
     if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
     if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
     if (is_video_name(source)) return VideoReader(source);
@@ -125,14 +129,22 @@ struct FootageReader::Impl {
 };
 
 FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
-    : source(open_source(path)), options(wanted) {
+    : source(open_source(path, wanted)), options(wanted) {
     source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
     if (reduces()) colour.resize(source_shape.sites());
     if (const auto* images = std::get_if<ImageSequence>(&source)) {
         traits = images->traits();
         warn(images->warning());
     }
-    if (const auto* video = std::get_if<VideoReader>(&source)) traits = video->traits();
+    if (const auto* raw = std::get_if<RawVideoReader>(&source)) traits = raw->traits();
+    if (const auto* video = std::get_if<VideoReader>(&source)) {
+        traits = video->traits();
+        traits.frames_hz = video->film_hz();
+    }
+    if (options.luminance && traits.filter != ColourFilter::kNone)
+        throw InputError(path.string(),
+                         "is the mosaic of a colour filter array, of which there is "
+                         "no --luminance");
     for (std::string& text : reading_warnings(traits, options, path.string()))
         warn(std::move(text));
 }
@@ -153,12 +165,16 @@ FrameShape FootageReader::shape() const {
 std::optional<int> FootageReader::slots() const {
     if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->slots();
     if (const auto* npy = std::get_if<NpyReader>(&impl_->source)) return npy->slots();
+    if (const auto* raw = std::get_if<RawVideoReader>(&impl_->source)) return raw->slots();
     return std::nullopt;
 }
 
 std::optional<double> FootageReader::film_hz() const {
-    const auto* video = std::get_if<VideoReader>(&impl_->source);
-    return video == nullptr ? std::nullopt : video->film_hz();
+    return impl_->traits.frames_hz;
+}
+
+ColourFilter FootageReader::filter() const {
+    return impl_->traits.filter;
 }
 
 bool FootageReader::gamma_coded() const {

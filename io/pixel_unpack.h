@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "io/pixel_format.h"
 
@@ -13,5 +14,10 @@ namespace stipple {
 /// format.row_bytes(samples.size() / planes).
 void unpack_row(const PixelFormat& format, std::span<const std::uint8_t> row,
                 std::span<std::uint16_t> samples) noexcept;
+
+/// The light of each number that a sample can hold: max(0, DN - black) / (white - black).
+/// Precondition: black_dn < white_dn.
+[[nodiscard]] std::vector<float> light_table(const PixelFormat& format, double black_dn,
+                                             double white_dn);
 
 }  // namespace stipple
