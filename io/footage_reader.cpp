@@ -12,10 +12,12 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "io/cine_file.h"
+#include "io/fits_reader.h"
 #include "io/footage_files.h"
 #include "io/footage_warnings.h"
 #include "io/image_file.h"
 #include "io/npy_reader.h"
+#include "io/photron_file.h"
 #include "io/raw_video.h"
 #include "io/tiff_file.h"
 #include "io/video_reader.h"
@@ -76,7 +78,7 @@ class ImageSequence {
     FrameShape shape_;
 };
 
-using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader>;
+using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
 
 /// Why a file of this extension is no footage.
 const char* not_footage(const std::string& extension) {
@@ -85,7 +87,7 @@ const char* not_footage(const std::string& extension) {
     if (extension == ".strec")
         return "is no recording of a camera: it is empty, or does not begin as one";
     return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
-           "pictures, a video file, or .npy; a file without a header needs --raw";
+           "pictures, a video or camera file, or .npy; a file without a header needs --raw";
 }
 
 Source open_source(const fs::path& source, const FootageOptions& options) {
@@ -103,6 +105,8 @@ Source open_source(const fs::path& source, const FootageOptions& options) {
     }
     if (lower_extension(source) == ".npy") return NpyReader(source);
     if (lower_extension(source) == ".cine") return RawVideoReader(open_cine(source));
+    if (is_fits_name(source)) return FitsReader(source);
+    if (is_photron_name(source)) return RawVideoReader(open_photron(source));
     if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
     if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
     if (is_video_name(source)) return VideoReader(source);
@@ -137,6 +141,7 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         warn(images->warning());
     }
     if (const auto* raw = std::get_if<RawVideoReader>(&source)) traits = raw->traits();
+    if (const auto* fits = std::get_if<FitsReader>(&source)) traits = fits->traits();
     if (const auto* video = std::get_if<VideoReader>(&source)) {
         traits = video->traits();
         traits.frames_hz = video->film_hz();
@@ -166,6 +171,7 @@ std::optional<int> FootageReader::slots() const {
     if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->slots();
     if (const auto* npy = std::get_if<NpyReader>(&impl_->source)) return npy->slots();
     if (const auto* raw = std::get_if<RawVideoReader>(&impl_->source)) return raw->slots();
+    if (const auto* fits = std::get_if<FitsReader>(&impl_->source)) return fits->slots();
     return std::nullopt;
 }
 
