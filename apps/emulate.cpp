@@ -84,7 +84,8 @@ void add_emulate(Command& app, Action& action) {
     command
         .add_option(
             "FOOTAGE", options->footage,
-            "folder or printf pattern of PNG, TIFF or EXR, video file, .npy, or a recording")
+            "folder or printf pattern of PNG, TIFF, EXR or DNG, video or camera file, .npy, or a "
+            "recording")
         .required()
         .input();
     command.add_option("-o,--output", options->output, "sample stream")

@@ -165,7 +165,7 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     if (!header.text("BAYERPAT").empty())
         throw InputError(file_.name(),
                          "is a mosaic (BAYERPAT), whose first row FITS does not fix; "
-                         "give it with --raw, which names the mosaic");
+                         "convert it to DNG");
     data_offset_ = header.bytes();
     const std::uint64_t frame_bytes =
         shape_.pixels() * static_cast<std::uint64_t>(std::abs(bits_) / 8);

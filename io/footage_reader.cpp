@@ -58,6 +58,8 @@ class ImageSequence {
                                                   picture_.shape.rows, picture_.shape.cols,
                                                   picture_.shape.planes, shape_.rows, shape_.cols,
                                                   shape_.planes));
+        if (picture_.traits.filter != traits_.filter)
+            throw InputError(place(), "has another colour filter array than the first frame");
         std::copy(picture_.values.begin(), picture_.values.end(), frame.begin());
         return true;
     }
@@ -86,7 +88,7 @@ const char* not_footage(const std::string& extension) {
         return "is a sample stream, not footage; \"stipple decode\" makes video of it";
     if (extension == ".strec")
         return "is no recording of a camera: it is empty, or does not begin as one";
-    return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
+    return "is no footage by its extension; give a folder or pattern of PNG, TIFF, EXR or DNG "
            "pictures, a video or camera file, or .npy; a file without a header needs --raw";
 }
 

@@ -23,9 +23,9 @@ struct FootageOptions {
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.
-/// Sources: a folder or a printf pattern of PNG, TIFF or EXR files (in numeric order of names), a
-/// TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3) with dtype
-/// u1, u2, f2, f4 or f8, or a file of frames without a header.
+/// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
+/// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3)
+/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.

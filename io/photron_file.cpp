@@ -191,10 +191,10 @@ bool is_photron_name(const fs::path& file) {
 }
 
 PhotronFiles photron_files(const fs::path& file) {
-    constexpr std::array<const char*, 2> kFrames{".mraw", ".MRAW"};
+    constexpr std::array<const char*, 2> kFrameFiles{".mraw", ".MRAW"};
     constexpr std::array<const char*, 4> kHeaders{".cihx", ".cih", ".CIHX", ".CIH"};
     if (lower_extension(file) == ".mraw") return {beside(file, kHeaders), file};
-    return {file, beside(file, kFrames)};
+    return {file, beside(file, kFrameFiles)};
 }
 
 RawVideo open_photron(const fs::path& file) {
