@@ -138,16 +138,13 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
     : source(open_source(path, wanted)), options(wanted) {
     source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
     if (reduces()) colour.resize(source_shape.sites());
-    if (const auto* images = std::get_if<ImageSequence>(&source)) {
-        traits = images->traits();
-        warn(images->warning());
-    }
-    if (const auto* raw = std::get_if<RawVideoReader>(&source)) traits = raw->traits();
-    if (const auto* fits = std::get_if<FitsReader>(&source)) traits = fits->traits();
-    if (const auto* video = std::get_if<VideoReader>(&source)) {
-        traits = video->traits();
-        traits.frames_hz = video->film_hz();
-    }
+    std::visit(
+        [this](const auto& s) {
+            if constexpr (requires { s.traits(); }) traits = s.traits();
+        },
+        source);
+    if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
+    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->film_hz();
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
                          "is the mosaic of a colour filter array, of which there is "
@@ -170,11 +167,11 @@ FrameShape FootageReader::shape() const {
 }
 
 std::optional<int> FootageReader::slots() const {
-    if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->slots();
-    if (const auto* npy = std::get_if<NpyReader>(&impl_->source)) return npy->slots();
-    if (const auto* raw = std::get_if<RawVideoReader>(&impl_->source)) return raw->slots();
-    if (const auto* fits = std::get_if<FitsReader>(&impl_->source)) return fits->slots();
-    return std::nullopt;
+    const auto slots_of = [](const auto& source) -> std::optional<int> {
+        if constexpr (requires { source.slots(); }) return source.slots();
+        return std::nullopt;
+    };
+    return std::visit(slots_of, impl_->source);
 }
 
 std::optional<double> FootageReader::film_hz() const {
