@@ -107,6 +107,7 @@ void add_emulate(Command& app, Action& action) {
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
+        "  stipple emulate clip.raw --raw 1280x1024:bayergr16:hz=1057 -o clip.stipple\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");
     set_action(command, action, options, emulate);

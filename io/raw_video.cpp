@@ -70,8 +70,11 @@ bool RawVideoReader::read(std::span<float> frame) {
         const std::size_t stored = video_.bottom_up ? rows - 1 - row : row;
         unpack_row(video_.format, std::span(bytes_).subspan(stored * row_bytes, row_bytes),
                    samples_);
-        for (std::size_t i = 0; i < samples_.size(); ++i)
-            frame[(i % planes * rows + row) * cols + i / planes] = video_.light_of_dn[samples_[i]];
+        for (std::size_t plane = 0; plane < planes; ++plane) {
+            float* const light = &frame[(plane * rows + row) * cols];
+            for (std::size_t col = 0; col < cols; ++col)
+                light[col] = video_.light_of_dn[samples_[col * planes + plane]];
+        }
     }
     return true;
 }
