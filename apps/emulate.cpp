@@ -96,7 +96,8 @@ void add_emulate(Command& app, Action& action) {
     command
         .add_option(
             "FOOTAGE", options->footage,
-            "folder or printf pattern of PNG, TIFF or EXR, video file, .npy, or a recording")
+            "folder or printf pattern of PNG, TIFF, EXR or DNG, video or camera file, .npy, or a "
+            "recording")
         .required()
         .input();
     command.add_option("-o,--output", options->output, "sample stream")
@@ -118,6 +119,7 @@ void add_emulate(Command& app, Action& action) {
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
+        "  stipple emulate clip.raw --raw 1280x1024:bayergr16:hz=1057 -o clip.stipple\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");
     set_action(command, action, options, emulate);

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "capture/pixel_format.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 

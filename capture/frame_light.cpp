@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
 
-#include "capture/pixel_unpack.h"
+#include "capture/frame_unpack.h"
 #include "core/error.h"
+#include "io/pixel_unpack.h"
 
 namespace stipple {
 
@@ -17,12 +17,7 @@ FrameLight::FrameLight(const FrameLayout& layout, double black_level_dn)
     if (!(black_level_dn >= 0 && black_level_dn < full_scale))
         throw InputError("black level", fmt::format("{} DN is outside 0..{} of {}", black_level_dn,
                                                     full_scale, layout.format->name));
-    // Devices may set bits that should be 0: a table for all that 16 bits hold.
-    light_of_dn_.resize(layout.format->significant_bits == 8 ? 256 : 65536);
-    for (std::size_t dn = 0; dn < light_of_dn_.size(); ++dn)
-        light_of_dn_[dn] =
-            static_cast<float>(std::max(0.0, static_cast<double>(dn) - black_level_dn) /
-                               (full_scale - black_level_dn));
+    light_of_dn_ = light_table(*layout.format, black_level_dn, full_scale);
 }
 
 void FrameLight::convert(std::span<const std::uint8_t> payload, std::span<float> light) {

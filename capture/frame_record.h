@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "capture/pixel_format.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 

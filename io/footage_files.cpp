@@ -155,6 +155,7 @@ ImageFormat image_format(const fs::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".png") return ImageFormat::kPng;
     if (extension == ".tif" || extension == ".tiff") return ImageFormat::kTiff;
+    if (extension == ".dng") return ImageFormat::kDng;
     return extension == ".exr" ? ImageFormat::kExr : ImageFormat::kNone;
 }
 
@@ -181,7 +182,7 @@ ImageFiles images_in_folder(const fs::path& folder) {
         return file.filename().string().starts_with('.') ||
                image_format(file) == ImageFormat::kNone;
     });
-    if (files.empty()) throw InputError(folder.string(), "holds no PNG, TIFF or EXR pictures");
+    if (files.empty()) throw InputError(folder.string(), "holds no PNG, TIFF, EXR or DNG pictures");
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         return numerically_before(a.filename().string(), b.filename().string());
     });
@@ -198,7 +199,7 @@ ImageFiles images_in_folder(const fs::path& folder) {
 ImageFiles images_of_pattern(const fs::path& pattern) {
     const Pattern names(pattern);
     if (image_format(pattern) == ImageFormat::kNone)
-        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF or EXR pictures");
+        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG pictures");
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::map<std::int64_t, fs::path> found;
     std::vector<std::string> left_out;

@@ -7,7 +7,7 @@
 
 namespace stipple {
 
-enum class ImageFormat { kNone, kPng, kTiff, kExr };
+enum class ImageFormat { kNone, kPng, kTiff, kExr, kDng };
 
 /// Format of an image by its extension, in upper or lower case.
 [[nodiscard]] ImageFormat image_format(const std::filesystem::path& file);

@@ -11,10 +11,14 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "io/cine_file.h"
+#include "io/fits_reader.h"
 #include "io/footage_files.h"
 #include "io/footage_warnings.h"
 #include "io/image_file.h"
 #include "io/npy_reader.h"
+#include "io/photron_file.h"
+#include "io/raw_video.h"
 #include "io/tiff_file.h"
 #include "io/video_reader.h"
 
@@ -54,6 +58,8 @@ class ImageSequence {
                                                   picture_.shape.rows, picture_.shape.cols,
                                                   picture_.shape.planes, shape_.rows, shape_.cols,
                                                   shape_.planes));
+        if (picture_.traits.filter != traits_.filter)
+            throw InputError(place(), "has another colour filter array than the first frame");
         std::copy(picture_.values.begin(), picture_.values.end(), frame.begin());
         return true;
     }
@@ -74,7 +80,7 @@ class ImageSequence {
     FrameShape shape_;
 };
 
-using Source = std::variant<ImageSequence, NpyReader, VideoReader>;
+using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
 
 /// Why a file of this extension is no footage.
 const char* not_footage(const std::string& extension) {
@@ -82,11 +88,12 @@ const char* not_footage(const std::string& extension) {
         return "is a sample stream, not footage; \"stipple decode\" makes video of it";
     if (extension == ".strec")
         return "is no recording of a camera: it is empty, or does not begin as one";
-    return "is no footage by its extension; give a folder or pattern of PNG, TIFF or EXR "
-           "pictures, a video file, or .npy";
+    return "is no footage by its extension; give a folder or pattern of PNG, TIFF, EXR or DNG "
+           "pictures, a video or camera file, or .npy; a file without a header needs --raw";
 }
 
-Source open_source(const fs::path& source) {
+Source open_source(const fs::path& source, const FootageOptions& options) {
+    if (options.raw) return RawVideoReader(open_raw_file(source, *options.raw));
     const std::string name = source.string();
     std::error_code error;
     const auto status = fs::status(source, error);
@@ -99,6 +106,9 @@ Source open_source(const fs::path& source) {
                                    : "there is no such file or folder");
     }
     if (lower_extension(source) == ".npy") return NpyReader(source);
+    if (lower_extension(source) == ".cine") return RawVideoReader(open_cine(source));
+    if (is_fits_name(source)) return FitsReader(source);
+    if (is_photron_name(source)) return RawVideoReader(open_photron(source));
     if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
     if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
     if (is_video_name(source)) return VideoReader(source);
@@ -125,14 +135,20 @@ struct FootageReader::Impl {
 };
 
 FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
-    : source(open_source(path)), options(wanted) {
+    : source(open_source(path, wanted)), options(wanted) {
     source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
     if (reduces()) colour.resize(source_shape.sites());
-    if (const auto* images = std::get_if<ImageSequence>(&source)) {
-        traits = images->traits();
-        warn(images->warning());
-    }
-    if (const auto* video = std::get_if<VideoReader>(&source)) traits = video->traits();
+    std::visit(
+        [this](const auto& s) {
+            if constexpr (requires { s.traits(); }) traits = s.traits();
+        },
+        source);
+    if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
+    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->film_hz();
+    if (options.luminance && traits.filter != ColourFilter::kNone)
+        throw InputError(path.string(),
+                         "is the mosaic of a colour filter array, of which there is "
+                         "no --luminance");
     for (std::string& text : reading_warnings(traits, options, path.string()))
         warn(std::move(text));
 }
@@ -151,14 +167,19 @@ FrameShape FootageReader::shape() const {
 }
 
 std::optional<int> FootageReader::slots() const {
-    if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->slots();
-    if (const auto* npy = std::get_if<NpyReader>(&impl_->source)) return npy->slots();
-    return std::nullopt;
+    const auto slots_of = [](const auto& source) -> std::optional<int> {
+        if constexpr (requires { source.slots(); }) return source.slots();
+        return std::nullopt;
+    };
+    return std::visit(slots_of, impl_->source);
 }
 
 std::optional<double> FootageReader::film_hz() const {
-    const auto* video = std::get_if<VideoReader>(&impl_->source);
-    return video == nullptr ? std::nullopt : video->film_hz();
+    return impl_->traits.frames_hz;
+}
+
+ColourFilter FootageReader::filter() const {
+    return impl_->traits.filter;
 }
 
 bool FootageReader::gamma_coded() const {

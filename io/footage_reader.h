@@ -7,22 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/light.h"
+#include "io/raw_format.h"
 
 namespace stipple {
 
 struct FootageOptions {
     std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
-    bool luminance = false;           ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
-    std::optional<double> max_value;  ///< clip light to this value
+    bool luminance = false;             ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
+    std::optional<double> max_value;    ///< clip light to this value
+    std::optional<RawFormat> raw = {};  ///< read a file without a header so, whatever its name
 };
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.
-/// Sources: a folder or a printf pattern of PNG, TIFF or EXR files (in numeric order of names), a
-/// TIFF file of one or more pages, a video file, or a .npy of shape (T,H,W) or (T,H,W,3) with dtype
-/// u1, u2, f2, f4 or f8.
+/// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
+/// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3)
+/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.
@@ -36,8 +39,10 @@ class FootageReader {
     /// Number of frames where the source tells; a video file may not.
     [[nodiscard]] std::optional<int> slots() const;
 
-    /// Frames a second at which a video file plays, if it tells.
+    /// Frames a second at which a video plays or a camera took them, if the source tells.
     [[nodiscard]] std::optional<double> film_hz() const;
+    /// Whose mosaic the frames are.
+    [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.
     [[nodiscard]] bool gamma_coded() const;
     /// What the user should know of the source and of its reading that is new since the last call.

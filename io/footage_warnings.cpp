@@ -25,6 +25,13 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
             fmt::format("{}: holds floating-point numbers, which are linear light as "
                         "a rule; --transfer {} bends them",
                         name, transfer == Transfer::kSrgb ? "srgb" : "gamma22"));
+    constexpr double kMicrosecondsASecond = 1e6;
+    const double period_us = kMicrosecondsASecond / traits.frames_hz.value_or(0);
+    if (traits.frames_hz && traits.exposure_us && *traits.exposure_us < period_us / 2)
+        warnings.push_back(
+            fmt::format("{}: its frames were exposed for {:.4g} of {:.4g} us each; "
+                        "the light of the time between is not in them",
+                        name, *traits.exposure_us, period_us));
     if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");
     return warnings;
 }

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/light.h"
+#include "io/dng_file.h"
 #include "io/exr_file.h"
 #include "io/footage_files.h"
 #include "io/interleaved.h"
@@ -61,10 +62,13 @@ void read_image(const std::filesystem::path& file, Picture& picture) {
             return to_picture(read_single_tiff(file), picture);
         case ImageFormat::kExr:
             return read_exr(file, picture);
+        case ImageFormat::kDng:
+            return read_dng(file, picture);
         case ImageFormat::kNone:
             break;
     }
-    throw InputError(file.string(), "is not a picture that can be read; give PNG, TIFF or EXR");
+    throw InputError(file.string(),
+                     "is not a picture that can be read; give PNG, TIFF, EXR or DNG");
 }
 
 void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame) {

@@ -9,9 +9,9 @@
 
 namespace stipple {
 
-/// Reads a .png, .tif, .tiff or .exr file (by extension) into `picture`, a TIFF file of one page.
-/// \throws InputError naming the file, and the offset where known, if it is missing, unreadable,
-/// truncated, or neither mono nor RGB.
+/// Reads a .png, .tif, .tiff, .exr or .dng file (by extension) into `picture`, a TIFF file of one
+/// page. \throws InputError naming the file, and the offset where known, if it is missing,
+/// unreadable, truncated, or neither mono nor RGB.
 void read_image(const std::filesystem::path& file, Picture& picture);
 
 /// A page of a TIFF file.

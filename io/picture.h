@@ -1,19 +1,24 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/colour_filter.h"
 #include "core/geometry.h"
 
 namespace stipple {
 
-/// What a picture or a video says of its numbers.
+/// What a picture or a video says of its numbers, and of the camera that took it.
 struct SourceTraits {
     bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
     bool floating = false;
     bool has_alpha = false;  ///< which is left out
     std::string hdr_curve =
         {};  ///< of HDR video that declares it: "smpte2084" (PQ), "arib-std-b67"
+    ColourFilter filter = ColourFilter::kNone;  ///< whose mosaic its one plane is
+    std::optional<double> frames_hz = {};       ///< at which frames play or were taken
+    std::optional<double> exposure_us = {};     ///< of a frame
 };
 
 /// One decoded picture, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),

@@ -4,42 +4,18 @@
 #include <tiffio.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdarg>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "core/error.h"
-#include "core/input_file.h"
 #include "core/light.h"
 #include "core/memory_limit.h"
+#include "io/tiff_handle.h"
 
 namespace stipple {
 namespace {
-
-/// Keeps the first message of libtiff, which would go to standard error.
-int keep_message(TIFF* /*tiff*/, void* first, const char* /*module*/, const char* format,
-                 va_list arguments) {
-    auto& text = *static_cast<std::string*>(first);
-    char line[200] = {};
-    std::vsnprintf(line, sizeof(line), format, arguments);
-    if (text.empty()) text = line;
-    return 1;
-}
-
-int drop_message(TIFF* /*tiff*/, void* /*data*/, const char* /*module*/, const char* /*format*/,
-                 va_list /*arguments*/) {
-    return 1;
-}
-
-struct Closer {
-    void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
 
 /// How a page is laid out.
 struct Page {
@@ -200,19 +176,6 @@ TiffPixels::Sample sample_of(const Page& page) {
     return page.bits == 8 ? TiffPixels::Sample::kU8 : TiffPixels::Sample::kU16;
 }
 
-/// \throws InputError if the file cannot be opened for reading.
-std::uintmax_t checked_file_bytes(const std::filesystem::path& file) {
-    refuse_special(file);
-    errno = 0;
-    if (!std::ifstream(file, std::ios::binary).good())
-        throw InputError(file.string(),
-                         "cannot be read: " + std::generic_category().message(errno));
-    std::error_code error;
-    const auto bytes = std::filesystem::file_size(file, error);
-    if (error) throw InputError(file.string(), "cannot be read: " + error.message());
-    return bytes;
-}
-
 }  // namespace
 
 std::size_t TiffPixels::sample_bytes() const {
@@ -220,17 +183,11 @@ std::size_t TiffPixels::sample_bytes() const {
 }
 
 struct TiffFile::Impl {
-    std::string name;
-    std::string message;  ///< the first one of libtiff on the page
-    std::uintmax_t file_bytes = 0;
-    std::unique_ptr<TIFF, Closer> tiff;
+    TiffHandle file;
     int pages = 1;
     int page = 0;  ///< the one at hand
 
-    [[noreturn]] void fail(const std::string& place) const {
-        throw InputError(place, fmt::format("cannot be decoded{}; it is damaged or ends too early",
-                                            message.empty() ? "" : fmt::format(" ({})", message)));
-    }
+    explicit Impl(const std::filesystem::path& path) : file(path) {}
     bool turn_to(int wanted);
     void check_imagej_pages() const;
 };
@@ -239,8 +196,8 @@ struct TiffFile::Impl {
 bool TiffFile::Impl::turn_to(int wanted) {
     if (wanted == page) return true;
     const bool found = wanted == page + 1
-                           ? TIFFReadDirectory(tiff.get()) != 0
-                           : TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(wanted)) != 0;
+                           ? TIFFReadDirectory(file.get()) != 0
+                           : TIFFSetDirectory(file.get(), static_cast<tdir_t>(wanted)) != 0;
     page = wanted;
     return found;
 }
@@ -249,28 +206,20 @@ bool TiffFile::Impl::turn_to(int wanted) {
 /// follow.
 void TiffFile::Impl::check_imagej_pages() const {
     const char* text = nullptr;
-    if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &text) != 1) return;
+    if (TIFFGetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, &text) != 1) return;
     const std::string_view description(text);
     const auto images = description.find("\nimages=");
     if (!description.starts_with("ImageJ=") || images == std::string_view::npos) return;
     const int announced = std::atoi(text + images + std::string_view("\nimages=").size());
     if (announced > pages)
-        throw InputError(name,
+        throw InputError(file.name(),
                          fmt::format("announces {} pictures, but its directories hold {}; save it "
                                      "from ImageJ as an image sequence",
                                      announced, pages));
 }
 
-TiffFile::TiffFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
-    impl_->name = file.string();
-    impl_->file_bytes = checked_file_bytes(file);
-    TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-    TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &impl_->message);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, drop_message, nullptr);
-    impl_->tiff.reset(TIFFOpenExt(file.c_str(), "rm", options));  // m: not mapped to memory
-    TIFFOpenOptionsFree(options);
-    if (!impl_->tiff) impl_->fail(impl_->name);
-    impl_->pages = static_cast<int>(TIFFNumberOfDirectories(impl_->tiff.get()));
+TiffFile::TiffFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
+    impl_->pages = static_cast<int>(TIFFNumberOfDirectories(impl_->file.get()));
     impl_->check_imagej_pages();
 }
 
@@ -283,13 +232,14 @@ int TiffFile::pages() const {
 }
 
 std::string TiffFile::place(int page) const {
-    return impl_->pages == 1 ? impl_->name : fmt::format("{}: page {}", impl_->name, page);
+    return impl_->pages == 1 ? impl_->file.name()
+                             : fmt::format("{}: page {}", impl_->file.name(), page);
 }
 
 void TiffFile::read(int page, TiffPixels& pixels) {
-    impl_->message.clear();
-    if (!impl_->turn_to(page)) impl_->fail(place(page));
-    TIFF* const tiff = impl_->tiff.get();
+    impl_->file.forget_message();
+    if (!impl_->turn_to(page)) impl_->file.fail(place(page));
+    TIFF* const tiff = impl_->file.get();
     const Page about(tiff);
     const std::string problem = about.problem();
     if (!problem.empty()) throw InputError(place(page), problem);
@@ -297,11 +247,11 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.channels = about.channels;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, place(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
-    check_packed(bytes, impl_->file_bytes, place(page), about.max_packed());
+    check_packed(bytes, impl_->file.file_bytes(), place(page), about.max_packed());
     check_memory(bytes + sizeof(float) * pixels.shape.sites(), place(page), "the picture",
-                 impl_->file_bytes);
+                 impl_->file.file_bytes());
     pixels.bytes.resize(bytes);
-    if (!PageReader(tiff, about, pixels).read()) impl_->fail(place(page));
+    if (!PageReader(tiff, about, pixels).read()) impl_->file.fail(place(page));
     if (about.photometric == PHOTOMETRIC_MINISWHITE)
         for (std::byte& byte : pixels.bytes) byte = ~byte;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -103,6 +104,8 @@ struct VideoDecoder::Impl {
     FfmpegPtr<AVFrame> frame{av_frame_alloc()};
     bool ended = false;  ///< the file, not yet the frames
     int packets = 0;     ///< one a frame, those that an edit list hides too
+    std::uint64_t file_bytes = 0;
+    std::uint64_t packets_end = 0;  ///< byte after the last packet of the video
     double end_s =
         0;  ///< when the last packet, of any stream if only the file has a duration, ends
     std::string shortfall;
@@ -126,8 +129,8 @@ struct VideoDecoder::Impl {
 void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     av_log_set_callback(log_to_decoder);
     name = path.string();
-    const std::uint64_t bytes = input_bytes(path);
-    limit_blocks(bytes);
+    file_bytes = input_bytes(path);
+    limit_blocks(file_bytes);
     file = open_file(name);
     const AVCodec* decoder = nullptr;
     const int index = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
@@ -140,7 +143,7 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     if (announced.width > 0 && announced.height > 0)
         check_memory(kBytesAPixel * static_cast<std::uint64_t>(announced.width) *
                          static_cast<std::uint64_t>(announced.height),
-                     name, "a frame", bytes);
+                     name, "a frame", file_bytes);
     codec.reset(avcodec_alloc_context3(decoder));
     avcodec_parameters_to_context(codec.get(), stream->codecpar);
     codec->opaque = &errors;
@@ -170,6 +173,9 @@ void VideoDecoder::Impl::send_packet() {
 void VideoDecoder::Impl::count_packet() {
     const bool of_video = packet->stream_index == stream->index;
     if (of_video) ++packets;
+    if (of_video && packet->pos >= 0)
+        packets_end =
+            static_cast<std::uint64_t>(packet->pos) + static_cast<std::uint64_t>(packet->size);
     if (packet->pts == AV_NOPTS_VALUE || (stream->duration > 0 && !of_video)) return;
     const AVStream& own = *file->streams[packet->stream_index];
     const std::int64_t first = own.start_time == AV_NOPTS_VALUE ? 0 : own.start_time;
@@ -187,6 +193,11 @@ double VideoDecoder::Impl::announced_s() const {
 void VideoDecoder::Impl::check_end() {
     if (errors.next_frame == 0)
         throw InputError(name, "holds no frame; it is damaged or ends too early");
+    // FFmpeg drops a part of a frame without a word, and .y4m announces no number of frames.
+    const bool is_y4m = std::string_view(file->iformat->name) == "yuv4mpegpipe";
+    if (is_y4m && file_bytes != kEndlessInput && file_bytes > packets_end)
+        throw InputError(name, fmt::format("ends within frame {}; it is truncated or damaged",
+                                           errors.next_frame));
     const bool counts = stream->nb_frames > 0;
     const double announced = counts ? static_cast<double>(stream->nb_frames) : announced_s();
     const double found = counts ? packets : end_s;

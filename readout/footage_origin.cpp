@@ -15,14 +15,19 @@
 
 #include "core/error.h"
 #include "io/footage_files.h"
+#include "io/photron_file.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
 /// The regular files of footage, in the order in which they are read; none of a pipe.
-std::vector<fs::path> files_of(const fs::path& footage) {
+std::vector<fs::path> files_of(const fs::path& footage, const FootageOptions& reading) {
     if (fs::is_directory(footage)) return images_in_folder(footage).files;
+    if (is_photron_name(footage) && !reading.raw) {
+        const PhotronFiles files = photron_files(footage);
+        return {files.header, files.frames};
+    }
     if (fs::is_regular_file(footage)) return {footage};
     return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage).files;
 }
@@ -58,7 +63,7 @@ std::string sha256_of(const std::vector<fs::path>& files, const std::function<vo
 FootageOrigin origin_of(const std::string& footage, const FootageOptions& reading,
                         const std::function<void()>& check) {
     const fs::path path(footage);
-    const auto files = files_of(path);
+    const auto files = files_of(path, reading);
     return {.name = (path.has_filename() ? path : path.parent_path()).filename().string(),
             .sha256 = files.empty() ? "" : sha256_of(files, check),
             .reading = reading};

@@ -62,6 +62,7 @@ toml::table footage_table(const FootageOrigin& footage) {
                       {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
+    if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
     if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
     if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
@@ -111,6 +112,7 @@ std::string options_of(const toml::table& provenance) {
     };
     const SensorChoice defaults;
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
+    if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
     if (const auto most = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *most));

@@ -18,6 +18,17 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
              {"srgb", Transfer::kSrgb}},
             "how the numbers of " + footage + " map to light (linear)")
         .type_name("linear|gamma22|srgb");
+    const auto take_raw = [&options](const std::string& text) {
+        try {
+            options.raw = parse_raw_format(text);
+        } catch (const InputError& e) {
+            throw UsageError("--raw", e.what());
+        }
+    };
+    command
+        .add_parsed("--raw", take_raw,
+                    "read " + footage + " as frames without a header, such as 640x480:mono12p")
+        .type_name("SIZE:FORMAT[:KEY=VALUE]...");
     command.add_flag("--luminance", options.luminance, "Rec. 709 luminance of colour footage");
 }
 
@@ -29,9 +40,9 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
 
 void check_recording_options(const std::string& recording, const FootageOptions& options) {
     if (options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear || options.luminance ||
-        options.max_value)
+        options.max_value || options.raw)
         throw InputError(recording,
-                         "is a recording of a camera, whose numbers are linear: --transfer, "
+                         "is a recording of a camera, whose numbers are linear: --transfer, --raw, "
                          "--luminance and --max-value are for other footage");
 }
 

@@ -10,7 +10,7 @@ namespace stipple {
 
 struct SceneOptions;
 
-/// `--transfer`, of the footage that its help names, and `--luminance`.
+/// `--transfer` and `--raw`, of the footage that its help names, and `--luminance`.
 void add_footage_arguments(Command& command, FootageOptions& options,
                            const std::string& footage = "the footage");
 

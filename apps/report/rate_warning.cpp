@@ -52,7 +52,7 @@ std::string film_rate_warning(const std::string& file, double frames_hz,
                               const SensorParams& sensor) {
     if (agree(frames_hz, sensor)) return {};
     return fmt::format(
-        "{}: plays {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "
+        "{}: has {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "
         "--set sensor.slot_us={:.5g} keeps the speed",
         file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
 }

@@ -4,8 +4,8 @@
 #include "capture/aravis/aravis_device.h"
 #include "capture/doctor/network_doctor.h"
 #include "capture/network.h"
-#include "capture/pixel_format.h"
 #include "core/error.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 namespace {

@@ -57,7 +57,7 @@ std::optional<double> ReadAhead::film_hz() const {
 }
 
 ColourFilter ReadAhead::filter() const {
-    return recording() == nullptr ? ColourFilter::kNone : recording()->filter();
+    return std::visit([](const auto& reader) { return reader.filter(); }, reader_);
 }
 
 const RecordingFootage* ReadAhead::recording() const {

@@ -28,9 +28,9 @@ class ReadAhead {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::optional<int> slots() const;
-    /// Frames a second at which a film plays; of a video file only.
+    /// As FootageReader::film_hz; a recording tells its rate at its end.
     [[nodiscard]] std::optional<double> film_hz() const;
-    /// Whose mosaic the frames are; of a recording only.
+    /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.
     [[nodiscard]] bool gamma_coded() const;

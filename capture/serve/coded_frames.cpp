@@ -11,7 +11,7 @@ CodedFrames::CodedFrames(std::filesystem::path footage, const FootageOrigin& ori
     : footage_(std::move(footage)),
       reading_(origin.reading),
       reader_(footage_, reading_),
-      setup_(set_up_sensor(sensor, reader_.shape())),
+      setup_(set_up_sensor(sensor, reader_.shape(), reader_.filter())),
       header_(coded_header(stream_header_of(setup_, provenance_of(setup_, origin)))),
       image_(coded_image(header_.stream)),
       light_(setup_.footage.sites()) {

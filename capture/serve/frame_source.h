@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture/pixel_format.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 

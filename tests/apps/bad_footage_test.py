@@ -24,7 +24,7 @@ class BadFootageTest(ProgramTest):
 
     def test_a_folder_without_pictures(self):
         (self.folder / "empty").mkdir()
-        self.refuse("empty", "PNG, TIFF or EXR")
+        self.refuse("empty", "PNG, TIFF, EXR or DNG")
 
     def test_an_empty_file(self):
         (self.folder / "light.npy").touch()

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/pixel_unpack.h"
+#include "capture/frame_unpack.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

@@ -60,7 +60,7 @@ TEST(FootageFilesTest, RefusesAFolderWithoutPictures) {
     const TemporaryFolder folder;
     write_text(folder / "f1.jpg", "");
     expect_parts(message_of<InputError>([&] { return images_in_folder(folder.path()); }),
-                 {"holds no PNG, TIFF or EXR"});
+                 {"holds no PNG, TIFF, EXR or DNG"});
 }
 
 TEST(FootageFilesTest, FindsThePicturesOfAPattern) {
@@ -127,7 +127,7 @@ TEST(FootageFilesTest, RefusesMalformedPatternsAndEmptyMatches) {
         expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / name); }),
                      {std::string(name) + ": a pattern needs one %d or %0Nd"});
     expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / "f%d.jpg"); }),
-                 {"stands for PNG, TIFF or EXR"});
+                 {"stands for PNG, TIFF, EXR or DNG"});
     expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / "f%d.png"); }),
                  {"no file matches"});
     expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / "no/f%d.png"); }),

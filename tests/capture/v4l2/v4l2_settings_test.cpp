@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "capture/pixel_format.h"
 #include "core/error.h"
+#include "io/pixel_format.h"
 #include "tests/capture/emulated_camera.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "capture/pixel_unpack.h"
+#include "io/pixel_unpack.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -48,6 +48,19 @@ void unpack_12_bit_string(Bytes row, Samples samples) {
     unpack_bit_string(row.subspan(3 * pairs), 12, samples.subspan(2 * pairs));
 }
 
+/// A bit string, bit k being bit 7 - k % 8 of byte k / 8: sample i is bits i * bits and up.
+void unpack_msb_string(Bytes row, unsigned bits, Samples samples) {
+    std::uint32_t pending = 0;
+    unsigned have = 0;
+    std::size_t at = 0;
+    const std::uint32_t mask = (1U << bits) - 1;
+    for (std::uint16_t& sample : samples) {
+        for (; have < bits; have += 8) pending = pending << 8U | row[at++];
+        have -= bits;
+        sample = narrow(pending >> have & mask);
+    }
+}
+
 /// Two samples in 3 bytes, the low bits of both in the middle one: from bit 0 and from bit 4.
 void unpack_gige_vision(Bytes row, unsigned bits, Samples samples) {
     const unsigned low_bits = bits - 8;
@@ -79,6 +92,15 @@ void unpack_mipi(Bytes row, unsigned bits, Samples samples) {
 
 }  // namespace
 
+std::vector<float> light_table(const PixelFormat& format, double black_dn, double white_dn) {
+    // Devices may set bits that should be 0: a table for all that 16 bits hold.
+    std::vector<float> light(format.significant_bits == 8 ? 256 : 65536);
+    for (std::size_t dn = 0; dn < light.size(); ++dn)
+        light[dn] = static_cast<float>(std::max(0.0, static_cast<double>(dn) - black_dn) /
+                                       (white_dn - black_dn));
+    return light;
+}
+
 void unpack_row(const PixelFormat& format, Bytes row, Samples samples) noexcept {
     const auto bits = static_cast<unsigned>(format.significant_bits);
     switch (format.packing) {
@@ -89,30 +111,12 @@ void unpack_row(const PixelFormat& format, Bytes row, Samples samples) noexcept 
         case Packing::kLsbPacked:
             return bits == 12 ? unpack_12_bit_string(row, samples)
                               : unpack_bit_string(row, bits, samples);
+        case Packing::kMsbPacked:
+            return unpack_msb_string(row, bits, samples);
         case Packing::kGigEVisionPacked:
             return unpack_gige_vision(row, bits, samples);
         case Packing::kMipiPacked:
             return unpack_mipi(row, bits, samples);
-    }
-}
-
-void unpack_frame(const FrameLayout& layout, Bytes payload, std::vector<std::uint16_t>& samples) {
-    const PixelFormat& format = *layout.format;
-    const auto row_samples =
-        static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(format.planes);
-    const auto rows = static_cast<std::size_t>(layout.height);
-    const std::size_t row_bytes = format.row_bytes(layout.width);
-    samples.resize(row_samples * rows);
-    std::vector<std::uint8_t> cut;
-    for (std::size_t row = 0; row < rows; ++row) {
-        Bytes bytes = payload.subspan(std::min(payload.size(), row * layout.stride_bytes));
-        if (bytes.size() < row_bytes) {
-            cut.assign(bytes.begin(), bytes.end());
-            cut.resize(row_bytes);
-            bytes = cut;
-        }
-        unpack_row(format, bytes.first(row_bytes),
-                   Samples(samples).subspan(row * row_samples, row_samples));
     }
 }
 

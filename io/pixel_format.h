@@ -17,6 +17,7 @@ enum class Packing : std::uint8_t {
     kLsbPacked,         ///< PFNC "p": a bit string, each sample from its lowest bit on, no padding
     kGigEVisionPacked,  ///< GigE Vision "Packed": two samples in 3 bytes, their low bits in the
                         ///< middle
+    kMsbPacked,         ///< a bit string, each sample from its highest bit on, as in TIFF
     kMipiPacked,        ///< MIPI CSI-2, V4L2 "P": the high 8 bits of 4 (10, 14 bit) or 2 (12 bit)
                         ///< samples, then their low bits as a bit string
 };

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "capture/frame_record.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 
@@ -15,9 +15,9 @@ namespace stipple {
 void unpack_row(const PixelFormat& format, std::span<const std::uint8_t> row,
                 std::span<std::uint16_t> samples) noexcept;
 
-/// The samples of a frame by row, column and plane; `samples` is resized. What `payload` is too
-/// short for is 0.
-void unpack_frame(const FrameLayout& layout, std::span<const std::uint8_t> payload,
-                  std::vector<std::uint16_t>& samples);
+/// The light of each number that a sample can hold: max(0, DN - black) / (white - black).
+/// Precondition: black_dn < white_dn.
+[[nodiscard]] std::vector<float> light_table(const PixelFormat& format, double black_dn,
+                                             double white_dn);
 
 }  // namespace stipple

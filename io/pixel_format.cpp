@@ -1,4 +1,4 @@
-#include "capture/pixel_format.h"
+#include "io/pixel_format.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,196 @@
+// Offsets and meanings: libavformat/cinedec.c of FFmpeg, pims/cine.py of PIMS, and pycine
+// (docs/references.md). All numbers are little-endian.
+#include "io/cine_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+#include "core/light.h"
+#include "io/pixel_unpack.h"
+
+namespace stipple {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// A part of the file.
+struct Block {
+    std::vector<std::uint8_t> bytes;
+
+    Block(FileBytes& file, std::uint64_t offset, std::size_t length) : bytes(length) {
+        file.read(offset, bytes);
+    }
+    template <typename Number>
+    [[nodiscard]] Number at(std::size_t offset) const {
+        Number number;
+        std::memcpy(&number, bytes.data() + offset, sizeof(Number));
+        return number;
+    }
+    [[nodiscard]] std::uint16_t u16(std::size_t offset) const { return at<std::uint16_t>(offset); }
+    [[nodiscard]] std::uint32_t u32(std::size_t offset) const { return at<std::uint32_t>(offset); }
+};
+
+constexpr std::uint32_t kUnpacked = 0;  // kinds of biCompression
+constexpr std::uint32_t kPacked10 = 256;
+constexpr std::uint32_t kPacked12 = 1024;
+
+/// What the three headers say.
+struct Cine {
+    std::uint16_t compression = 0;
+    std::uint32_t images = 0;
+    std::uint32_t offsets_at = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t cols = 0;
+    std::uint16_t stored_bits = 0;
+    std::uint32_t packing = kUnpacked;
+    bool flipped = false;
+    std::uint32_t frames_hz = 0;
+    double exposure_us = 0;
+    std::uint32_t filter = 0;
+    std::uint32_t real_bits = 0;
+    std::int32_t black_dn = 0;
+    std::int32_t white_dn = 0;  ///< 0: not declared
+
+    explicit Cine(FileBytes& file);
+    void read_setup(FileBytes& file, std::uint64_t offset);
+};
+
+Cine::Cine(FileBytes& file) {
+    constexpr std::size_t kFileHeaderBytes = 44;
+    constexpr std::size_t kBitmapHeaderBytes = 40;
+    const Block header(file, 0, kFileHeaderBytes);
+    if (header.bytes[0] != 'C' || header.bytes[1] != 'I')
+        throw InputError(file.name(), "is no .cine file: it does not begin with \"CI\"");
+    if (header.u16(6) != 1)
+        throw InputError(file.name(),
+                         fmt::format("is a .cine file of version {}; 1 is read", header.u16(6)));
+    compression = header.u16(4);
+    images = header.u32(20);
+    offsets_at = header.u32(32);
+    const Block bitmap(file, header.u32(24), kBitmapHeaderBytes);
+    cols = bitmap.u32(4);
+    rows = bitmap.u32(8);
+    stored_bits = bitmap.u16(14);
+    packing = bitmap.u32(16);
+    read_setup(file, header.u32(28));
+}
+
+/// The structure SETUP, which has grown with the versions of the camera's software.
+void Cine::read_setup(FileBytes& file, std::uint64_t offset) {
+    constexpr std::size_t kMarkEnd = 144;
+    constexpr std::size_t kMinBytes = 1572;  // with the exposure in ns
+    constexpr std::size_t kLevelsEnd = 5740;
+    const Block start(file, offset, kMarkEnd);
+    const std::size_t length = start.u16(142);
+    if (start.bytes[140] != 'S' || start.bytes[141] != 'T' || length < kMinBytes)
+        throw InputError(fmt::format("{}: byte {}", file.name(), offset),
+                         "is no SETUP of a camera that is read; save the file again with the "
+                         "present software of Phantom cameras");
+    const Block setup(file, offset, std::min(length, kLevelsEnd));
+    flipped = setup.u32(760) != 0;
+    frames_hz = setup.u32(768);
+    filter = setup.u32(808);
+    real_bits = setup.u32(896);
+    constexpr double kNanosecondsAMicrosecond = 1000;
+    exposure_us = setup.u32(1568) / kNanosecondsAMicrosecond;
+    if (length < kLevelsEnd) return;
+    black_dn = setup.at<std::int32_t>(5732);
+    white_dn = setup.at<std::int32_t>(5736);
+}
+
+PixelFormat format_of(const Cine& cine, const std::string& name) {
+    constexpr std::uint16_t kRgb = 0;
+    constexpr std::uint16_t kUninterpolated = 2;
+    if (cine.compression != kRgb && cine.compression != kUninterpolated)
+        throw InputError(name, fmt::format("is compressed (kind {}); save it as uncompressed .cine",
+                                           cine.compression));
+    PixelFormat format{.name = ".cine"};
+    if (cine.packing == kPacked10 || cine.packing == kPacked12) {
+        format.significant_bits = format.bits_per_pixel = cine.packing == kPacked10 ? 10 : 12;
+        format.packing = Packing::kMsbPacked;
+    } else if (cine.packing == kUnpacked && (cine.stored_bits == 8 || cine.stored_bits == 16)) {
+        format.bits_per_pixel = cine.stored_bits;
+        format.significant_bits = static_cast<int>(cine.real_bits);
+        if (cine.stored_bits == 8) format.significant_bits = 8;
+        if (cine.stored_bits == 16 && (cine.real_bits < 9 || cine.real_bits > 16))
+            throw InputError(name, fmt::format("says that {} of 16 bits of a pixel are used; 9 to "
+                                               "16 can be",
+                                               cine.real_bits));
+    } else {
+        throw InputError(name, fmt::format("has {} bits per pixel in packing {}; grey and raw "
+                                           "mosaics of 8 and 16 bits and packed in 10 and 12 are "
+                                           "read, save it so",
+                                           cine.stored_bits, cine.packing));
+    }
+    if (cine.compression == kRgb || cine.filter == 0) return format;
+    constexpr std::uint32_t kGbrg = 3;
+    constexpr std::uint32_t kRggb = 4;
+    if (cine.filter != kGbrg && cine.filter != kRggb)
+        throw InputError(name, fmt::format("has a colour filter array of kind {}; GBRG (3) and "
+                                           "RGGB (4) are read",
+                                           cine.filter));
+    format.filter = cine.filter == kGbrg ? ColourFilter::kGbrg : ColourFilter::kRggb;
+    return format;
+}
+
+/// Inverse of the opto-electronic transfer function of ITU-R BT.709, from DN 63 to 1014.
+std::vector<float> light_of_10_bits() {
+    constexpr double kBlackDn = 63;
+    constexpr double kWhiteDn = 1014;
+    std::vector<float> light(65536);
+    for (std::size_t dn = 0; dn < light.size(); ++dn) {
+        const double value = (static_cast<double>(dn) - kBlackDn) / (kWhiteDn - kBlackDn);
+        light[dn] =
+            static_cast<float>(value <= 0      ? 0
+                               : value < 0.081 ? value / 4.5
+                                               : std::pow((value + 0.099) / 1.099, 1 / 0.45));
+    }
+    return light;
+}
+
+std::vector<float> light_of(const Cine& cine, const PixelFormat& format) {
+    if (cine.packing == kPacked10) return light_of_10_bits();
+    const std::int32_t full_scale = (1 << format.significant_bits) - 1;
+    const bool declared =
+        cine.black_dn >= 0 && cine.black_dn < cine.white_dn && cine.white_dn <= full_scale;
+    return light_table(format, declared ? cine.black_dn : 0, declared ? cine.white_dn : full_scale);
+}
+
+}  // namespace
+
+RawVideo open_cine(const std::filesystem::path& path) {
+    FileBytes file(path);
+    const Cine cine(file);
+    const PixelFormat format = format_of(cine, file.name());
+    RawVideo video{.file = path,
+                   .format = format,
+                   .shape = checked_shape(cine.rows, cine.cols, 1, file.name()),
+                   .slots = cine.images,
+                   .annotated = true,
+                   .bottom_up = cine.flipped == (cine.packing != kUnpacked),
+                   .light_of_dn = light_of(cine, format),
+                   .traits = {.filter = format.filter}};
+    if (cine.images == 0) throw InputError(file.name(), "holds no frame");
+    if (cine.images > file.size() / sizeof(std::uint64_t))
+        throw InputError(file.name(), fmt::format("has {} bytes, but announces {} frames; it is "
+                                                  "damaged or cut short",
+                                                  file.size(), cine.images));
+    if (static_cast<int>(cine.cols) * format.bits_per_pixel % 8 != 0)
+        throw InputError(file.name(), fmt::format("packs rows of {} pixels, which end within a "
+                                                  "byte; they are not read",
+                                                  cine.cols));
+    video.offsets.resize(cine.images);
+    file.read(cine.offsets_at, {reinterpret_cast<std::uint8_t*>(video.offsets.data()),
+                                video.offsets.size() * sizeof(std::uint64_t)});
+    if (cine.frames_hz > 0) video.traits.frames_hz = cine.frames_hz;
+    if (cine.exposure_us > 0) video.traits.exposure_us = cine.exposure_us;
+    return video;
+}
+
+}  // namespace stipple

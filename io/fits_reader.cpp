@@ -1,0 +1,208 @@
+#include "io/fits_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/light.h"
+#include "io/footage_files.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kBlockBytes = 2880;
+constexpr std::size_t kCardBytes = 80;
+
+std::string_view trimmed(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
+/// The value of a card, "KEYWORD = value / comment", without quotes.
+std::string value_of(std::string_view card) {
+    std::string_view text = trimmed(card.substr(std::string_view("KEYWORD = ").size()));
+    if (text.starts_with('\'')) {
+        text.remove_prefix(1);
+        return std::string(trimmed(text.substr(0, text.find('\''))));
+    }
+    return std::string(trimmed(text.substr(0, text.find('/'))));
+}
+
+/// The header, which is read block by block.
+class Header {
+  public:
+    explicit Header(FileBytes& file);
+
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    [[nodiscard]] std::string text(std::string_view key) const {
+        const auto found = values_.find(key);
+        return found == values_.end() ? "" : found->second;
+    }
+    /// \throws InputError if it is there and no number.
+    [[nodiscard]] std::optional<double> number(std::string_view key) const;
+    /// \throws InputError unless it is a whole number from `min` to `max`.
+    [[nodiscard]] std::int64_t count(std::string_view key, std::int64_t min,
+                                     std::int64_t max) const;
+
+  private:
+    const std::string& name_;
+    std::uint64_t bytes_ = 0;
+    std::map<std::string, std::string, std::less<>> values_;
+};
+
+Header::Header(FileBytes& file) : name_(file.name()) {
+    constexpr std::uint64_t kMaxBlocks = 1000;
+    std::vector<std::uint8_t> block(kBlockBytes);
+    while (true) {
+        if (bytes_ == kMaxBlocks * kBlockBytes)
+            throw InputError(name_, "has a header without an end");
+        file.read(bytes_, block);
+        bytes_ += kBlockBytes;
+        const std::string_view cards(reinterpret_cast<const char*>(block.data()), block.size());
+        if (bytes_ == kBlockBytes && !cards.starts_with("SIMPLE  ="))
+            throw InputError(name_, "is no FITS file: it does not begin with SIMPLE");
+        for (std::size_t at = 0; at < cards.size(); at += kCardBytes) {
+            const std::string_view card = cards.substr(at, kCardBytes);
+            const std::string_view key = trimmed(card.substr(0, 8));
+            if (key == "END") return;
+            if (card.substr(8, 2) == "= ") values_.emplace(key, value_of(card));
+        }
+    }
+}
+
+std::optional<double> Header::number(std::string_view key) const {
+    std::string value = text(key);
+    if (value.empty()) return {};
+    std::ranges::replace(value, 'D', 'E');  // Fortran's exponent
+    double number = 0;
+    const char* const begin = value.data() + (value.starts_with('+') ? 1 : 0);
+    const char* const end = value.data() + value.size();
+    const auto [last, error] = std::from_chars(begin, end, number);
+    if (error == std::errc() && last == end && std::isfinite(number)) return number;
+    throw InputError(name_, fmt::format("{} is \"{}\", no number", key, text(key)));
+}
+
+std::int64_t Header::count(std::string_view key, std::int64_t min, std::int64_t max) const {
+    const double value = number(key).value_or(-1e300);
+    if (value >= static_cast<double>(min) && value <= static_cast<double>(max) &&
+        value == std::floor(value))
+        return static_cast<std::int64_t>(value);
+    throw InputError(name_, fmt::format("{} is \"{}\", not {} to {}", key, text(key), min, max));
+}
+
+/// The number of big-endian bytes.
+template <typename Stored, std::unsigned_integral Word>
+double number_at(const std::uint8_t* bytes) {
+    static_assert(sizeof(Stored) == sizeof(Word));
+    Word word = 0;
+    for (std::size_t i = 0; i < sizeof(Word); ++i)
+        word = static_cast<Word>(std::uint64_t{word} << 8U | bytes[i]);
+    return static_cast<double>(std::bit_cast<Stored>(word));
+}
+
+using NumberAt = double (*)(const std::uint8_t*);
+
+/// Null of a kind that there is not.
+NumberAt number_of_kind(int bits) {
+    switch (bits) {
+        case 8:
+            return number_at<std::uint8_t, std::uint8_t>;
+        case 16:
+            return number_at<std::int16_t, std::uint16_t>;
+        case 32:
+            return number_at<std::int32_t, std::uint32_t>;
+        case 64:
+            return number_at<std::int64_t, std::uint64_t>;
+        case -32:
+            return number_at<float, std::uint32_t>;
+        case -64:
+            return number_at<double, std::uint64_t>;
+        default:
+            return nullptr;
+    }
+}
+
+/// The number that is light 1.0.
+double full_scale(int bits, double zero, double scale) {
+    if (scale != 1) return 1;
+    if (bits == 8 && zero == 0) return std::numeric_limits<std::uint8_t>::max();
+    if (bits == 16 && zero == 0) return std::numeric_limits<std::int16_t>::max();
+    if (bits == 16 && zero == 32768) return std::numeric_limits<std::uint16_t>::max();
+    return 1;
+}
+
+}  // namespace
+
+bool is_fits_name(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    return extension == ".fits" || extension == ".fit" || extension == ".fts";
+}
+
+FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
+    constexpr std::int64_t kMax = std::numeric_limits<int>::max();
+    const Header header(file_);
+    bits_ = static_cast<int>(header.count("BITPIX", -64, 64));
+    if (number_of_kind(bits_) == nullptr)
+        throw InputError(file_.name(), fmt::format("BITPIX is {}, which there is not", bits_));
+    const std::int64_t axes = header.count("NAXIS", 0, 999);
+    if (axes != 2 && axes != 3)
+        throw InputError(file_.name(), fmt::format("its primary array has {} axes; one of 2 or 3 "
+                                                   "is read, no extensions",
+                                                   axes));
+    shape_ =
+        checked_shape(static_cast<std::uint64_t>(header.count("NAXIS2", 1, kMax)),
+                      static_cast<std::uint64_t>(header.count("NAXIS1", 1, kMax)), 1, file_.name());
+    slots_ = axes == 2 ? 1 : static_cast<int>(header.count("NAXIS3", 1, kMax));
+    if (!header.text("BAYERPAT").empty())
+        throw InputError(file_.name(),
+                         "is a mosaic (BAYERPAT), whose first row FITS does not fix; "
+                         "convert it to DNG");
+    data_offset_ = header.bytes();
+    const std::uint64_t frame_bytes =
+        shape_.pixels() * static_cast<std::uint64_t>(std::abs(bits_) / 8);
+    if (static_cast<std::uint64_t>(slots_) * frame_bytes > file_.size() - data_offset_)
+        throw InputError(file_.name(),
+                         fmt::format("has {} bytes, but {} frames of {} bytes from "
+                                     "byte {} on are announced; it is damaged or cut "
+                                     "short",
+                                     file_.size(), slots_, frame_bytes, data_offset_));
+    bytes_.resize(frame_bytes);
+    zero_ = header.number("BZERO").value_or(0);
+    scale_ = header.number("BSCALE").value_or(1);
+    const double one = full_scale(bits_, zero_, scale_);
+    zero_ /= one;
+    scale_ /= one;
+    top_down_ = header.text("ROWORDER") == "TOP-DOWN";
+    traits_.floating = bits_ < 0;
+}
+
+std::string FitsReader::place() const {
+    return fmt::format("{}: frame {}", file_.name(), next_slot_ - 1);
+}
+
+bool FitsReader::read(std::span<float> frame) {
+    if (next_slot_ == slots_) return false;
+    file_.read(data_offset_ + static_cast<std::uint64_t>(next_slot_++) * bytes_.size(), bytes_);
+    const NumberAt number = number_of_kind(bits_);
+    const auto rows = static_cast<std::size_t>(shape_.rows);
+    const auto cols = static_cast<std::size_t>(shape_.cols);
+    const std::size_t number_bytes = bytes_.size() / frame.size();
+    for (std::size_t row = 0; row < rows; ++row) {
+        const std::uint8_t* stored =
+            &bytes_[(top_down_ ? row : rows - 1 - row) * cols * number_bytes];
+        for (std::size_t col = 0; col < cols; ++col, stored += number_bytes)
+            frame[row * cols + col] = static_cast<float>(zero_ + scale_ * number(stored));
+    }
+    return true;
+}
+
+}  // namespace stipple

@@ -1,0 +1,219 @@
+// Keys and their meaning: pyMRAW (docs/references.md).
+#include "io/photron_file.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/light.h"
+#include "io/footage_files.h"
+#include "io/pixel_unpack.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// What is read of a header: its keys in .cih, and their places in the XML of .cihx.
+struct Key {
+    std::string_view name;
+    std::array<const char*, 3> path;
+};
+constexpr Key kFormat{"File Format", {"imageFileInfo", "fileFormat"}};
+constexpr Key kFrames{"Total Frame", {"frameInfo", "totalFrame"}};
+constexpr Key kWidth{"Image Width", {"imageDataInfo", "resolution", "width"}};
+constexpr Key kHeight{"Image Height", {"imageDataInfo", "resolution", "height"}};
+constexpr Key kColour{"Color Type", {"imageDataInfo", "colorInfo", "type"}};
+constexpr Key kStoredBits{"Color Bit", {"imageDataInfo", "colorInfo", "bit"}};
+constexpr Key kDepth{"EffectiveBit Depth", {"imageDataInfo", "effectiveBit", "depth"}};
+constexpr Key kSide{"EffectiveBit Side", {"imageDataInfo", "effectiveBit", "side"}};
+constexpr Key kRate{"Record Rate(fps)", {"recordInfo", "recordRate"}};
+constexpr Key kShutter{"Shutter Speed(s)", {"recordInfo", "shutterSpeed"}};
+constexpr std::array kKeys{kFormat,     kFrames, kWidth, kHeight, kColour,
+                           kStoredBits, kDepth,  kSide,  kRate,   kShutter};
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const auto first = std::min(text.find_first_not_of(kBlanks), text.size());
+    text.remove_prefix(first);
+    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+/// The values of a header by their names in .cih.
+class Header {
+  public:
+    explicit Header(const fs::path& file);
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// \throws InputError if it is missing.
+    [[nodiscard]] std::string_view text(const Key& key) const;
+    /// The same of a whole number above 0.
+    [[nodiscard]] std::uint32_t count(const Key& key) const;
+    /// Of "0.0001" or "1/10000"; nothing if it is no positive number or missing.
+    [[nodiscard]] std::optional<double> number(const Key& key) const;
+
+  private:
+    void read_lines(std::string_view text);
+    void read_xml(std::string_view text);
+
+    std::string name_;
+    std::map<std::string, std::string, std::less<>> values_;
+};
+
+Header::Header(const fs::path& file) : name_(file.string()) {
+    constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 20U;
+    FileBytes bytes(file);
+    if (bytes.size() > kMaxBytes) throw InputError(name_, "is too long for the header of a video");
+    std::string text(bytes.size(), '\0');
+    bytes.read(0, {reinterpret_cast<std::uint8_t*>(text.data()), text.size()});
+    lower_extension(file) == ".cih" ? read_lines(text) : read_xml(text);
+}
+
+/// "Key : value" each.
+void Header::read_lines(std::string_view text) {
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(text.size(), line.size() + 1));
+        const auto colon = line.find(" : ");
+        if (colon == std::string_view::npos) continue;
+        values_.insert_or_assign(std::string(trimmed(line.substr(0, colon))),
+                                 std::string(trimmed(line.substr(colon + 3))));
+    }
+}
+
+/// Other bytes may come before and after the XML.
+void Header::read_xml(std::string_view text) {
+    constexpr std::string_view kEnd = "</cih>";
+    const auto begin = std::min(text.find("<cih>"), text.size());
+    const auto end = text.rfind(kEnd);
+    tinyxml2::XMLDocument document;
+    if (end == std::string_view::npos || end < begin ||
+        document.Parse(text.data() + begin, end + kEnd.size() - begin) != tinyxml2::XML_SUCCESS)
+        throw InputError(name_,
+                         "holds no XML from <cih> to </cih>; it is damaged or none of a "
+                         "Photron camera");
+    for (const Key& key : kKeys) {
+        const tinyxml2::XMLElement* element = document.RootElement();
+        for (const char* const part : key.path)
+            if (element != nullptr && part != nullptr) element = element->FirstChildElement(part);
+        if (element != nullptr && element->GetText() != nullptr)
+            values_.emplace(key.name, trimmed(element->GetText()));
+    }
+}
+
+std::string_view Header::text(const Key& key) const {
+    const auto found = values_.find(key.name);
+    if (found == values_.end())
+        throw InputError(name_, fmt::format("has no \"{}\"; it is damaged or none of a Photron "
+                                            "camera",
+                                            key.name));
+    return found->second;
+}
+
+std::uint32_t Header::count(const Key& key) const {
+    const std::string_view value = text(key);
+    std::uint32_t number = 0;
+    const auto [last, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    if (error != std::errc() || last != value.data() + value.size() || number == 0)
+        throw InputError(name_,
+                         fmt::format("\"{}\" is \"{}\", no number above 0", key.name, value));
+    return number;
+}
+
+std::optional<double> Header::number(const Key& key) const {
+    const auto found = values_.find(key.name);
+    if (found == values_.end()) return {};
+    const std::string_view value = found->second;
+    const auto slash = std::min(value.find('/'), value.size());
+    const auto parsed = [](std::string_view part) {
+        double number = 0;
+        const char* const end = part.data() + part.size();
+        const auto [last, error] = std::from_chars(part.data(), end, number);
+        return error == std::errc() && last == end ? number : 0.0;
+    };
+    const double numerator = parsed(value.substr(0, slash));
+    const double result =
+        slash == value.size() ? numerator : numerator / parsed(value.substr(slash + 1));
+    return std::isfinite(result) && result > 0 ? std::optional(result) : std::nullopt;
+}
+
+bool same_letters(std::string_view a, std::string_view b) {
+    return std::ranges::equal(a, b, [](char x, char y) { return (x | 32) == (y | 32); });
+}
+
+/// The file of the same name beside it that has one of the extensions.
+fs::path beside(const fs::path& file, std::span<const char* const> extensions) {
+    for (const char* const extension : extensions) {
+        fs::path other = file;
+        other.replace_extension(extension);
+        std::error_code unknown;
+        if (fs::exists(other, unknown)) return other;
+    }
+    throw InputError(file.string(),
+                     fmt::format("needs the {} file of the same name beside it", extensions[0]));
+}
+
+/// The format, and its highest number.
+std::pair<PixelFormat, int> format_of(const Header& header) {
+    const std::uint32_t stored = header.count(kStoredBits);
+    const std::uint32_t depth = header.count(kDepth);
+    if (!same_letters(header.text(kFormat), "mraw"))
+        throw InputError(header.name(), fmt::format("tells of files of the format \"{}\"; MRAW is "
+                                                    "read",
+                                                    header.text(kFormat)));
+    if (!same_letters(header.text(kColour), "mono"))
+        throw InputError(header.name(), fmt::format("tells of colour (\"{}\"); grey is read",
+                                                    header.text(kColour)));
+    if (stored != 8 && stored != 12 && stored != 16)
+        throw InputError(header.name(), fmt::format("tells of {} bits per pixel; 8, 12 and 16 are "
+                                                    "read",
+                                                    stored));
+    PixelFormat format{.name = "MRAW"};
+    format.bits_per_pixel = format.significant_bits = static_cast<int>(stored);
+    format.packing = stored == 12 ? Packing::kMsbPacked : Packing::kBytes;
+    const std::uint32_t used = std::min(stored, depth);
+    const bool at_top = same_letters(header.text(kSide), "higher");
+    return {format, ((1 << used) - 1) << (at_top ? stored - used : 0)};
+}
+
+}  // namespace
+
+bool is_photron_name(const fs::path& file) {
+    const std::string extension = lower_extension(file);
+    return extension == ".mraw" || extension == ".cihx" || extension == ".cih";
+}
+
+PhotronFiles photron_files(const fs::path& file) {
+    constexpr std::array<const char*, 2> kFrameFiles{".mraw", ".MRAW"};
+    constexpr std::array<const char*, 4> kHeaders{".cihx", ".cih", ".CIHX", ".CIH"};
+    if (lower_extension(file) == ".mraw") return {beside(file, kHeaders), file};
+    return {file, beside(file, kFrameFiles)};
+}
+
+RawVideo open_photron(const fs::path& file) {
+    const PhotronFiles files = photron_files(file);
+    const Header header(files.header);
+    const auto [format, white_dn] = format_of(header);
+    RawVideo video{
+        .file = files.frames,
+        .format = format,
+        .shape = checked_shape(header.count(kHeight), header.count(kWidth), 1, header.name()),
+        .slots = header.count(kFrames),
+        .light_of_dn = light_table(format, 0, white_dn)};
+    if (video.shape.cols * format.bits_per_pixel % 8 != 0)
+        throw InputError(header.name(), fmt::format("tells of packed rows of {} pixels, which end "
+                                                    "within a byte; they are not read",
+                                                    video.shape.cols));
+    video.traits.frames_hz = header.number(kRate);
+    if (const auto seconds = header.number(kShutter)) video.traits.exposure_us = *seconds * 1e6;
+    return video;
+}
+
+}  // namespace stipple

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "io/file_bytes.h"
+#include "io/picture.h"
+#include "io/pixel_format.h"
+
+namespace stipple {
+
+/// Frames as a camera stores them: where they lie in a file, and the light of their numbers.
+struct RawVideo {
+    std::filesystem::path file;
+    PixelFormat format;
+    FrameShape shape;
+    std::uint64_t slots = 0;
+    std::uint64_t first_offset = 0;           ///< bytes before the first of frames without gaps
+    std::vector<std::uint64_t> offsets = {};  ///< of each frame, if they may have gaps
+    bool annotated = false;  ///< before each frame is a block that begins with its length (cine)
+    bool bottom_up = false;  ///< the last row comes first
+    std::vector<float> light_of_dn;
+    SourceTraits traits = {};
+
+    [[nodiscard]] std::uint64_t frame_bytes() const {
+        return format.row_bytes(shape.cols) * static_cast<std::uint64_t>(shape.rows);
+    }
+};
+
+/// Reads the frames of a raw video one after the other.
+class RawVideoReader {
+  public:
+    /// \throws InputError if the file is unreadable or too short for the frames, or these are more
+    /// than 2^31.
+    explicit RawVideoReader(RawVideo video);
+
+    [[nodiscard]] FrameShape shape() const { return video_.shape; }
+    [[nodiscard]] int slots() const { return static_cast<int>(video_.slots); }
+    [[nodiscard]] const SourceTraits& traits() const { return video_.traits; }
+    /// The file and the frame read last, for messages.
+    [[nodiscard]] std::string place() const;
+
+    /// The next frame, order (plane, row, col); false at the end. \throws InputError.
+    bool read(std::span<float> frame);
+
+  private:
+    [[nodiscard]] std::uint64_t offset_of(std::uint64_t slot);
+
+    RawVideo video_;
+    FileBytes file_;
+    std::uint64_t next_slot_ = 0;
+    std::vector<std::uint8_t> bytes_;
+    std::vector<std::uint16_t> samples_;  ///< of a row
+};
+
+}  // namespace stipple

@@ -1,0 +1,134 @@
+""".cine files of Phantom cameras: the light of each number, what the camera tells, what is refused."""
+
+import shutil
+import struct
+import subprocess
+import unittest
+
+import numpy as np
+from camera_files import MOSAIC, CameraFilesTest, msb_packed
+from program import INPUT
+
+
+class Cine:
+    """Writes .cine files of Phantom cameras by the offsets of FFmpeg's reader (libavformat/cinedec.c)."""
+
+    def __init__(self, frames, **what):
+        self.slots, self.rows, self.cols = frames.shape
+        self.bits, self.packing, self.real_bits, self.compression = 16, 0, 12, 0
+        self.filter, self.flip, self.levels, self.hz, self.exposure_ns = 0, 0, (0, 0), 5000, 190000
+        self.annotation, self.setup_bytes, self.images = 8, 5740, self.slots
+        self.__dict__.update(what)
+        rows = frames if self.packing else frames[:, ::-1]
+        if self.flip:
+            rows = rows[:, ::-1]
+        pack = {256: 10, 1024: 12}
+        self.payload = [msb_packed(frame, pack[self.packing]) if self.packing else
+                        frame.astype("u1" if self.bits == 8 else "<u2").tobytes() for frame in rows]
+
+    def content(self):
+        setup = bytearray(self.setup_bytes)
+        for offset, form, value in ((140, "2s", b"ST"), (142, "H", self.setup_bytes), (760, "I", self.flip),
+                                    (768, "I", self.hz), (808, "I", self.filter), (896, "I", self.real_bits),
+                                    (1568, "I", self.exposure_ns), (5732, "2i", self.levels)):
+            if offset + 8 <= len(setup) or offset < 5732:
+                struct.pack_into("<" + form, setup, offset, *(value if isinstance(value, tuple) else (value,)))
+        bitmap = struct.pack("<IiiHHIIiiII", 40, self.cols, self.rows, 1, self.bits, self.packing,
+                             len(self.payload[0]), 0, 0, 0, 0)
+        offsets_at = 84 + len(setup)
+        offsets, records = [], b""
+        for payload in self.payload:
+            offsets.append(offsets_at + 8 * self.slots + len(records))
+            records += struct.pack("<I", self.annotation) + bytes(self.annotation - 8)
+            records += struct.pack("<I", len(payload)) + payload
+        header = struct.pack("<2sHHHiIiIIIIQ", b"CI", 44, self.compression, 1, -7, self.images, -7, self.images, 44, 84,
+                             offsets_at, 0)
+        return header + bitmap + bytes(setup) + struct.pack(f"<{self.slots}Q", *offsets) + records
+
+
+class CineTest(CameraFilesTest):
+    def cine(self, frames=MOSAIC, **what):
+        return self.write("clip.cine", Cine(frames, **what).content())
+
+    def test_depths_and_packings(self):
+        for most, what in ((255, {"bits": 8, "real_bits": 8}), (4095, {}), (65535, {"real_bits": 16}),
+                           (4095, {"packing": 1024, "bits": 12}), (4095, {"annotation": 24}), (4095, {"flip": 1}),
+                           (4095, {"packing": 1024, "flip": 1}), (4095, {"setup_bytes": 1572})):
+            with self.subTest(**what):
+                values = MOSAIC % (most + 1)
+                self.assert_light(values / most, self.cine(values, **what), "--set", "sensor.slot_us=200")
+                self.assertEqual(self.said, "")
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_ffmpeg_reads_the_same_numbers(self):
+        for pixels, what in (("gray16le", {}), ("gray16le", {"flip": 1}), ("gray", {"bits": 8, "real_bits": 8}),
+                             ("bayer_gbrg16le", {"compression": 2, "filter": 3}),
+                             ("bayer_rggb16le", {"compression": 2, "filter": 4})):
+            with self.subTest(**what):
+                values = MOSAIC % 256 if pixels == "gray" else MOSAIC
+                name = self.cine(values, **what)
+                frames = subprocess.run(["ffmpeg", "-v", "error", "-i", name, "-f", "rawvideo", "-pix_fmt", pixels,
+                                         "-"], cwd=self.folder, capture_output=True, check=True).stdout
+                read = np.frombuffer(frames, "u1" if pixels == "gray" else "<u2").reshape(values.shape)
+                # ffmpeg shifts 12 bits to the top of 16.
+                self.assert_light(read / 255 if pixels == "gray" else (read >> 4) / 4095, name)
+
+    def test_levels_that_the_file_declares(self):
+        self.assert_light(np.maximum(MOSAIC - 100, 0) / 3900, self.cine(levels=(100, 4000)))
+        for levels in ((100, 100), (-5, 4000), (0, 5000)):  # of no use
+            self.assert_light(MOSAIC / 4095, self.cine(levels=levels))
+
+    def test_ten_bits_are_companded_by_the_published_table(self):
+        # Of 12 bits, black 64 and white 4064 (pycine).
+        table = {64: 64, 96: 94, 160: 156, 256: 290, 384: 578, 512: 998, 768: 2267, 896: 3130, 1008: 4014, 1014: 4064}
+        light = self.light(self.cine(np.array([[[0, 1, *table]]]), packing=256, bits=10)).ravel()
+        np.testing.assert_allclose(light[2:], (np.array(list(table.values())) - 64) / 4000, atol=1.3 / 4000)
+        self.assertEqual(list(light[:2]), [0, 0])
+
+    def test_rate_and_exposure(self):
+        self.light(self.cine(hz=1000, exposure_ns=990000))
+        self.assertIn("has 1000 frames/s, but a slot of sensor \"paper\" takes 5000 us", self.said)
+        self.assertNotIn("exposed", self.said)
+        self.light(self.cine(hz=1000, exposure_ns=250000), "--set", "sensor.slot_us=1000")
+        self.assertIn("its frames were exposed for 250 of 1000 us each", self.said)
+        self.light(self.cine(hz=0, exposure_ns=0))
+        self.assertEqual(self.said, "")
+
+    def test_a_mosaic_keeps_its_filters(self):
+        name = self.cine(compression=2, filter=3, hz=200, exposure_ns=0)
+        self.assert_light(MOSAIC / 4095, name, "--set", "sensor.mode=physical", "--set", "sensor.cfa=gbrg")
+        self.assertEqual(self.said, "")
+        self.refuse(["no --luminance"], name, "--luminance")
+
+    def test_kinds_that_are_not_read(self):
+        for parts, what in ((["is compressed (kind 1)"], {"compression": 1}),
+                            (["24 bits per pixel in packing 0"], {"bits": 24}), (["packing 77"], {"packing": 77}),
+                            (["says that 8 of 16 bits"], {"real_bits": 8}),
+                            (["colour filter array of kind 1"], {"compression": 2, "filter": 1}),
+                            (["holds no frame"], {"images": 0})):
+            with self.subTest(**what):
+                content = Cine(MOSAIC, **{key: what[key] for key in what if key not in ("packing", "bits")})
+                content.__dict__.update(what)
+                self.refuse(parts, self.write("clip.cine", content.content()))
+        self.refuse(["end within a byte"], self.cine(MOSAIC[:, :, :7], packing=1024, bits=12))
+        self.refuse(["does not begin with"], self.write("clip.cine", bytes(100)))
+        self.fails(INPUT, ["clip.cine: byte 84: is no SETUP"], "emulate", self.write(
+            "clip.cine", Cine(MOSAIC).content().replace(b"ST", b"XX")), "-o", "x.stipple")
+
+    def test_damage(self):
+        whole = Cine(MOSAIC).content()
+        for length in (0, 43, 60, 100, 5000, 5830, len(whole) - 1):
+            with self.subTest(length=length):
+                said = self.fails(INPUT, ["clip.cine: "], "emulate", self.write("clip.cine", whole[:length]), "-o", "x")
+                self.assertIn("damaged or cut short", said)
+        self.refuse(["announces 4000000000 frames"], self.cine(images=4_000_000_000))
+        start = len(whole) - 4 * (8 + 96)
+        for field, value in ((0, 7), (0, 2 ** 32 - 1), (4, 95)):
+            content = bytearray(whole)
+            struct.pack_into("<I", content, start + field, value)
+            with self.subTest(field=field, value=value):
+                self.fails(INPUT, ["clip.cine"], "emulate", self.write("clip.cine", content), "-o", "x.stipple")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,9 @@
+#include "tests/fuzz/picture_fuzz.h"
+
+/// Input: a .cine file of a Phantom camera.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace stipple;
+    const NamedMemoryFile file({data, size}, ".cine");
+    read_footage(file.path(), {});
+    return 0;
+}

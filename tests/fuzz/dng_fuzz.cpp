@@ -1,0 +1,9 @@
+#include "tests/fuzz/picture_fuzz.h"
+
+/// Input: a .dng file.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace stipple;
+    const NamedMemoryFile file({data, size}, ".dng");
+    read_footage(file.path(), {});
+    return 0;
+}
