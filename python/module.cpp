@@ -1,10 +1,17 @@
-#include <pybind11/pybind11.h>
-
 #include "core/version.h"
-
-namespace py = pybind11;
+#include "python/bindings.h"
 
 PYBIND11_MODULE(_stipple, module) {
+    using namespace stipple::python;
     module.doc() = "The compiled part of the package stipple.";
     module.attr("__version__") = stipple::version();
+    bind_errors();
+    bind_threads(module);
+    bind_footage(module);
+    bind_sensor(module);
+    bind_schedule(module);
+    bind_stream(module);
+    bind_emulate(module);
+    bind_decode(module);
+    bind_compare(module);
 }

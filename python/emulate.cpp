@@ -1,0 +1,79 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <optional>
+
+#include "core/error.h"
+#include "io/disk_sync.h"
+#include "python/bindings.h"
+#include "python/call_progress.h"
+#include "python/errors.h"
+#include "python/footage.h"
+#include "python/schedule.h"
+#include "python/sensor.h"
+#include "python/stream.h"
+#include "readout/provenance.h"
+#include "readout/stream_recorder.h"
+
+namespace stipple::python {
+namespace {
+
+/// A sensor with its schedule for some footage.
+SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
+                       std::uint64_t seed, const std::string& overrun) {
+    SensorChoice choice = sensor_of(sensor).choice;
+    choice.seed = seed;
+    if (overrun != "stretch" && overrun != "drop")
+        throw InputError("overrun", "\"" + overrun + "\" is none of stretch, drop");
+    choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+    return set_up(choice, schedule, footage.shape(), footage.filter());
+}
+
+/// Makes the stream file.
+void write_stream(Footage& footage, const SensorSetup& setup, const py::object& tell,
+                  const std::filesystem::path& file, bool force) {
+    const std::string provenance = provenance_of(setup, footage.origin());
+    const auto recorder = creating(
+        file, [&] { return std::make_unique<StreamRecorder>(file, force, setup, provenance); });
+    CallProgress progress(tell, footage.slots());
+    {
+        const py::gil_scoped_release released;
+        double done = 0;
+        for (auto frame = footage.next(); !frame.empty(); frame = footage.next()) {
+            recorder->expose(frame);
+            if (!progress.reach(++done)) break;
+        }
+    }
+    progress.finish();
+    const py::gil_scoped_release released;
+    recorder->finish();
+}
+
+std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
+                                    const std::optional<std::filesystem::path>& output, bool force,
+                                    const py::object& tell) {
+    warn(mosaic_warning(setup, footage.filter()));
+    std::unique_ptr<StreamFile> stream;
+    if (output) {
+        write_stream(footage, setup, tell, *output, force);
+        stream = std::make_unique<StreamFile>(*output);
+    } else {
+        const NoSync no_sync;
+        auto file = std::make_unique<TemporaryFile>();
+        write_stream(footage, setup, tell, file->path(), false);
+        file->unname();
+        stream = std::make_unique<StreamFile>(std::move(file));
+    }
+    footage.pass_warnings_on();
+    return stream;
+}
+
+}  // namespace
+
+void bind_emulate(py::module_& module) {
+    py::class_<SensorSetup>(module, "Setup").def(py::init(&set_up_for));
+    module.def("emulate", &emulate);
+}
+
+}  // namespace stipple::python
