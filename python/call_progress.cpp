@@ -1,5 +1,6 @@
 #include "python/call_progress.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/parallel.h"
@@ -30,7 +31,8 @@ CallProgress::CallProgress(py::object tell, std::optional<std::int64_t> slots)
     : tell_(std::move(tell)), slots_(slots), next_(std::chrono::steady_clock::now() + kPause) {}
 
 bool CallProgress::reach(double slots) noexcept {
-    done_ = slots;
+    done_ =
+        slots_ ? std::min(slots, static_cast<double>(*slots_)) : slots;  // blocks go beyond `until`
     const auto now = std::chrono::steady_clock::now();
     if (raised_ || now < next_) return !raised_;
     next_ = now + kPause;

@@ -171,7 +171,7 @@ SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, Frame
 
 void bind_schedule(py::module_& module) {
     PYBIND11_NUMPY_DTYPE(ExposureRow, row, col, first_slot, open_slots);
-    py::class_<ChosenSchedule> schedule(module, "Schedule", py::dynamic_attr(),
+    py::class_<ChosenSchedule> schedule(module, "Schedule",
                                         R"(Which pixel exposes when, as made for an array of pixels.
 
 schedule: one of Schedule.names(), or the path of a .toml, .mem or .hex file.

@@ -1,6 +1,8 @@
 """What a clip goes through: emulate, decode, compare."""
 
+import shutil
 import tempfile
+import weakref
 from os import PathLike
 from pathlib import Path
 from typing import Callable, Mapping, Optional, Tuple, Union
@@ -46,15 +48,17 @@ class Schedule(_stipple.Schedule):
         Raises ValueError where two exposures of a pixel share a slot or an exposure is longer than the period.
         """
         rows = np.array(exposures, dtype=EXPOSURE)
-        # The program knows schedules as files, and so the same bytes come of both.
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        file = Path(folder.name) / "custom.toml"
-        file.write_text(_stipple.schedule_text(rows, tile, period_slots, name), encoding="utf-8")
-        schedule = cls(file, size=size)
-        schedule._folder = folder  # goes with the schedule
+        # The program knows schedules as files, so this is one that goes with the object.
+        folder = Path(tempfile.mkdtemp(prefix="stipple_"))
+        try:
+            file = folder / "custom.toml"
+            file.write_text(_stipple.schedule_text(rows, tile, period_slots, name), encoding="utf-8")
+            schedule = cls(file, size=size)
+        except BaseException:
+            shutil.rmtree(folder)
+            raise
+        weakref.finalize(schedule, shutil.rmtree, folder)
         return schedule
-
-    _folder: Optional["tempfile.TemporaryDirectory[str]"] = None
 
 
 def emulate(

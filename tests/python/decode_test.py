@@ -92,6 +92,10 @@ class DecodeTest(ProgramTest):
         self.decodes("fast", progress=lambda done, total: told.append((done, total)))
         self.assertEqual(told, sorted(told))
         self.assertEqual(told[-1], (36, 36))
+        told.clear()
+        self.decodes("best", until=5, progress=lambda done, total: told.append((done, total)))
+        self.assertEqual({done > 5 for done, total in told}, {False})
+        self.assertEqual(told[-1], (5, 5))
 
         def stop(done, total):
             raise ZeroDivisionError

@@ -1,7 +1,10 @@
 """Emulating in Python makes the bytes of the program."""
 
+import os
+import tempfile
 import threading
 import unittest
+import unittest.mock
 import warnings
 
 import numpy as np
@@ -85,6 +88,25 @@ class EmulateTest(ProgramTest):
         self.program_makes("light.npy", "--schedule", "mine.toml")
         self.same_samples(stipple.emulate(light(), schedule=schedule),
                           stipple.Stream.open(self.folder / "program.stipple"))
+
+    def test_leaves_no_temporary_file(self):
+        folder = self.folder / "tmp"
+        folder.mkdir()
+        tempfile.tempdir = str(folder)  # of Python, which has looked at TMPDIR before
+        self.addCleanup(setattr, tempfile, "tempdir", None)
+        with unittest.mock.patch.dict(os.environ, TMPDIR=str(folder)):
+            stream = stipple.emulate(light())
+            self.assertEqual(list(folder.iterdir()), [])
+            with self.assertRaises(ValueError):
+                stipple.emulate(np.concatenate([light(), -light()]))
+            schedule = stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), 2)
+            self.assertEqual(len(list(folder.iterdir())), 1)
+            del schedule
+            self.assertEqual(list(folder.iterdir()), [])
+            with self.assertRaises(ValueError):
+                stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), 2, name="x" * 65)
+            self.assertEqual(list(folder.iterdir()), [])
+        self.assertEqual(stream.slots(), 30)
 
     def test_refuses_what_the_program_refuses(self):
         for message, arguments in {
