@@ -80,8 +80,8 @@ FootageOptions options_of(const std::optional<std::string>& transfer, bool lumin
 
 }  // namespace
 
-void warn(const std::string& text) {
-    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0)
+void warn(const std::string& text, int level) {
+    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), level) != 0)
         throw py::error_already_set();
 }
 

@@ -80,7 +80,8 @@ class Footage {
     std::unique_ptr<ReadAhead> files_;
 };
 
-/// Has Python warn, unless the text is empty. With the GIL.
-void warn(const std::string& text);
+/// Has Python warn, unless the text is empty. `level` as warnings.warn: 1 blames who has called us,
+/// 2 who has called that. With the GIL.
+void warn(const std::string& text, int level = 2);
 
 }  // namespace stipple::python

@@ -14,4 +14,6 @@ PYBIND11_MODULE(_stipple, module) {
     bind_emulate(module);
     bind_decode(module);
     bind_compare(module);
+    bind_timing(module);
+    bind_recording(module);
 }

@@ -8,10 +8,12 @@ Light 1.0 is the sensor's `photons_per_unit` photons per site and time slot; a f
 and values are those of the program `stipple`, whose documentation holds here too. Errors of values are
 ValueError, errors of files OSError, both with the program's texts."""
 
-from ._pipeline import Schedule, compare, decode, decode_methods, emulate
-from ._stipple import Sensor, Stream, VideoQuality, __version__
+from ._pipeline import Schedule, compare, decode, decode_methods, emulate, timing
+from ._stipple import Frame, Recording, Sensor, Stream, VideoQuality, __version__
 
 __all__ = [
+    "Frame",
+    "Recording",
     "Schedule",
     "Sensor",
     "Stream",
@@ -21,4 +23,5 @@ __all__ = [
     "decode",
     "decode_methods",
     "emulate",
+    "timing",
 ]

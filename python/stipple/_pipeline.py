@@ -1,11 +1,11 @@
-"""What a clip goes through: emulate, decode, compare."""
+"""What a clip goes through: emulate, decode, compare; and how fast the chip reads it."""
 
 import shutil
 import tempfile
 import weakref
 from os import PathLike
 from pathlib import Path
-from typing import Callable, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _stipple
 from ._stipple import Sensor, Stream, VideoQuality, decode_methods
 
-__all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate"]
+__all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "timing"]
 
 Name = Union[str, "PathLike[str]"]
 Video = Union[Name, npt.ArrayLike]
@@ -166,3 +166,20 @@ def compare(
     comparison = _stipple.Comparison(margin, max_value, peak, cd_per_unit, until)
     with _stipple.Threads(threads):
         return _stipple.compare(a, b, comparison, progress)
+
+
+def timing(
+    sensor: Union[Sensor, Name],
+    schedule: Union[_stipple.Schedule, Name] = "random",
+    *,
+    size: Optional[Tuple[int, int]] = None,
+    seed: int = 1,
+) -> dict[str, Any]:
+    """How fast a sensor reads, in full and coded: the keys of "stipple timing --json" (docs/cli.md).
+
+    sensor: one with a section [timing] (Sensor.has_timing).
+    schedule: a Schedule, a name, or the path of a file.
+    size: (rows, columns) of what is read; by default those of the Schedule, else the whole array.
+    seed: of a random schedule.
+    """
+    return _stipple.timing(sensor, schedule, size, seed)
