@@ -8,7 +8,7 @@ namespace stipple::python {
 namespace py = pybind11;
 
 void bind_errors();
-void bind_threads(py::module_& module);
+void bind_limits(py::module_& module);
 void bind_footage(py::module_& module);
 void bind_sensor(py::module_& module);
 void bind_schedule(py::module_& module);

@@ -3,27 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/parallel.h"
 #include "python/bindings.h"
 
 namespace stipple::python {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{100};
-
-/// ThreadLimit as a context of `with`.
-class Threads {
-  public:
-    explicit Threads(int threads) : threads_(threads) {
-        if (threads < 0) throw py::value_error("threads: give 1 or more, or 0 for all cores");
-    }
-    void enter() { limit_.emplace(threads_); }
-    void exit(const py::args& /*exception*/) { limit_.reset(); }
-
-  private:
-    int threads_;
-    std::optional<ThreadLimit> limit_;
-};
 
 }  // namespace
 
@@ -54,13 +39,6 @@ void CallProgress::finish() {
 
 void CallProgress::say() {
     if (!tell_.is_none()) tell_(done_, slots_);
-}
-
-void bind_threads(py::module_& module) {
-    py::class_<Threads>(module, "Threads")
-        .def(py::init<int>(), py::arg("threads"))
-        .def("__enter__", &Threads::enter)
-        .def("__exit__", &Threads::exit);
 }
 
 }  // namespace stipple::python

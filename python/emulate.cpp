@@ -19,6 +19,8 @@
 namespace stipple::python {
 namespace {
 
+using namespace pybind11::literals;
+
 /// A sensor with its schedule for some footage.
 SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
                        std::uint64_t seed, const std::string& overrun) {
@@ -30,9 +32,48 @@ SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const p
     return set_up(choice, schedule, footage.shape(), footage.filter());
 }
 
-/// Makes the stream file.
-void write_stream(Footage& footage, const SensorSetup& setup, const py::object& tell,
-                  const std::filesystem::path& file, bool force) {
+/// What the readout cost: the key `readout` of "emulate" in docs/cli.md.
+py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
+    const ReadoutCounts& totals = account.totals();
+    const auto clocks = static_cast<double>(account.clocks());
+    const auto slots = static_cast<double>(account.slots());
+    const double seconds = clocks / static_cast<double>(account.timing().clock_hz);
+    const int rows = account.shape().rows + account.timing().dark_rows;
+    const bool drops = account.budget().policy == OverrunPolicy::kDrop;
+    return py::dict(
+        "overrun_policy"_a = drops ? "drop" : "stretch", "slot_clocks"_a = account.budget().clocks,
+        "clocks"_a = account.clocks(), "seconds"_a = seconds, "sensor_slots_hz"_a = slots / seconds,
+        "overrun_slots"_a = account.overruns(), "dropped_samples"_a = totals.dropped_samples,
+        "readout_clocks"_a = totals.readout_clocks, "rows_read"_a = totals.rows,
+        "conversions"_a = totals.conversions, "transferred_samples"_a = totals.transferred,
+        "link_bits"_a = totals.bits,
+        "row_utilisation"_a = static_cast<double>(totals.rows) / (slots * rows),
+        "adc_utilisation"_a = static_cast<double>(totals.convert_clocks) / clocks,
+        "link_utilisation"_a = static_cast<double>(totals.link_clocks) / clocks,
+        "energy_uj"_a = totals.energy_pj * 1e-6,
+        "sample_energy_pj"_a = totals.energy_pj / static_cast<double>(totals.samples),
+        "light_throughput"_a = light_throughput,
+        "schedule_memory_bits"_a = schedule_memory_bits(account.schedule()),
+        "code_load_bits_per_second"_a =
+            static_cast<double>(account.shape().pixels()) * (slots / seconds));
+}
+
+/// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
+py::dict figures_of(const StreamRecorder& recorder) {
+    py::dict figures("slots"_a = recorder.stats().slots, "samples"_a = recorder.samples(),
+                     "payload_bits"_a = recorder.payload_bits(),
+                     "compression_ratio"_a = recorder.compression_ratio(),
+                     "light_throughput"_a = recorder.light_throughput(),
+                     "light_read"_a = recorder.light_read(),
+                     "saturated_fraction"_a = recorder.saturated_fraction());
+    if (const ReadoutAccount* account = recorder.account())
+        figures["readout"] = readout_dict(*account, recorder.light_throughput());
+    return figures;
+}
+
+/// Makes the stream file, and returns its figures.
+py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::object& tell,
+                      const std::filesystem::path& file, bool force) {
     const std::string provenance = provenance_of(setup, footage.origin());
     const auto recorder = creating(
         file, [&] { return std::make_unique<StreamRecorder>(file, force, setup, provenance); });
@@ -46,8 +87,11 @@ void write_stream(Footage& footage, const SensorSetup& setup, const py::object& 
         }
     }
     progress.finish();
-    const py::gil_scoped_release released;
-    recorder->finish();
+    {
+        const py::gil_scoped_release released;
+        recorder->finish();
+    }
+    return figures_of(*recorder);
 }
 
 std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
@@ -56,14 +100,14 @@ std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
     warn(mosaic_warning(setup, footage.filter()));
     std::unique_ptr<StreamFile> stream;
     if (output) {
-        write_stream(footage, setup, tell, *output, force);
-        stream = std::make_unique<StreamFile>(*output);
+        const py::dict figures = write_stream(footage, setup, tell, *output, force);
+        stream = std::make_unique<StreamFile>(*output, figures);
     } else {
         const NoSync no_sync;
         auto file = std::make_unique<TemporaryFile>();
-        write_stream(footage, setup, tell, file->path(), false);
+        const py::dict figures = write_stream(footage, setup, tell, file->path(), false);
         file->unname();
-        stream = std::make_unique<StreamFile>(std::move(file));
+        stream = std::make_unique<StreamFile>(std::move(file), figures);
     }
     footage.pass_warnings_on();
     return stream;

@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <regex>
+#include <string>
+#include <utility>
 
 #include "io/partial_output.h"
 #include "python/bindings.h"
@@ -18,15 +21,30 @@ PyObject* class_of(int number) {
     return number == EEXIST ? PyExc_FileExistsError : PyExc_OSError;
 }
 
+/// A message of the program as Python's users know its options: as arguments.
+std::string in_python(const char* message) {
+    const std::pair<const char*, const char*> arguments[] = {
+        {"--set (sensor|schedule|decoder)[.]", "$1 setting "},
+        {"--force", "force=True"},
+        {"--fill-gaps", "fill_gaps=True"},
+        {"--overrun drop", "overrun=\"drop\""},
+        {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$1\")"},
+        {"--max-memory", "MaxMemory"}};
+    std::string text = message;
+    for (const auto& [option, argument] : arguments)
+        text = std::regex_replace(text, std::regex(option), argument);
+    return text;
+}
+
 void translate(std::exception_ptr thrown) {
     try {
         if (thrown) std::rethrow_exception(thrown);
     } catch (const FileError& error) {
-        PyErr_SetString(class_of(error.number()), error.what());
+        PyErr_SetString(class_of(error.number()), in_python(error.what()).c_str());
     } catch (const InputError& error) {
-        PyErr_SetString(PyExc_ValueError, error.what());
+        PyErr_SetString(PyExc_ValueError, in_python(error.what()).c_str());
     } catch (const DeviceError& error) {
-        PyErr_SetString(PyExc_OSError, error.what());
+        PyErr_SetString(PyExc_OSError, in_python(error.what()).c_str());
     } catch (const fs::filesystem_error& error) {
         PyErr_SetString(class_of(error.code().value()), error.what());
     }

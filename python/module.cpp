@@ -6,7 +6,7 @@ PYBIND11_MODULE(_stipple, module) {
     module.doc() = "The compiled part of the package stipple.";
     module.attr("__version__") = stipple::version();
     bind_errors();
-    bind_threads(module);
+    bind_limits(module);
     bind_footage(module);
     bind_sensor(module);
     bind_schedule(module);

@@ -37,8 +37,8 @@ class TemporaryFile {
 class StreamFile {
   public:
     /// \throws InputError as StreamReader, FileError.
-    explicit StreamFile(std::filesystem::path file);
-    explicit StreamFile(std::unique_ptr<TemporaryFile> file);
+    explicit StreamFile(std::filesystem::path file, pybind11::object figures = pybind11::none());
+    StreamFile(std::unique_ptr<TemporaryFile> file, pybind11::object figures);
 
     /// A reader at its beginning.
     [[nodiscard]] StreamReader reader(ReadPolicy policy = ReadPolicy::kTolerant) const;
@@ -47,6 +47,9 @@ class StreamFile {
     /// For messages.
     [[nodiscard]] std::string name() const;
     [[nodiscard]] const StreamHeader& header() const { return reader_.header(); }
+
+    /// Of its emulation, a dict; None if it was opened.
+    [[nodiscard]] const pybind11::object& figures() const { return figures_; }
 
     /// Slots that it holds. Reads it through, once, where no index says so.
     [[nodiscard]] std::int64_t slots();
@@ -61,6 +64,7 @@ class StreamFile {
 
     std::unique_ptr<TemporaryFile> temporary_;
     std::filesystem::path path_;
+    pybind11::object figures_;
     StreamReader reader_;
     SamplePacket packet_;      ///< that `reader_` has read last
     bool has_packet_ = false;  ///< else `reader_` has read none, or is at the end

@@ -68,11 +68,16 @@ void TemporaryFile::unname() {
     path_ = fmt::format("/proc/self/fd/{}", descriptor_);
 }
 
-StreamFile::StreamFile(fs::path file)
-    : path_(std::move(file)), reader_(reading(path_, [&] { return StreamReader(path_); })) {}
+StreamFile::StreamFile(fs::path file, py::object figures)
+    : path_(std::move(file)),
+      figures_(std::move(figures)),
+      reader_(reading(path_, [&] { return StreamReader(path_); })) {}
 
-StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file)
-    : temporary_(std::move(file)), path_(temporary_->path()), reader_(path_) {}
+StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file, py::object figures)
+    : temporary_(std::move(file)),
+      path_(temporary_->path()),
+      figures_(std::move(figures)),
+      reader_(path_) {}
 
 StreamReader StreamFile::reader(ReadPolicy policy) const {
     return reading(path_, [&] { return StreamReader(path_, policy); });

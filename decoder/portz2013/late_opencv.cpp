@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <vector>
 
 #include "core/error.h"
+#include "core/own_folders.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -15,10 +17,10 @@ using TvL1Flow = decltype(tv_l1_flow);
 
 TvL1Flow* load() {
     constexpr const char* kName = "libstipple_opencv.so";
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+    std::vector<fs::path> folders = own_folders();
+    folders.emplace_back(STIPPLE_BUILD_DIR);
     std::string why;
-    for (const fs::path& folder : {program, fs::path(STIPPLE_BUILD_DIR)}) {
+    for (const fs::path& folder : folders) {
         void* const library = dlopen((folder / kName).c_str(), RTLD_LAZY);
         void* const flow = library ? dlsym(library, "stipple_tv_l1_flow") : nullptr;
         if (flow != nullptr) return reinterpret_cast<TvL1Flow*>(flow);

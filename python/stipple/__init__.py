@@ -9,10 +9,11 @@ and values are those of the program `stipple`, whose documentation holds here to
 ValueError, errors of files OSError, both with the program's texts."""
 
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, timing
-from ._stipple import Frame, Recording, Sensor, Stream, VideoQuality, __version__
+from ._stipple import Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
 
 __all__ = [
     "Frame",
+    "MaxMemory",
     "Recording",
     "Schedule",
     "Sensor",

@@ -76,7 +76,7 @@ class DecodeTest(ProgramTest):
         self.write_clip()
         with self.assertRaisesRegex(ValueError, "is none of naive, fast"):
             self.decodes("nave")
-        with self.assertRaisesRegex(ValueError, "decoder.round: is unknown"):
+        with self.assertRaisesRegex(ValueError, "decoder setting round: is unknown"):
             self.decodes("fast", {"round": 1})
         with self.assertRaisesRegex(ValueError, "until: 0 is not above 0"):
             self.decodes("fast", until=0)

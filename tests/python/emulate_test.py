@@ -89,6 +89,29 @@ class EmulateTest(ProgramTest):
         self.same_samples(stipple.emulate(light(), schedule=schedule),
                           stipple.Stream.open(self.folder / "program.stipple"))
 
+    def test_figures_are_those_of_the_program(self):
+        self.write_array("light.npy", light())
+        for sensor, overrun in (("paper", "stretch"), ("lux1310", "stretch"), ("lux1310", "drop")):
+            with self.subTest(sensor, overrun=overrun):
+                settings = {} if sensor == "paper" else {"slot_us": 3}
+                told = self.figures("emulate", "light.npy", "-o", "program.stipple", "--force", "--sensor", sensor,
+                                    "--overrun", overrun, *(("--set", "sensor.slot_us=3") if settings else ()))
+                stream = stipple.emulate(self.folder / "light.npy", stipple.Sensor(sensor, settings), overrun=overrun)
+                self.assertEqual(stream.figures, {key: told[key] for key in stream.figures})
+                self.assertEqual(set(told) - set(stream.figures), {"slots_per_second", "samples_per_second"})
+                if overrun == "drop":
+                    self.assertGreater(stream.figures["readout"]["dropped_samples"], 0)
+        self.assertIsNone(stipple.Stream.open(self.folder / "program.stipple").figures)
+
+    def test_memory_is_limited(self):
+        video = np.broadcast_to(np.float32(0.2), (2, 600, 800))
+        with self.assertRaisesRegex(ValueError, r'more than the 1 MiB that MaxMemory says; stipple.MaxMemory\("\d'):
+            with stipple.MaxMemory("1M"):
+                stipple.decode(stipple.emulate(video), "naive")
+        stipple.decode(stipple.emulate(video), "naive")
+        with self.assertRaisesRegex(ValueError, '"lots" is not a size'):
+            stipple.MaxMemory("lots")
+
     def test_leaves_no_temporary_file(self):
         folder = self.folder / "tmp"
         folder.mkdir()
