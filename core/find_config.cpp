@@ -6,6 +6,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/own_folders.h"
 #include "core/suggestion.h"
 
 namespace stipple {
@@ -16,11 +17,10 @@ namespace {
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-    if (!program.empty()) {
-        folders.push_back((program / "../share/stipple/config").lexically_normal());
-        folders.push_back((program / "../../config").lexically_normal());  // build/release/stipple
+    for (const fs::path& own : own_folders()) {
+        folders.push_back((own / "../share/stipple/config").lexically_normal());
+        folders.push_back((own / "../../config").lexically_normal());  // build/release/stipple
+        folders.push_back(own / "config");                             // the Python package
     }
     folders.emplace_back(STIPPLE_SOURCE_CONFIG_DIR);
     folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <vector>
 
 #include "core/error.h"
+#include "core/own_folders.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -15,11 +17,15 @@ using TvL1Flow = decltype(tv_l1_flow);
 
 TvL1Flow* load() {
     constexpr const char* kName = "libstipple_opencv.so";
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+    std::vector<fs::path> folders;
+    for (const fs::path& own : own_folders()) {
+        folders.push_back(own);
+        folders.push_back(own / STIPPLE_LIBRARY_FROM_PROGRAM);
+    }
+    folders.emplace_back(STIPPLE_BUILD_DIR);
+    folders.emplace_back(STIPPLE_LIBRARY_DIR);
     std::string why;
-    for (const fs::path& folder : {program, program / STIPPLE_LIBRARY_FROM_PROGRAM,
-                                   fs::path(STIPPLE_BUILD_DIR), fs::path(STIPPLE_LIBRARY_DIR)}) {
+    for (const fs::path& folder : folders) {
         void* const library = dlopen((folder / kName).c_str(), RTLD_LAZY);
         void* const flow = library ? dlsym(library, "stipple_tv_l1_flow") : nullptr;
         if (flow != nullptr) return reinterpret_cast<TvL1Flow*>(flow);

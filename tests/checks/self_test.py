@@ -24,7 +24,7 @@ TABLE = """| module | may include |
 | decoder | stream, core |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |
-| apps, tests, bench | everything |
+| apps, python, tests, bench | everything |
 """
 
 

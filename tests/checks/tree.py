@@ -7,7 +7,7 @@ from pathlib import Path
 
 LIBRARIES = ("core", "io", "stream", "sensor_model", "readout", "decoder", "capture", "metrics",
              "scenes")
-MODULES = (*LIBRARIES, "apps")
+MODULES = (*LIBRARIES, "apps", "python")
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
 
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+/// The Python module: each function adds the classes and functions of one subject.
+namespace stipple::python {
+
+namespace py = pybind11;
+
+void bind_errors();
+void bind_limits(py::module_& module);
+void bind_footage(py::module_& module);
+void bind_sensor(py::module_& module);
+void bind_schedule(py::module_& module);
+void bind_stream(py::module_& module);
+void bind_emulate(py::module_& module);
+void bind_decode(py::module_& module);
+void bind_compare(py::module_& module);
+void bind_timing(py::module_& module);
+void bind_recording(py::module_& module);
+
+}  // namespace stipple::python

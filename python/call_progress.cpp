@@ -1,0 +1,44 @@
+#include "python/call_progress.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "python/bindings.h"
+
+namespace stipple::python {
+namespace {
+
+constexpr std::chrono::milliseconds kPause{100};
+
+}  // namespace
+
+CallProgress::CallProgress(py::object tell, std::optional<std::int64_t> slots)
+    : tell_(std::move(tell)), slots_(slots), next_(std::chrono::steady_clock::now() + kPause) {}
+
+bool CallProgress::reach(double slots) noexcept {
+    done_ =
+        slots_ ? std::min(slots, static_cast<double>(*slots_)) : slots;  // blocks go beyond `until`
+    const auto now = std::chrono::steady_clock::now();
+    if (raised_ || now < next_) return !raised_;
+    next_ = now + kPause;
+    const py::gil_scoped_acquire gil;
+    try {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        say();
+    } catch (...) {
+        raised_ = std::current_exception();
+    }
+    return !raised_;
+}
+
+void CallProgress::finish() {
+    if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    say();
+}
+
+void CallProgress::say() {
+    if (!tell_.is_none()) tell_(done_, slots_);
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+
+#include "core/error.h"
+#include "metrics/video_quality.h"
+#include "python/bindings.h"
+#include "python/call_progress.h"
+#include "python/footage.h"
+
+namespace stipple::python {
+namespace {
+
+struct Comparison {
+    QualityOptions options;
+    std::optional<std::int64_t> until;  ///< frames of each; none: all, of which both have as many
+};
+
+[[noreturn]] void fail_shape(const Footage& result, const Footage& reference) {
+    const FrameShape a = result.shape();
+    const FrameShape b = reference.shape();
+    throw InputError(result.name(),
+                     fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+                                 "reference has {} x {} x {}",
+                                 a.rows, a.cols, a.planes, b.rows, b.cols, b.planes));
+}
+
+/// Adds up the frames. Without the GIL.
+void compare_frames(Footage& result, Footage& reference, const Comparison& comparison,
+                    QualityMeter& meter, CallProgress& progress) {
+    for (std::int64_t frame = 0; !comparison.until || frame < *comparison.until; ++frame) {
+        const auto a = result.next();
+        const auto b = reference.next();
+        if (a.empty() && b.empty() && !comparison.until) return;
+        if (a.empty() || b.empty())
+            throw InputError(
+                (a.empty() ? result : reference).name(),
+                fmt::format("ends after {} frames, before {}", frame,
+                            comparison.until ? fmt::format("until={}", *comparison.until)
+                                             : "the other does"));
+        meter.add(a, b);
+        if (!progress.reach(static_cast<double>(frame + 1))) return;
+    }
+}
+
+VideoQuality compare(Footage& result, Footage& reference, const Comparison& comparison,
+                     const py::object& tell) {
+    if (result.shape() != reference.shape()) fail_shape(result, reference);
+    QualityMeter meter(reference.shape(), comparison.options);
+    CallProgress progress(tell, comparison.until ? comparison.until : reference.slots());
+    {
+        const py::gil_scoped_release released;
+        compare_frames(result, reference, comparison, meter, progress);
+    }
+    progress.finish();
+    result.pass_warnings_on();
+    reference.pass_warnings_on();
+    return meter.quality();
+}
+
+}  // namespace
+
+void bind_compare(py::module_& module) {
+    py::class_<VideoQuality>(
+        module, "VideoQuality",
+        "Quality of a video against its reference. Equal videos have an infinite PSNR.")
+        .def_readonly("psnr_db", &VideoQuality::psnr_db, "Linear light, pooled over all, in dB.")
+        .def_readonly("psnr_gamma_db", &VideoQuality::psnr_gamma_db,
+                      "Clamped to 0..1 and raised to 1/2.2, in dB.")
+        .def_readonly("psnr_frame_mean_db", &VideoQuality::psnr_frame_mean_db,
+                      "Linear light, mean of the frames' values, in dB.")
+        .def_readonly("pu21_psnr_db", &VideoQuality::pu21_psnr_db, "Of PU21 values, in dB.")
+        .def_readonly("ssim", &VideoQuality::ssim, "Clamped to 0..1 and raised to 1/2.2, up to 1.")
+        .def("__repr__", [](const VideoQuality& self) {
+            return fmt::format(
+                "<stipple.VideoQuality psnr_db={:.2f} psnr_gamma_db={:.2f} "
+                "psnr_frame_mean_db={:.2f} pu21_psnr_db={:.2f} ssim={:.4f}>",
+                self.psnr_db, self.psnr_gamma_db, self.psnr_frame_mean_db, self.pu21_psnr_db,
+                self.ssim);
+        });
+    py::class_<Comparison>(module, "Comparison")
+        .def(py::init([](int margin, std::optional<double> max_value, double peak,
+                         double cd_per_unit, std::optional<std::int64_t> until) {
+            return Comparison{.options = {.margin = margin,
+                                          .max_value = max_value,
+                                          .peak = peak,
+                                          .unit_cd_per_m2 = cd_per_unit},
+                              .until = until};
+        }));
+    module.def("compare", &compare);
+}
+
+}  // namespace stipple::python

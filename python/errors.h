@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+
+/// Errors in Python: InputError is a ValueError, DeviceError an OSError, both with their texts.
+/// What is wrong with a file before its content counts is an OSError too, of the class that `open`
+/// raises.
+namespace stipple::python {
+
+/// A file that cannot be opened or created.
+class FileError : public std::runtime_error {
+  public:
+    /// `number` as errno.
+    FileError(int number, const std::string& text) : std::runtime_error(text), number_(number) {}
+    [[nodiscard]] int number() const { return number_; }
+
+  private:
+    int number_;
+};
+
+/// \throws FileError with the text of `error` if `file` is not there, may not be read, or is a
+/// folder.
+void check_readable(const std::filesystem::path& file, const InputError& error);
+
+/// \throws FileError with the text of `error` if `file` is there already, or its folder is not.
+void check_creatable(const std::filesystem::path& file, const InputError& error);
+
+/// The value of `read()`, which reads `file`. \throws FileError where it cannot be opened.
+template <typename Read>
+auto reading(const std::filesystem::path& file, Read&& read) {
+    try {
+        return std::forward<Read>(read)();
+    } catch (const InputError& error) {
+        check_readable(file, error);
+        throw;
+    }
+}
+
+/// The value of `create()`, which creates `file`. \throws FileError where that cannot be.
+template <typename Create>
+auto creating(const std::filesystem::path& file, Create&& create) {
+    try {
+        return std::forward<Create>(create)();
+    } catch (const InputError& error) {
+        check_creatable(file, error);
+        throw;
+    }
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,146 @@
+#include "python/footage.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <fstream>
+#include <utility>
+
+#include "core/error.h"
+#include "io/footage_files.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+
+namespace stipple::python {
+namespace fs = std::filesystem;
+namespace {
+
+/// A path, or nothing: then it is an array, or like one.
+std::optional<fs::path> path_of(const py::object& video) {
+    if (!py::isinstance<py::str>(video) && !py::hasattr(video, "__fspath__")) return std::nullopt;
+    return video.cast<fs::path>();
+}
+
+std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& options,
+                                std::vector<std::string>& warnings) {
+    const bool changed = options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear ||
+                         options.luminance || options.max_value;
+    if (changed && is_recording(path))
+        throw InputError(path.string(),
+                         "is a recording of a camera, whose numbers are linear: transfer, "
+                         "luminance and max_value are for other footage");
+    const auto open_it = [&] {
+        return std::make_unique<ReadAhead>(
+            path, options, [&](const std::string& text) { warnings.push_back(text); });
+    };
+    // Folders and printf patterns are no files.
+    const bool is_file = path.string().find('%') == std::string::npos && !fs::is_directory(path);
+    return is_file ? reading(path, open_it) : open_it();
+}
+
+/// The regular files of footage, in the order in which they are read.
+std::vector<fs::path> files_of(const fs::path& footage) {
+    if (fs::is_directory(footage)) return images_in_folder(footage).files;
+    if (fs::is_regular_file(footage)) return {footage};
+    return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage).files;
+}
+
+std::string sha256_of(const std::vector<fs::path>& files) {
+    const py::object hash = py::module_::import("hashlib").attr("sha256")();
+    std::vector<char> bytes(std::size_t{1} << 20U);
+    for (const fs::path& path : files) {
+        std::ifstream file(path, std::ios::binary);
+        while (file) {
+            file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+            hash.attr("update")(py::memoryview::from_memory(bytes.data(), file.gcount()));
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        }
+        if (!file.eof()) throw InputError(path.string(), "cannot be read");
+    }
+    return hash.attr("hexdigest")().cast<std::string>();
+}
+
+FootageOptions options_of(const std::optional<std::string>& transfer, bool luminance,
+                          std::optional<double> max_value) {
+    FootageOptions options{.transfer = {}, .luminance = luminance, .max_value = max_value};
+    if (max_value && !(*max_value > 0))
+        throw InputError("max_value", fmt::format("{} is not above 0", *max_value));
+    if (!transfer) return options;
+    if (*transfer == "linear")
+        options.transfer = Transfer::kLinear;
+    else if (*transfer == "gamma22")
+        options.transfer = Transfer::kGamma22;
+    else if (*transfer == "srgb")
+        options.transfer = Transfer::kSrgb;
+    else
+        throw InputError("transfer",
+                         fmt::format("\"{}\" is none of linear, gamma22, srgb", *transfer));
+    return options;
+}
+
+}  // namespace
+
+void warn(const std::string& text, int level) {
+    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), level) != 0)
+        throw py::error_already_set();
+}
+
+Footage::Footage(const py::object& video, const FootageOptions& options) : options_(options) {
+    if (const auto path = path_of(video)) {
+        path_ = path->string();
+        files_ = open(*path, options, warnings_);
+    } else {
+        const auto array = py::array::ensure(video);
+        if (!array) throw py::type_error("video: give an array or a path");
+        array_.emplace(array, options);
+    }
+}
+
+FrameShape Footage::shape() const {
+    return files_ ? files_->shape() : array_->shape();
+}
+
+std::optional<std::int64_t> Footage::slots() const {
+    if (!files_) return array_->slots();
+    const auto slots = files_->slots();
+    return slots ? std::optional<std::int64_t>(*slots) : std::nullopt;
+}
+
+ColourFilter Footage::filter() const {
+    return files_ ? files_->filter() : ColourFilter::kNone;
+}
+
+std::span<const float> Footage::next() {
+    return files_ ? files_->next() : array_->next();
+}
+
+std::string Footage::name() const {
+    return path_.empty() ? "video" : path_;
+}
+
+FootageOrigin Footage::origin() const {
+    if (path_.empty()) return {.name = "NumPy array", .reading = options_};
+    const fs::path path(path_);
+    const auto files = files_of(path);
+    return {.name = (path.has_filename() ? path : path.parent_path()).filename().string(),
+            .sha256 = files.empty() ? "" : sha256_of(files),
+            .reading = options_};
+}
+
+void Footage::pass_warnings_on() {
+    for (const std::string& text : std::exchange(warnings_, {})) warn(text);
+    if (array_) warn(array_->warning());
+}
+
+void bind_footage(py::module_& module) {
+    py::class_<Footage>(module, "Footage")
+        .def(py::init([](const py::object& video, const std::optional<std::string>& transfer,
+                         bool luminance, std::optional<double> max_value) {
+                 return std::make_unique<Footage>(video,
+                                                  options_of(transfer, luminance, max_value));
+             }),
+             py::arg("video"), py::arg("transfer") = py::none(), py::arg("luminance") = false,
+             py::arg("max_value") = py::none());
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,19 @@
+#include "core/version.h"
+#include "python/bindings.h"
+
+PYBIND11_MODULE(_stipple, module) {
+    using namespace stipple::python;
+    module.doc() = "The compiled part of the package stipple.";
+    module.attr("__version__") = stipple::version();
+    bind_errors();
+    bind_limits(module);
+    bind_footage(module);
+    bind_sensor(module);
+    bind_schedule(module);
+    bind_stream(module);
+    bind_emulate(module);
+    bind_decode(module);
+    bind_compare(module);
+    bind_timing(module);
+    bind_recording(module);
+}

@@ -1,0 +1,210 @@
+#include "python/schedule.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "core/config.h"
+#include "core/light.h"
+#include "io/output_file.h"
+#include "io/pending_output.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "python/sensor.h"
+#include "readout/schedules/code_schedule.h"
+#include "readout/schedules/schedule_check.h"
+
+namespace stipple::python {
+namespace fs = std::filesystem;
+namespace {
+
+using Tile = std::pair<int, int>;  ///< rows, columns
+
+/// A row of the array of exposures.
+struct ExposureRow {
+    std::uint16_t row, col;
+    std::uint32_t first_slot;
+    std::uint64_t open_slots;
+};
+
+ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
+                               std::pair<std::uint64_t, std::uint64_t> size, std::uint64_t seed,
+                               const py::object& sensor) {
+    ColumnAddressing addressing;
+    if (!sensor.is_none())
+        if (const auto timing = sensor_of(sensor).description.timing)
+            addressing = timing->addressing;
+    ChosenSchedule schedule{.choice = {.schedule = name_of(name),
+                                       .schedule_settings = settings_of(settings),
+                                       .seed = seed},
+                            .shape = checked_shape(size.first, size.second, 1, "size"),
+                            .made = {"", {}, ExposureSchedule(1, 1, 1, {0, 0}, {})}};
+    const auto make = [&] { return set_up_schedule(schedule.choice, schedule.shape, addressing); };
+    const fs::path path(schedule.choice.schedule);
+    schedule.made = path.has_parent_path() || path.has_extension() ? reading(path, make) : make();
+    return schedule;
+}
+
+void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
+    creating(file, [&] {
+        PendingOutput pending(file, force);
+        const std::string text = code_text(schedule.made.schedule, schedule.made.name);
+        OutputFile output(pending.partial(), file.string());
+        output.write(std::as_bytes(std::span(text)));
+        output.close();
+        pending.commit();
+    });
+}
+
+/// Why the sensor cannot do it, or None.
+std::optional<std::string> problem_of(const ChosenSchedule& schedule, const py::object& sensor) {
+    SensorChoice choice = sensor_of(sensor).choice;
+    choice.seed = schedule.choice.seed;
+    choice.schedule = schedule.choice.schedule;
+    choice.schedule_settings = schedule.choice.schedule_settings;
+    const SensorSetup setup = set_up_sensor(choice, schedule.shape);
+    auto problem = store_problem(setup.schedule.schedule, setup.params.charge_stores);
+    if (setup.timing && !problem)
+        problem = timing_problem(setup.schedule.schedule, *setup.timing, setup.shape,
+                                 setup.params.slot_us);
+    return problem;
+}
+
+/// The text of a schedule file of these exposures: an array as `exposures_of` makes.
+std::string text_of(const py::array_t<ExposureRow>& rows, Tile tile, int period_slots,
+                    const std::string& name) {
+    if (tile.first < 1 || tile.second < 1 || rows.ndim() != 1)
+        throw InputError("exposures", "give one axis, and a tile of at least 1 x 1 pixels");
+    const auto pixels =
+        static_cast<std::size_t>(tile.first) * static_cast<std::size_t>(tile.second);
+    if (pixels > kMaxCodeSlots) throw InputError("tile", "is larger than a schedule may have");
+    std::vector<std::vector<Exposure>> by_pixel(pixels);
+    for (py::ssize_t i = 0; i < rows.size(); ++i) {
+        const ExposureRow& row = rows.at(i);
+        if (row.row >= tile.first || row.col >= tile.second)
+            throw InputError("exposures",
+                             fmt::format("row {}, column {} is outside the tile of {} x {}",
+                                         row.row, row.col, tile.first, tile.second));
+        by_pixel[static_cast<std::size_t>(row.row) * static_cast<std::size_t>(tile.second) +
+                 row.col]
+            .push_back({row.first_slot, row.open_slots});
+    }
+    std::vector<std::uint32_t> first{0};
+    std::vector<Exposure> exposures;
+    for (const auto& of_pixel : by_pixel) {
+        exposures.insert(exposures.end(), of_pixel.begin(), of_pixel.end());
+        first.push_back(static_cast<std::uint32_t>(exposures.size()));
+    }
+    return code_text(ExposureSchedule(tile.first, tile.second, period_slots, std::move(first),
+                                      std::move(exposures)),
+                     name);
+}
+
+void bind_figures(py::class_<ChosenSchedule>& schedule) {
+    const auto add = [&](const char* name, auto figure, const char* text) {
+        schedule.def_property_readonly(
+            name, [figure](const ChosenSchedule& self) { return figure(self.made.schedule); },
+            text);
+    };
+    schedule
+        .def_property_readonly(
+            "name", [](const ChosenSchedule& self) { return self.made.name; },
+            "Its name in the header of a stream.")
+        .def_property_readonly(
+            "size",
+            [](const ChosenSchedule& self) { return Tile(self.shape.rows, self.shape.cols); },
+            "(rows, columns) of the array that it was made for.");
+    using Plan = ExposureSchedule;
+    add(
+        "tile", [](const Plan& plan) { return Tile(plan.tile_rows(), plan.tile_cols()); },
+        "(rows, columns) of the tile that repeats over the array.");
+    add("period_slots", std::mem_fn(&Plan::period_slots), "Slots after which all repeats.");
+    add("charge_stores", std::mem_fn(&Plan::charge_stores),
+        "Exposures of a pixel that are under way at once, at most.");
+    add("samples_per_pixel_slot", std::mem_fn(&Plan::samples_per_pixel_slot),
+        "Its inverse is the compression ratio.");
+    add("light_throughput", std::mem_fn(&Plan::light_throughput),
+        "Share of all pixels and slots that collects light.");
+}
+
+}  // namespace
+
+py::array exposures_of(const ExposureSchedule& schedule) {
+    std::vector<ExposureRow> rows;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col)
+            for (const Exposure& exposure : schedule.exposures(row, col))
+                rows.push_back({static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(col),
+                                exposure.first_slot, exposure.open_slots});
+    return py::array_t<ExposureRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, FrameShape footage,
+                   ColourFilter mosaic) {
+    SensorChoice choice = sensor;
+    const bool is_made = py::isinstance<ChosenSchedule>(schedule);
+    if (is_made) {
+        const auto& made = schedule.cast<const ChosenSchedule&>();
+        choice.schedule = made.choice.schedule;
+        choice.schedule_settings = made.choice.schedule_settings;
+    } else {
+        choice.schedule = name_of(schedule);
+    }
+    SensorSetup setup = set_up_sensor(choice, footage, mosaic);
+    if (is_made) {
+        const auto& made = schedule.cast<const ChosenSchedule&>();
+        if (made.made.schedule != setup.schedule.schedule)
+            throw InputError(
+                "schedule",
+                fmt::format(
+                    "was made for {} x {} pixels with seed {}; for {} x {} with seed {} and this "
+                    "sensor it is another one: make it for these, or give its name",
+                    made.shape.rows, made.shape.cols, made.choice.seed, setup.shape.rows,
+                    setup.shape.cols, setup.seed));
+    }
+    return setup;
+}
+
+void bind_schedule(py::module_& module) {
+    PYBIND11_NUMPY_DTYPE(ExposureRow, row, col, first_slot, open_slots);
+    py::class_<ChosenSchedule> schedule(module, "Schedule",
+                                        R"(Which pixel exposes when, as made for an array of pixels.
+
+schedule: one of Schedule.names(), or the path of a .toml, .mem or .hex file.
+settings: keys of the file to change, {"tile_rows": 8}.
+size: (rows, columns) of the array.
+seed: of random exposures.
+sensor: whose columns schedules of kind "hardware_tiled" suit.
+
+Raises ValueError for a key or value that the file may not have, OSError for a missing file.)");
+    schedule
+        .def(py::init(&choose_schedule), py::arg("schedule") = "random",
+             py::arg("settings") = py::dict(), py::arg("size") = Tile(480, 640),
+             py::arg("seed") = 1, py::arg("sensor") = py::none())
+        .def_static(
+            "names", [] { return config_names("schedules"); }, "The schedules of config/schedules.")
+        .def(
+            "exposures",
+            [](const ChosenSchedule& self) { return exposures_of(self.made.schedule); },
+            R"(All exposures of the tile: an array with the fields row, col (of the tile),
+first_slot (0 .. period_slots - 1) and open_slots, whose bit i says that the shutter is open in slot
+first_slot + i. An exposure is read at the end of its last open slot.)")
+        .def("check", &problem_of, py::arg("sensor") = "paper",
+             "Why the sensor cannot do it: too few charge stores or too little time; or None.")
+        .def("save", &save, py::arg("path"), py::arg("force") = false,
+             "Writes it as a file of kind \"code\", which the program reads too.")
+        .def("__repr__", [](const ChosenSchedule& self) {
+            const ExposureSchedule& plan = self.made.schedule;
+            return fmt::format("<stipple.Schedule {}: tile {} x {}, period {} slots>",
+                               self.made.name, plan.tile_rows(), plan.tile_cols(),
+                               plan.period_slots());
+        });
+    bind_figures(schedule);
+    module.def("schedule_text", &text_of);
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <string>
+
+#include "core/exposure_schedule.h"
+#include "core/geometry.h"
+#include "readout/sensor_file.h"
+
+namespace stipple::python {
+
+/// A schedule that Python has chosen, made for an array.
+struct ChosenSchedule {
+    SensorChoice choice;  ///< `schedule`, `schedule_settings` and `seed`
+    FrameShape shape;
+    NamedSchedule made;
+};
+
+/// All exposures of the tile: an array with the fields row, col, first_slot and open_slots.
+[[nodiscard]] pybind11::array exposures_of(const ExposureSchedule& schedule);
+
+/// The sensor with the schedule, a ChosenSchedule of Python or a name or path, for this footage.
+/// \throws InputError as set_up_sensor, or if the schedule was made for something else.
+[[nodiscard]] SensorSetup set_up(const SensorChoice& sensor, const pybind11::object& schedule,
+                                 FrameShape footage, ColourFilter mosaic);
+
+}  // namespace stipple::python

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <pybind11/pytypes.h>
+
+#include <string>
+#include <vector>
+
+#include "readout/sensor_file.h"
+
+namespace stipple::python {
+
+/// A sensor that Python has chosen.
+struct ChosenSensor {
+    SensorChoice choice;  ///< `sensor` and `settings`
+    SensorDescription description;
+};
+
+/// "key=value" of a dict: texts as on the command line, other values as TOML writes them.
+[[nodiscard]] std::vector<std::string> settings_of(const pybind11::dict& settings);
+
+/// The text of a name or path.
+[[nodiscard]] std::string name_of(const pybind11::object& name);
+
+/// \throws InputError as read_sensor_file, FileError for a path that leads nowhere.
+[[nodiscard]] ChosenSensor choose_sensor(const pybind11::object& name,
+                                         const pybind11::dict& settings);
+
+/// A ChosenSensor of Python, or one of this name or path.
+[[nodiscard]] ChosenSensor sensor_of(const pybind11::object& sensor);
+
+}  // namespace stipple::python

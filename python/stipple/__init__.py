@@ -1,0 +1,28 @@
+"""Model of a camera chip with per-pixel coded exposure: light in, packed samples out, and back to video.
+
+    stream = stipple.emulate(video)     # an array (slot, row, col) of linear light, or a path
+    result = stipple.decode(stream)     # an array of the same shape and unit
+    print(stipple.compare(result, video))
+
+Light 1.0 is the sensor's `photons_per_unit` photons per site and time slot; a frame is a slot. The bytes
+and values are those of the program `stipple`, whose documentation holds here too. Errors of values are
+ValueError, errors of files OSError, both with the program's texts."""
+
+from ._pipeline import Schedule, compare, decode, decode_methods, emulate, timing
+from ._stipple import Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
+
+__all__ = [
+    "Frame",
+    "MaxMemory",
+    "Recording",
+    "Schedule",
+    "Sensor",
+    "Stream",
+    "VideoQuality",
+    "__version__",
+    "compare",
+    "decode",
+    "decode_methods",
+    "emulate",
+    "timing",
+]

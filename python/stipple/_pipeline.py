@@ -1,0 +1,185 @@
+"""What a clip goes through: emulate, decode, compare; and how fast the chip reads it."""
+
+import shutil
+import tempfile
+import weakref
+from os import PathLike
+from pathlib import Path
+from typing import Any, Callable, Mapping, Optional, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _stipple
+from ._stipple import Sensor, Stream, VideoQuality, decode_methods
+
+__all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "timing"]
+
+Name = Union[str, "PathLike[str]"]
+Video = Union[Name, npt.ArrayLike]
+Tell = Optional[Callable[[float, Optional[int]], object]]
+
+#: A row of Schedule.exposures().
+EXPOSURE = np.dtype([("row", "u2"), ("col", "u2"), ("first_slot", "u4"), ("open_slots", "u8")])
+
+
+class Schedule(_stipple.Schedule):
+    __doc__ = _stipple.Schedule.__doc__
+
+    @classmethod
+    def from_exposures(
+        cls,
+        exposures: npt.ArrayLike,
+        tile: Tuple[int, int],
+        period_slots: int,
+        *,
+        name: str = "custom",
+        size: Tuple[int, int] = (480, 640),
+    ) -> "Schedule":
+        """A schedule of one's own.
+
+        exposures: rows (row, col, first_slot, open_slots) as Schedule.exposures() gives: a list of tuples or
+            a structured array. Bit i of open_slots (1 .. 2^64 - 1) opens the shutter in slot first_slot + i;
+            bit 0 is set.
+        tile: (rows, columns) of the tile that repeats over the array.
+        period_slots: slots after which all repeats.
+        name: for the stream's header, at most 64 bytes.
+
+        Raises ValueError where two exposures of a pixel share a slot or an exposure is longer than the period.
+        """
+        rows = np.array(exposures, dtype=EXPOSURE)
+        # The program knows schedules as files, so this is one that goes with the object.
+        folder = Path(tempfile.mkdtemp(prefix="stipple_"))
+        try:
+            file = folder / "custom.toml"
+            file.write_text(_stipple.schedule_text(rows, tile, period_slots, name), encoding="utf-8")
+            schedule = cls(file, size=size)
+        except BaseException:
+            shutil.rmtree(folder)
+            raise
+        weakref.finalize(schedule, shutil.rmtree, folder)
+        return schedule
+
+
+def emulate(
+    video: Video,
+    sensor: Union[Sensor, Name] = "paper",
+    schedule: Union[_stipple.Schedule, Name] = "random",
+    seed: int = 1,
+    *,
+    output: Optional[Name] = None,
+    force: bool = False,
+    overrun: str = "stretch",
+    transfer: Optional[str] = None,
+    luminance: bool = False,
+    max_value: Optional[float] = None,
+    threads: int = 0,
+    progress: Tell = None,
+) -> Stream:
+    """The sample stream that the chip makes of a video, as "stipple emulate" does.
+
+    video: linear light, a frame per time slot; an array (slot, row, col) or (slot, row, col, 3), or a path to
+        what the program reads. Floating-point values are light, uint8 and uint16 are divided by 255 and
+        65535. Frames of float32 that lie plane by plane, as those of `decode` do, are not copied.
+    sensor: a Sensor, the name of one, or the path of its file.
+    schedule: a Schedule that was made for this size and seed, a name, or the path of a file.
+    seed: of the noise and of a random schedule.
+    output: a new .stipple file. Without it the stream lies in a temporary file (of the folder TMPDIR) that
+        goes with the Stream; Stream.save copies it.
+    force: replace a file that is there.
+    overrun: what a sensor with timing does if a readout takes longer than its slot, "stretch" or "drop".
+    transfer: how the numbers map to light, "linear" (default), "gamma22" or "srgb".
+    luminance: reduce colour to Rec. 709 luminance.
+    max_value: clip light to this value first.
+    threads: 0 means all cores. The bytes do not depend on it.
+    progress: called some ten times a second as progress(slots done, slots in all or None). What it raises ends
+        the call, as Ctrl-C does; nothing is written then.
+
+    The same arguments give the same bytes. A stream of a path is that of the program; of an array its header
+    does not name the footage. Raises ValueError, or OSError for files.
+    """
+    footage = _stipple.Footage(video, transfer, luminance, max_value)
+    setup = _stipple.Setup(footage, sensor, schedule, seed, overrun)
+    with _stipple.Threads(threads):
+        return _stipple.emulate(footage, setup, output, force, progress)
+
+
+def decode(
+    stream: Union[Stream, Name],
+    method: str = "best",
+    options: Mapping[str, object] = {},
+    *,
+    until: Optional[int] = None,
+    fill_gaps: bool = False,
+    strict: bool = False,
+    threads: int = 0,
+    progress: Tell = None,
+) -> npt.NDArray[np.float32]:
+    """The video of a sample stream, as "stipple decode" does: float32 in units of the footage.
+
+    The array is (slot, row, col), or of colour (slot, row, col, plane) with planes red, green and blue: what
+    the program writes to a .npy file. Colour lies plane by plane in memory, as it was decoded; use
+    np.ascontiguousarray where other code wants it pixel by pixel.
+
+    stream: a Stream, or the path of one.
+    method: one of decode_methods(), from the fastest to the best.
+    options: of the method, {"iterations": 20}; docs/decoder_options.md lists them.
+    until: decode only so many slots.
+    fill_gaps: decode slots that are missing, however many they are.
+    strict: raise ValueError at the first damage. Else damage costs its own samples and is a UserWarning.
+    threads: 0 means all cores. The values do not depend on it.
+    progress: as for `emulate`.
+    """
+    task = _stipple.DecodeTask(method, options, fill_gaps, strict, until)
+    source = stream if isinstance(stream, Stream) else Stream.open(stream)
+    with _stipple.Threads(threads):
+        return _stipple.decode(source, task, progress)
+
+
+def compare(
+    result: Video,
+    reference: Video,
+    *,
+    margin: int = 0,
+    max_value: Optional[float] = None,
+    peak: float = 1.0,
+    cd_per_unit: float = 100.0,
+    until: Optional[int] = None,
+    transfer: Optional[str] = None,
+    luminance: bool = False,
+    threads: int = 0,
+    progress: Tell = None,
+) -> VideoQuality:
+    """Quality of a video against its reference, as "stipple compare" does.
+
+    result, reference: videos as for `emulate`, of the same shape. `transfer` and `max_value` are those of
+        "stipple compare": transfer is of the reference.
+    margin: frames left out at each end.
+    max_value: clip the light of both to it first.
+    peak: light of which PSNR and PU21-PSNR are.
+    cd_per_unit: luminance of light 1.0 for PU21, in cd/m2.
+    until: compare only so many frames.
+    luminance: reduce colour of both to Rec. 709 luminance.
+    """
+    a = _stipple.Footage(result, "linear", luminance)
+    b = _stipple.Footage(reference, transfer, luminance)
+    comparison = _stipple.Comparison(margin, max_value, peak, cd_per_unit, until)
+    with _stipple.Threads(threads):
+        return _stipple.compare(a, b, comparison, progress)
+
+
+def timing(
+    sensor: Union[Sensor, Name],
+    schedule: Union[_stipple.Schedule, Name] = "random",
+    *,
+    size: Optional[Tuple[int, int]] = None,
+    seed: int = 1,
+) -> dict[str, Any]:
+    """How fast a sensor reads, in full and coded: the keys of "stipple timing --json" (docs/cli.md).
+
+    sensor: one with a section [timing] (Sensor.has_timing).
+    schedule: a Schedule, a name, or the path of a file.
+    size: (rows, columns) of what is read; by default those of the Schedule, else the whole array.
+    seed: of a random schedule.
+    """
+    return _stipple.timing(sensor, schedule, size, seed)

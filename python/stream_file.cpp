@@ -1,0 +1,140 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+#include "io/output_file.h"
+#include "io/pending_output.h"
+#include "python/errors.h"
+#include "python/stream.h"
+
+namespace stipple::python {
+namespace fs = std::filesystem;
+namespace py = pybind11;
+namespace {
+
+/// A row of the array of samples.
+struct SampleRow {
+    std::uint16_t row, col;
+    std::uint8_t plane, exposure_slots, light_slots;
+    std::uint16_t dn;
+};
+
+void add_rows(const SamplePacket& packet, const StreamHeader& header,
+              std::vector<SampleRow>& rows) {
+    auto dn = packet.dn.begin();
+    if (packet.dn.empty()) return;
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        visit_due_pixels(header.schedule, packet.slot, row, header.shape.cols,
+                         [&](int col, const DuePixel& pixel) {
+                             for (int plane = 0; plane < header.shape.planes; ++plane)
+                                 rows.push_back({static_cast<std::uint16_t>(row),
+                                                 static_cast<std::uint16_t>(col),
+                                                 static_cast<std::uint8_t>(plane), pixel.span_slots,
+                                                 pixel.light_slots, *dn++});
+                         });
+}
+
+[[noreturn]] void fail(const fs::path& path, std::string_view done) {
+    throw DeviceError(path.string(), fmt::format("cannot be {}: {}", done,
+                                                 std::generic_category().message(errno)));
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile() {
+    std::string folder = (fs::temp_directory_path() / "stipple_XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) fail(folder, "created");
+    folder_ = folder;
+    path_ = folder_ / "stream.stipple";
+}
+
+TemporaryFile::~TemporaryFile() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void TemporaryFile::unname() {
+    descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail(path_, "opened");
+    fs::remove_all(std::exchange(folder_, {}));
+    path_ = fmt::format("/proc/self/fd/{}", descriptor_);
+}
+
+StreamFile::StreamFile(fs::path file, py::object figures)
+    : path_(std::move(file)),
+      figures_(std::move(figures)),
+      reader_(reading(path_, [&] { return StreamReader(path_); })) {}
+
+StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file, py::object figures)
+    : temporary_(std::move(file)),
+      path_(temporary_->path()),
+      figures_(std::move(figures)),
+      reader_(path_) {}
+
+StreamReader StreamFile::reader(ReadPolicy policy) const {
+    return reading(path_, [&] { return StreamReader(path_, policy); });
+}
+
+std::string StreamFile::name() const {
+    return is_temporary() ? "stream" : path_.string();
+}
+
+bool StreamFile::advance() {
+    has_packet_ = reader_.next(packet_);
+    return has_packet_;
+}
+
+std::int64_t StreamFile::slots() {
+    if (!slots_) slots_ = reader_.slots();
+    if (slots_) return *slots_;
+    StreamReader all = reader();
+    SamplePacket packet;
+    while (all.next(packet)) {
+    }
+    slots_ = all.report().slots;
+    return *slots_;
+}
+
+py::array StreamFile::samples(std::int64_t slot) {
+    if (slot < 0 || slot >= slots())
+        throw py::index_error(fmt::format("slot {}: the stream holds {}", slot, slots()));
+    if (!has_packet_ || packet_.slot > slot) {
+        reader_ = reader();
+        advance();
+    }
+    while (has_packet_ && packet_.slot < slot) advance();
+    std::vector<SampleRow> rows;
+    for (; has_packet_ && packet_.slot == slot; advance()) add_rows(packet_, header(), rows);
+    return py::array_t<SampleRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+void StreamFile::save(const fs::path& file, bool force) const {
+    creating(file, [&] {
+        PendingOutput pending(file, force);
+        OutputFile output(pending.partial(), file.string());
+        std::ifstream input(path_, std::ios::binary);
+        std::vector<char> bytes(std::size_t{1} << 20U);
+        while (input) {
+            input.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+            output.write(
+                std::as_bytes(std::span(bytes.data(), static_cast<std::size_t>(input.gcount()))));
+        }
+        if (!input.eof()) throw InputError(name(), "cannot be read");
+        output.close();
+        pending.commit();
+    });
+}
+
+void bind_sample_rows() {
+    PYBIND11_NUMPY_DTYPE(SampleRow, row, col, plane, exposure_slots, light_slots, dn);
+}
+
+}  // namespace stipple::python

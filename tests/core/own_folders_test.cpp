@@ -1,0 +1,16 @@
+#include "core/own_folders.h"
+
+#include <gtest/gtest.h>
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(OwnFoldersTest, OfAProgramAreItsOwnOnly) {
+    const fs::path program = fs::read_symlink("/proc/self/exe");
+    EXPECT_EQ(own_folders(), std::vector<fs::path>{program.parent_path()});
+}
+
+}  // namespace
+}  // namespace stipple

@@ -1,0 +1,65 @@
+"""Sensors and schedules are those of config/, with settings as on the command line."""
+
+import unittest
+
+import numpy as np
+import stipple
+from program import ProgramTest
+
+
+class ChoiceTest(ProgramTest):
+    def test_names_are_those_of_the_program(self):
+        for names, kind in ((stipple.Sensor.names(), "sensors"), (stipple.Schedule.names(), "schedules")):
+            listed = self.succeed("list", kind)
+            self.assertTrue(names)
+            for name in names:
+                self.assertIn(name, listed)
+
+    def test_settings_change_keys(self):
+        sensor = stipple.Sensor("paper", {"read_noise_e": np.float64(2.5), "bit_depth": np.int64(10),
+                                          "shot_noise": False, "name": "mine"})
+        self.assertEqual((sensor.read_noise_e, sensor.bit_depth, sensor.shot_noise, sensor.name),
+                         (2.5, 10, False, "mine"))
+        self.assertAlmostEqual(sensor.gain_e_per_dn, sensor.full_scale_e / 1023)
+        schedule = stipple.Schedule("tiled", {"exposure_slots": np.array([1, 3])})
+        self.assertEqual(schedule.period_slots, 4)
+        with self.assertRaisesRegex(ValueError, 'did you mean "read_noise_e"'):
+            stipple.Sensor("paper", {"read_nois_e": 5})
+        with self.assertRaises(TypeError):
+            stipple.Sensor("paper", {"read_noise_e": object()})
+
+    def test_exposures_are_the_codes_of_the_program(self):
+        schedule = stipple.Schedule("two_bucket", size=(32, 32), seed=5)
+        self.succeed("schedule", "make", "two_bucket", "--size", "32x32", "--seed", 5, "-o", "program.toml")
+        schedule.save(self.folder / "python.toml")
+        self.assertEqual((self.folder / "python.toml").read_text(), (self.folder / "program.toml").read_text())
+        exposures = schedule.exposures()
+        light = sum(int(mask).bit_count() for mask in exposures["open_slots"])
+        rows, cols = schedule.tile
+        self.assertAlmostEqual(light / (rows * cols * schedule.period_slots), schedule.light_throughput)
+        self.assertAlmostEqual(len(exposures) / (rows * cols * schedule.period_slots),
+                               schedule.samples_per_pixel_slot)
+        self.assertEqual(schedule.charge_stores, 2)
+
+    def test_check_says_what_the_program_says(self):
+        schedule = stipple.Schedule("two_bucket")
+        problem = schedule.check("paper")
+        self.assertIn(problem, self.fails(1, [], "schedule", "check", "two_bucket"))
+        self.assertIsNone(schedule.check(stipple.Sensor("paper", {"charge_stores": 2})))
+
+    def test_a_schedule_for_a_sensor_suits_its_columns(self):
+        light = np.full((20, 32, 64), 0.2)
+        made = stipple.Schedule("hardware_tiled", size=(32, 64), sensor="lux1310")
+        stream = stipple.emulate(light, "lux1310", made)
+        self.assertEqual(stream.exposures().tolist(), made.exposures().tolist())
+
+    def test_exposures_of_ones_own_must_be_legal(self):
+        for message, exposures in {"share|already open": [(0, 0, 0, 0b11), (0, 0, 1, 0b1)],
+                                   "outside the tile": [(1, 0, 0, 1)], "period": [(0, 0, 0, 2**20 - 1)],
+                                   "": [(0, 0, 0, 0b10)]}.items():
+            with self.subTest(exposures), self.assertRaisesRegex(ValueError, message):
+                stipple.Schedule.from_exposures(exposures, (1, 1), 6)
+
+
+if __name__ == "__main__":
+    unittest.main()

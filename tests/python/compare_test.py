@@ -1,0 +1,51 @@
+"""Figures of quality are those of the program."""
+
+import math
+import unittest
+
+import numpy as np
+import stipple
+from program import ProgramTest
+
+KEYS = ("psnr_db", "psnr_gamma_db", "psnr_frame_mean_db", "pu21_psnr_db", "ssim")
+
+
+class CompareTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        random = np.random.default_rng(3)
+        self.a = random.random((6, 16, 20, 3), dtype=np.float32)
+        self.b = np.clip(self.a + random.normal(0, 0.05, self.a.shape), 0, 2).astype(np.float32)
+        self.write_array("a.npy", self.a)
+        self.write_array("b.npy", self.b)
+
+    def same(self, quality, figures):
+        for key in KEYS:
+            self.assertEqual(getattr(quality, key), figures[key], key)
+
+    def test_figures_are_those_of_the_program(self):
+        self.same(stipple.compare(self.a, self.b), self.figures("compare", "a.npy", "b.npy"))
+        self.same(stipple.compare(self.folder / "a.npy", self.b, margin=1, max_value=0.8, peak=0.8,
+                                  cd_per_unit=1000, until=5, luminance=True, transfer="gamma22"),
+                  self.figures("compare", "a.npy", "b.npy", "--margin", 1, "--max-value", 0.8, "--peak", 0.8,
+                               "--cd-per-unit", 1000, "--until", 5, "--luminance", "--transfer", "gamma22"))
+
+    def test_psnr_is_that_of_its_formula(self):
+        error = (self.a.astype(float) - self.b) ** 2
+        self.assertAlmostEqual(stipple.compare(self.a, self.b).psnr_db, -10 * math.log10(error.mean()), 6)
+        self.assertEqual(stipple.compare(self.a, self.a).psnr_db, math.inf)
+
+    def test_refuses_videos_that_do_not_match(self):
+        for message, arguments in {
+                "has frames of 16 x 20 x 1": (self.a[..., 0], self.b),
+                "ends after 5 frames, before the other does": (self.a[:5], self.b)}.items():
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                stipple.compare(*arguments)
+        for message, options in {"ends after 6 frames, before until=7": {"until": 7},
+                                 "margin": {"margin": 3}, "peak": {"peak": 0}}.items():
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                stipple.compare(self.a, self.b, **options)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,87 @@
+"""What a stream tells is what the program tells, and what its schedule says."""
+
+import unittest
+
+import numpy as np
+import stipple
+from program import ProgramTest
+
+
+class StreamTest(ProgramTest):
+    def test_header_and_counts_are_those_of_info(self):
+        self.write_array("light.npy", np.full((20, 8, 12, 3), 0.3))
+        for options in ((), ("--sensor", "t6"), ("--sensor", "nd_mosaic", "--schedule", "nd_mosaic")):
+            with self.subTest(options):
+                self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--force", *options)
+                info = self.figures("info", "clip.stipple")
+                stream = stipple.Stream.open(self.folder / "clip.stipple")
+                told = stream.header | stream.counts()
+                self.assertEqual(told, {key: info[key] for key in told})
+                self.assertEqual(set(info) - set(told),
+                                 {"stretched_slots", "mean_stretched_us", "command"})
+
+    def test_a_slot_holds_the_samples_whose_exposures_end_in_it(self):
+        stream = stipple.emulate(np.full((25, 6, 10, 3), 0.2), schedule="tiled")
+        period, tile = 15, 16
+        due = {slot: [] for slot in range(25)}
+        for row, col, first, mask in stream.exposures().tolist():
+            for begin in range(first, 25, period):
+                end = begin + mask.bit_length() - 1
+                if end < 25 and row < 6 and col < 10:
+                    due[end] += [(row, col, plane, mask.bit_length(), mask.bit_count())
+                                 for plane in range(3)]
+        self.assertEqual(stream.header["schedule"]["period_slots"], period)
+        self.assertEqual(stream.header["schedule"]["tile_rows"], tile)
+        for slot in (24, 3, 3, 4, 5, 0, *range(25)):  # in any order
+            samples = stream.samples(slot)
+            fields = samples[["row", "col", "plane", "exposure_slots", "light_slots"]]
+            self.assertEqual(fields.tolist(), sorted(due[slot]))
+            expected = 1000 * 0.2 * samples["light_slots"] * 255 / 2000  # Eq. 1 without noise
+            self.assertLess(abs(samples["dn"] - expected).max(initial=0), 30)
+
+    def test_a_slot_beyond_the_end_is_an_IndexError(self):
+        stream = stipple.emulate(np.full((5, 6, 10), 0.2))
+        for slot in (-1, 5):
+            with self.assertRaisesRegex(IndexError, "the stream holds 5"):
+                stream.samples(slot)
+
+    def test_a_damaged_slot_lacks_its_samples(self):
+        self.write_stream()
+        self.change_byte("clip.stipple", (self.folder / "clip.stipple").stat().st_size // 2)
+        stream = stipple.Stream.open(self.folder / "clip.stipple")
+        counts = stream.counts()
+        self.assertEqual(counts["missing_slots"], 1)
+        self.assertTrue(counts["damage"])
+        self.assertEqual(sum(len(stream.samples(slot)) for slot in range(stream.slots())),
+                         counts["samples"])
+
+    def test_an_interrupted_stream_is_read_as_far_as_it_goes(self):
+        self.write_stream()
+        path = self.folder / "clip.stipple"
+        path.write_bytes(path.read_bytes()[:-400])
+        stream = stipple.Stream.open(path)
+        counts = stream.counts()
+        self.assertFalse(counts["complete"])
+        self.assertEqual(stream.slots(), counts["slots"])
+
+    def test_does_not_replace_a_file_unless_told(self):
+        self.write_stream()
+        path = self.folder / "clip.stipple"
+        before = path.read_bytes()
+        stream = stipple.emulate(np.full((5, 6, 10), 0.2))
+        with self.assertRaisesRegex(FileExistsError, "clip.stipple: exists already"):
+            stream.save(path)
+        self.assertEqual(path.read_bytes(), before)
+        stream.save(path, force=True)
+        self.assertEqual(stipple.Stream.open(path).slots(), 5)
+
+    def test_opens_streams_only(self):
+        self.write_flat("light.npy")
+        with self.assertRaisesRegex(ValueError, "light.npy"):
+            stipple.Stream.open(self.folder / "light.npy")
+        with self.assertRaises(IsADirectoryError):
+            stipple.Stream.open(self.folder)
+
+
+if __name__ == "__main__":
+    unittest.main()
