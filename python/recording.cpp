@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "capture/frame_record.h"
-#include "capture/pixel_unpack.h"
+#include "capture/frame_unpack.h"
 #include "capture/recording/recording_reader.h"
 #include "python/bindings.h"
 #include "python/errors.h"
