@@ -17,7 +17,7 @@
 #include "apps/report/json_file.h"
 #include "apps/report/live_report.h"
 #include "apps/report/number_text.h"
-#include "apps/report/preview_picture.h"
+#include "apps/report/preview_image.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
@@ -104,7 +104,7 @@ LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& r
 LivePreviewOptions show_in(const std::string& file) {
     return {.show =
                 [file](const PreviewFrame& frame) {
-                    const NoSync no_sync;  // the next picture comes soon
+                    const NoSync no_sync;  // the next image comes soon
                     write_preview(file, frame);
                 },
             .tell =
@@ -156,7 +156,7 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
     LiveCamera camera(
         [&arguments, settings = camera_settings(arguments.camera)] {
-            return open_picture_camera(arguments.camera, settings);
+            return open_image_camera(arguments.camera, settings);
         },
         camera_options(arguments));
     const FrameLight to_light(camera.layout(), arguments.black_level_dn);

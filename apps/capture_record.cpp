@@ -93,8 +93,8 @@ void check_end(const CameraRecording& recording, const std::string& file,
 void record_camera(const RecordArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     const CameraSettings settings = camera_settings(arguments.camera);
-    CameraRecorder recorder([&] { return open_picture_camera(arguments.camera, settings); },
-                            settings, file_for(arguments.output),
+    CameraRecorder recorder([&] { return open_image_camera(arguments.camera, settings); }, settings,
+                            file_for(arguments.output),
                             {.session = session_options(arguments.camera, arguments.session),
                              .limits = arguments.limits,
                              .force = run.force,

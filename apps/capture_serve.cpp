@@ -157,7 +157,7 @@ void add_capture_serve(Command& capture, Action& action) {
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
-        "  stipple capture serve film.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
+        "  stipple capture serve video.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
     set_action(command, action, options, serve, [command, options] {
         check_mode(command, options->source);

@@ -94,20 +94,20 @@ void photograph(const SensorChoice& sensor, const SensorParams& params,
     write_whole(descriptor, descriptor.string(), series_text(series));
 }
 
-/// Reads the images that a descriptor names and evaluates them; messages call it `place`.
-emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std::string& place,
+/// Reads the images that a descriptor names and evaluates them; messages call it `where`.
+emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std::string& where,
                               const RunOptions& run) {
     Progress progress(run, "evaluating", {});
     const auto bytes = read_file(descriptor);
     const emva1288::Series series =
-        emva1288::parse_series({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, place);
+        emva1288::parse_series({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where);
     const auto read = [&](const std::filesystem::path& file) -> emva1288::SeriesImage {
         throw_if_stopped();
         DnImage image = read_dn_image(file);
         progress.advance();
         return {image.shape.rows, image.shape.cols, std::move(image.dn)};
     };
-    return emva1288::evaluate(series, descriptor.parent_path(), read, place);
+    return emva1288::evaluate(series, descriptor.parent_path(), read, where);
 }
 
 /// Draws the charts into the folder, as far as they can be. Returns how many there are; `failure`
@@ -143,8 +143,8 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
     say_leftover(options.output);
     photograph(options.sensor, params, folder.partial(), run);
-    const auto place = (folder.final_path() / kDescriptorName).string();
-    const CameraReport camera{evaluate(folder.partial() / kDescriptorName, place, run),
+    const auto where = (folder.final_path() / kDescriptorName).string();
+    const CameraReport camera{evaluate(folder.partial() / kDescriptorName, where, run),
                               configured_figures(params)};
     std::optional<DeviceError> failure;
     draw_charts(camera.evaluation, folder, failure);

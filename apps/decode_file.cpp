@@ -137,7 +137,7 @@ std::string schedule_hint(const StreamReport& report) {
 void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     DecodeOptions options = options_of(arguments);
     options.fill_gaps = arguments.fill_gaps;
-    options.place = arguments.stream;
+    options.where = arguments.stream;
     if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);

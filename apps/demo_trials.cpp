@@ -31,7 +31,7 @@ constexpr std::array<Trial, 5> kTrials = {
       "coded exposures, each pixel by its own nearest samples"},
      {"coded, decoded", "random", DecodeMethod::kFast, "the same samples by the method fast"}}};
 
-/// A slot of which a picture is left.
+/// A slot of which a image is left.
 struct ShownSlot {
     int slot;
     SideBySide versions;
@@ -57,7 +57,7 @@ std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& fold
                                     const RunOptions& run) {
     std::vector<ShownSlot> shown = shown_slots(truth);
     FrameWriter frames(folder / "decoded", truth.shape(), {.force = run.force});
-    FrameWriter film(folder / "decoded.mp4", truth.shape(), {.force = run.force});
+    FrameWriter video(folder / "decoded.mp4", truth.shape(), {.force = run.force});
     std::vector<TrialResult> results;
     for (std::size_t i = 0; i < kTrials.size(); ++i) {
         const auto& [name, schedule, method, text] = kTrials[i];
@@ -66,18 +66,18 @@ std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& fold
         const RecordingSize size =
             recorded ? results.back().size : record_video(truth, schedule, file, run);
         const auto take = [&](std::int64_t slot, std::span<const float> frame) {
-            for (ShownSlot& place : shown)
-                if (place.slot == slot) place.versions.put(i, frame);
+            for (ShownSlot& where : shown)
+                if (where.slot == slot) where.versions.put(i, frame);
             if (i + 1 < kTrials.size()) return true;
             frames.write(frame);
-            film.write(frame);
+            video.write(frame);
             return true;
         };
         results.push_back(
             {name, schedule, text, size, decode_and_compare(file, method, truth, take, run)});
     }
     frames.finish();
-    film.finish();
+    video.finish();
     for (std::size_t i = 0; i < shown.size(); ++i)
         shown[i].versions.write(folder / fmt::format("side_by_side_{}.png", i + 1), run.force);
     return results;

@@ -52,8 +52,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage = read_footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
-    if (const auto hz = footage.film_hz())
-        say_warning(film_rate_warning(options.footage, *hz, setup.params));
+    if (const auto hz = footage.video_hz())
+        say_warning(video_rate_warning(options.footage, *hz, setup.params));
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
@@ -118,7 +118,7 @@ void add_emulate(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple emulate scene -o clip.stipple\n"
-        "  stipple emulate film.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
+        "  stipple emulate video.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate clip.raw --raw 1280x1024:bayergr16:hz=1057 -o clip.stipple\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");

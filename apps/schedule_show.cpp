@@ -43,7 +43,7 @@ void add_schedule_show(Command& schedule, Action& action) {
     const auto options = std::make_shared<ShowOptions>();
     add_schedule_choice(command, options->schedule);
     add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
-    command.add_option("-o,--output", options->output, "picture, .png or .svg (text if absent)")
+    command.add_option("-o,--output", options->output, "image, .png or .svg (text if absent)")
         .type_name("FILE")
         .output(kDiagramName);
     command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")

@@ -21,7 +21,7 @@ namespace {
 /// A value and where it was given.
 struct Entry {
     const toml::node* value = nullptr;
-    std::string place;  ///< "file:line" or "--set"
+    std::string where;  ///< "file:line" or "--set"
     bool known = false;
     std::size_t order = 0;  ///< grows as entries were given
 };
@@ -47,9 +47,9 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
             flatten(*inner, fmt::format("{}.", name), file, entries);
             continue;
         }
-        const std::string place = fmt::format("{}:{}", file, key.source().begin.line);
-        if (!entries.try_emplace(name, Entry{&value, place, false, key.source().begin.line}).second)
-            throw InputError(fmt::format("{}: {}", place, name), "is given twice");
+        const std::string where = fmt::format("{}:{}", file, key.source().begin.line);
+        if (!entries.try_emplace(name, Entry{&value, where, false, key.source().begin.line}).second)
+            throw InputError(fmt::format("{}: {}", where, name), "is given twice");
     }
 }
 
@@ -123,16 +123,16 @@ struct Config::Impl {
             take(*node);
         return true;
     }
-    [[nodiscard]] std::string place(std::string_view key) const;
+    [[nodiscard]] std::string where(std::string_view key) const;
 
     template <typename Value>
     void check_range(std::string_view key, Value value, Value min, Value max) const {
         if (value >= min && value <= max) return;  // false for NaN
-        throw InputError(place(key), fmt::format("{} is outside {}", value, range_text(min, max)));
+        throw InputError(where(key), fmt::format("{} is outside {}", value, range_text(min, max)));
     }
     [[noreturn]] void fail_type(std::string_view key, const toml::node& value,
                                 std::string_view wanted) const {
-        throw InputError(place(key), fmt::format("needs {}, but is {}", wanted, type_name(value)));
+        throw InputError(where(key), fmt::format("needs {}, but is {}", wanted, type_name(value)));
     }
 };
 
@@ -156,12 +156,12 @@ const toml::node* Config::Impl::find(const ConfigKey& key, std::string fallback,
     return found->second.value;
 }
 
-std::string Config::Impl::place(std::string_view key) const {
+std::string Config::Impl::where(std::string_view key) const {
     const auto found = entries.find(key);
     if (found == entries.end())
         return file.empty() ? std::string(key) : fmt::format("{}: {}", file, key);
-    if (found->second.place == "--set") return fmt::format("--set {}{}", section, key);
-    return fmt::format("{}: {}", found->second.place, key);
+    if (found->second.where == "--set") return fmt::format("--set {}{}", section, key);
+    return fmt::format("{}: {}", found->second.where, key);
 }
 
 Config::Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -243,7 +243,7 @@ std::size_t Config::choice(const ConfigKey& key, std::size_t fallback) {
     const std::string value = text(key, key.choices[fallback]);
     const auto found = std::ranges::find(key.choices, value);
     if (found == key.choices.end())
-        throw InputError(place(key.name),
+        throw InputError(where(key.name),
                          fmt::format("\"{}\" is not one of {}", value, joined(key.choices)));
     return static_cast<std::size_t>(found - key.choices.begin());
 }
@@ -332,7 +332,7 @@ void Config::reject_unknown_keys() const {
     for (const auto& [key, known] : impl_->asked) asked.push_back(key);
     for (const auto& [key, entry] : impl_->entries) {
         if (entry.known) continue;
-        throw InputError(place(key),
+        throw InputError(where(key),
                          asked.empty() ? "is unknown" : "is unknown; " + suggestion(key, asked));
     }
 }
@@ -343,8 +343,8 @@ std::vector<KnownKey> Config::known_keys() const {
     return keys;
 }
 
-std::string Config::place(std::string_view key) const {
-    return impl_->place(key);
+std::string Config::where(std::string_view key) const {
+    return impl_->where(key);
 }
 
 }  // namespace stipple

@@ -88,7 +88,7 @@ class Config {
     [[nodiscard]] std::vector<KnownKey> known_keys() const;
 
     /// "file:line: key" (or "--set key") for messages.
-    [[nodiscard]] std::string place(std::string_view key) const;
+    [[nodiscard]] std::string where(std::string_view key) const;
 
   private:
     struct Impl;

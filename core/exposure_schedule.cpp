@@ -11,7 +11,7 @@
 namespace stipple {
 namespace {
 
-constexpr char kPlace[] = "exposure schedule";
+constexpr char kWhere[] = "exposure schedule";
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
@@ -59,13 +59,13 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
       first_(std::move(first)),
       exposures_(std::move(exposures)) {
     if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTileSide || tile_cols > kMaxTileSide)
-        throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..65535 rows and columns",
+        throw InputError(kWhere, fmt::format("tile {} x {} is outside 1..65535 rows and columns",
                                              tile_rows, tile_cols));
     if (period_slots < 1 || period_slots > kMaxPeriodSlots)
-        throw InputError(kPlace, fmt::format("period {} is outside 1..65535 slots", period_slots));
+        throw InputError(kWhere, fmt::format("period {} is outside 1..65535 slots", period_slots));
     if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
         first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
-        throw InputError(kPlace, "the list of exposures does not match the tile");
+        throw InputError(kWhere, "the list of exposures does not match the tile");
     std::vector<int> zeros(index(period_slots), 0);
     for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel, zeros);
     if (max_at_once_ == 2) assign_stores();
@@ -74,7 +74,7 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
 
 void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
     const auto fail = [&](std::uint32_t slot, std::string_view problem) {
-        throw InputError(kPlace, fmt::format("pixel ({}, {}) slot {}: {}", pixel / tile_cols_,
+        throw InputError(kWhere, fmt::format("pixel ({}, {}) slot {}: {}", pixel / tile_cols_,
                                              pixel % tile_cols_, slot, problem));
     };
     const auto begin = exposures_.begin() + first_[index(pixel)];
@@ -182,10 +182,10 @@ RandomExposures::RandomExposures(std::span<const int> exposure_slots, std::uint6
       seed_(seed),
       order_(exposure_slots.size()),
       exposures_(exposure_slots.size()) {
-    if (exposure_slots.empty()) throw InputError(kPlace, "there is no exposure length");
+    if (exposure_slots.empty()) throw InputError(kWhere, "there is no exposure length");
     for (const int length : exposure_slots) {
         if (length < 1 || length > kMaxExposureSlots)
-            throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
+            throw InputError(kWhere, fmt::format("exposure of {} slots is outside 1..64", length));
         period_slots_ += length;
     }
 }

@@ -25,21 +25,21 @@ float srgb_to_light(float value) {
 }  // namespace
 
 FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
-                         std::string_view place) {
+                         std::string_view where) {
     if (planes != 1 && planes != 3)
-        throw InputError(place, fmt::format("has {} planes; give mono (1) or RGB (3)", planes));
+        throw InputError(where, fmt::format("has {} planes; give mono (1) or RGB (3)", planes));
     if (rows < 1 || rows > kMaxFrameSide || cols < 1 || cols > kMaxFrameSide ||
         rows * cols * planes > kMaxFrameSites)
-        throw InputError(place, fmt::format("a frame of {} rows and {} columns is outside 1..{} "
+        throw InputError(where, fmt::format("a frame of {} rows and {} columns is outside 1..{} "
                                             "a side and {} values in all",
                                             rows, cols, kMaxFrameSide, kMaxFrameSites));
     return {static_cast<int>(rows), static_cast<int>(cols), static_cast<int>(planes)};
 }
 
-void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view place,
+void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view where,
                   std::uint64_t ratio) {
     if (bytes / ratio / 2 > file_bytes)
-        throw InputError(place, fmt::format("announces a picture of {} bytes, but the file holds "
+        throw InputError(where, fmt::format("announces a image of {} bytes, but the file holds "
                                             "{}; it is damaged or ends too early",
                                             bytes, file_bytes));
 }
@@ -51,7 +51,7 @@ void linearise(std::span<float> values, Transfer transfer) {
         for (float& value : values) value = srgb_to_light(value);
 }
 
-void check_light(std::span<const float> light, FrameShape shape, std::string_view place) {
+void check_light(std::span<const float> light, FrameShape shape, std::string_view where) {
     bool good = true;
     for (const float value : light) good &= is_light(value);
     if (good) return;
@@ -63,7 +63,7 @@ void check_light(std::span<const float> light, FrameShape shape, std::string_vie
                           : std::isinf(light[site]) ? "light is infinite"
                                                     : "light is negative";
     throw InputError(
-        place,
+        where,
         fmt::format("row {}, column {}, plane {}: {} ({}); repair or clip the footage first",
                     pixel / width, pixel % width, site / shape.pixels(), problem, light[site]));
 }

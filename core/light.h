@@ -19,19 +19,19 @@ enum class Transfer {
 inline constexpr std::uint64_t kMaxFrameSide = 65535;
 inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
 
-/// The shape of rows x cols x planes. \throws InputError at `place` unless 1 <= rows,
+/// The shape of rows x cols x planes. \throws InputError at `where` unless 1 <= rows,
 /// cols <= 65535, planes is 1 or 3 and there are at most 2^28 sites.
 [[nodiscard]] FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
-                                       std::string_view place);
+                                       std::string_view where);
 
 /// Max compression ratio of Deflate (equal bytes). Other compressions of images do not reach it
 /// unless noted.
 inline constexpr std::uint64_t kDeflateRatio = 1032;
 
-/// \throws InputError at `place` if an image of `bytes` exceeds 2 x `ratio` x `file_bytes`, the max
+/// \throws InputError at `where` if an image of `bytes` exceeds 2 x `ratio` x `file_bytes`, the max
 /// content of a file with this compression ratio (factor 2 for headers). Call it before taking
 /// memory.
-void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view place,
+void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view where,
                   std::uint64_t ratio = kDeflateRatio);
 
 /// Converts encoded values to light, in place. Values below 0 are unchanged.
@@ -39,7 +39,7 @@ void linearise(std::span<float> values, Transfer transfer);
 
 /// \throws InputError naming place, row, column and plane of the first value that is NaN,
 /// infinite or negative.
-void check_light(std::span<const float> light, FrameShape shape, std::string_view place);
+void check_light(std::span<const float> light, FrameShape shape, std::string_view where);
 
 /// Rec. 709 luminance .2126 R + .7152 G + .0722 B of `rgb` (order (plane, row, col)).
 /// Precondition: rgb.size() == 3 * luminance.size().

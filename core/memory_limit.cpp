@@ -62,11 +62,11 @@ std::uint64_t input_bytes(const fs::path& file) {
 
 std::uint64_t max_memory(std::uint64_t input_bytes) {
     if (told_bytes > 0) return told_bytes;
-    static const std::uint64_t quarter = machine_memory() / 4;  // asked for at each picture
+    static const std::uint64_t quarter = machine_memory() / 4;  // asked for at each image
     return input_bytes < kSmallInput ? std::min(quarter, kMaxOfSmallInputs) : quarter;
 }
 
-void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
+void check_memory(std::uint64_t bytes, std::string_view where, std::string_view what,
                   std::uint64_t input_bytes) {
     const std::uint64_t most = max_memory(input_bytes);
     if (bytes <= most) return;
@@ -74,7 +74,7 @@ void check_memory(std::uint64_t bytes, std::string_view place, std::string_view 
                               : most == max_memory()
                                   ? "a run may take, a quarter of this machine's memory"
                                   : "a file of less than 1 MB may take";
-    throw InputError(place,
+    throw InputError(where,
                      fmt::format("needs {} of memory for {}, more than the {} that {}; "
                                  "--max-memory {} allows it",
                                  text_of(bytes), what, text_of(most), whose, option_of(bytes)));

@@ -34,9 +34,9 @@ inline constexpr std::uint64_t kSmallInput = 1'000'000;
 /// MemoryLimit, else a quarter of `machine_memory`, of inputs below 1 MB no more than 256 MiB.
 [[nodiscard]] std::uint64_t max_memory(std::uint64_t input_bytes = kEndlessInput);
 
-/// Before memory is taken. \throws InputError at `place` if `bytes` for `what` are more than
+/// Before memory is taken. \throws InputError at `where` if `bytes` for `what` are more than
 /// `max_memory(input_bytes)`: it names both, and the option that allows it.
-void check_memory(std::uint64_t bytes, std::string_view place, std::string_view what,
+void check_memory(std::uint64_t bytes, std::string_view where, std::string_view what,
                   std::uint64_t input_bytes = kEndlessInput);
 
 /// Bytes of RAM, or of the lowest limit of the control groups that the process is in.

@@ -21,7 +21,7 @@ struct DecodeOptions {
     Portz2013Options portz2013 = {};
     StageSink stages = {};
     bool fill_gaps = false;                     ///< decode missing slots, whatever their number
-    std::string place = "sample stream";        ///< name of the input in messages
+    std::string where = "sample stream";        ///< name of the input in messages
     std::uint64_t input_bytes = kEndlessInput;  ///< size of the file
 };
 

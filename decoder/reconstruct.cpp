@@ -62,7 +62,7 @@ class PacketBuffer {
         missing_ += slot - slots_;
         const std::int64_t most = max_missing_slots(present_, decoded_shape(reader_.header()));
         if (!options_.fill_gaps && missing_ > most)
-            throw InputError(options_.place,
+            throw InputError(options_.where,
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
                                          "decode them too, give --fill-gaps",
                                          slots_, slot - 1, missing_, missing_ + present_));
@@ -194,7 +194,7 @@ void check_proportion(const StreamHeader& header, const DecodeOptions& options, 
     const bool sampled = values(header.shape) <= 128 * static_cast<double>(samples) &&
                          (light <= 0x1p26 || options.input_bytes >= kSmallInput);
     if (options.fill_gaps || light <= 0x1p25 || sampled) return;
-    throw InputError(options.place,
+    throw InputError(options.where,
                      fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
                                  "to decode them nevertheless, give --fill-gaps",
                                  slots - 1, samples, light * sizeof(float) * 1e-6));
@@ -216,7 +216,7 @@ void check_block(const StreamHeader& header, const DecodeOptions& options, const
     const bool small = voxels / kVoxelsAByte > options.input_bytes;
     check_memory(
         core_slots * shape.sites() * sizeof(float) + voxels * named(options.method).voxel_bytes,
-        options.place,
+        options.where,
         fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols, shape.rows,
                     named(options.method).name),
         small ? options.input_bytes : kEndlessInput);

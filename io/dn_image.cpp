@@ -14,8 +14,8 @@
 namespace stipple {
 namespace {
 
-[[noreturn]] void fail_kind(const std::string& place) {
-    throw InputError(place, "is not grey with 8 or 16 bits");
+[[noreturn]] void fail_kind(const std::string& where) {
+    throw InputError(where, "is not grey with 8 or 16 bits");
 }
 
 /// Row after row, each number as it is.
@@ -25,9 +25,9 @@ DnImage dn_image(FrameShape shape, const void* samples) {
     return {shape, {first, first + shape.pixels()}};
 }
 
-DnImage read_dn_png(const std::string& place) {
-    const PngImage png = decode_png(read_file(place), place);
-    if (!png.as_stored) fail_kind(place);
+DnImage read_dn_png(const std::string& where) {
+    const PngImage png = decode_png(read_file(where), where);
+    if (!png.as_stored) fail_kind(where);
     const PngPixels& pixels = png.pixels;
     const FrameShape shape{.rows = pixels.rows, .cols = pixels.cols, .planes = 1};
     if (pixels.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, pixels.bytes.data());

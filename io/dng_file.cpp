@@ -74,7 +74,7 @@ struct Area {
     std::uint32_t right = 0;
 };
 
-/// What the directory of the raw picture says.
+/// What the directory of the raw image says.
 struct RawPage {
     std::uint32_t rows = 0;
     std::uint32_t cols = 0;
@@ -101,7 +101,7 @@ bool is_raw(tiff* file) {
                        photometric == PHOTOMETRIC_MINISBLACK);
 }
 
-/// Goes to the raw picture, which is the first directory or one below it.
+/// Goes to the raw image, which is the first directory or one below it.
 void find_raw(const TiffHandle& handle) {
     constexpr std::size_t kMaxDirectories = 16;
     if (is_raw(handle.get())) return;
@@ -111,7 +111,7 @@ void find_raw(const TiffHandle& handle) {
         if (is_raw(handle.get())) return;
     }
     throw InputError(handle.name(),
-                     "holds no raw picture, neither grey nor of a colour filter array");
+                     "holds no raw image, neither grey nor of a colour filter array");
 }
 
 ColourFilter filter_of(tiff* file, const std::string& name) {
@@ -143,7 +143,7 @@ RawPage::RawPage(tiff* file, const std::string& name)
         area = {active[0], active[1], active[2], active[3]};
     if (area.top >= area.bottom || area.left >= area.right || area.bottom > rows ||
         area.right > cols)
-        throw InputError(name, "has an active area outside the picture; it is damaged");
+        throw InputError(name, "has an active area outside the image; it is damaged");
     if (photometric == PHOTOMETRIC_CFA) filter = filter_of(file, name);
     read_levels(file, name);
 }
@@ -195,7 +195,7 @@ void RawPage::read_levels(tiff* file, const std::string& name) {
                 throw InputError(name, "has black levels of its own for each row or column");
 }
 
-/// The stored numbers, by row and column of the whole picture.
+/// The stored numbers, by row and column of the whole image.
 class Samples {
   public:
     Samples(const TiffHandle& handle, const RawPage& page)
@@ -268,10 +268,10 @@ void read_camera(const TiffHandle& handle, SourceTraits& traits) {
 
 }  // namespace
 
-void read_dng(const std::filesystem::path& file, Picture& picture) {
+void read_dng(const std::filesystem::path& file, Image& image) {
     const TiffHandle handle(file);
-    picture.traits = {};
-    read_camera(handle, picture.traits);
+    image.traits = {};
+    read_camera(handle, image.traits);
     find_raw(handle);
     const RawPage page(handle.get(), handle.name());
     const std::uint64_t stored =
@@ -280,14 +280,14 @@ void read_dng(const std::filesystem::path& file, Picture& picture) {
     check_packed(stored, handle.file_bytes(), handle.name(),
                  page.compression == COMPRESSION_NONE ? 1 : kDeflateRatio);
     constexpr std::uint64_t kBytesAPixel = sizeof(std::uint16_t) + sizeof(float);
-    check_memory(kBytesAPixel * page.rows * page.cols, handle.name(), "the picture",
+    check_memory(kBytesAPixel * page.rows * page.cols, handle.name(), "the image",
                  handle.file_bytes());
     const Samples samples(handle, page);
     const Area& area = page.area;
-    picture.resize(
+    image.resize(
         {static_cast<int>(area.bottom - area.top), static_cast<int>(area.right - area.left), 1});
-    picture.traits.filter = page.filter;
-    auto* light = picture.values.data();
+    image.traits.filter = page.filter;
+    auto* light = image.values.data();
     for (std::uint32_t row = area.top; row < area.bottom; ++row)
         for (std::uint32_t col = area.left; col < area.right; ++col) {
             std::size_t dn = samples.at(row, col);

@@ -26,25 +26,25 @@ namespace {
 
 constexpr int kThreads = 0;
 
-/// Names of the channels that make up the picture, one a plane.
-std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
-                                          const std::string& place) {
+/// Names of the channels that make up the image, one a plane.
+std::vector<std::string> image_channels(const Imf::ChannelList& channels,
+                                        const std::string& where) {
     const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
     std::vector<std::string> names;
     if (has("R") && has("G") && has("B")) {
         names = {"R", "G", "B"};
     } else if (has("X") && has("Y") && has("Z")) {
-        throw InputError(place, "holds CIE XYZ colour; convert it to RGB or to luminance Y alone");
+        throw InputError(where, "holds CIE XYZ colour; convert it to RGB or to luminance Y alone");
     } else if (has("Y") && !has("RY") && !has("BY")) {
         names = {"Y"};
     } else {
         for (auto c = channels.begin(); c != channels.end(); ++c)
             if (std::string_view(c.name()) != "A") names.emplace_back(c.name());
         if (names.size() != 1)
-            throw InputError(place, fmt::format("holds the channels {}; give R, G, B or Y alone",
+            throw InputError(where, fmt::format("holds the channels {}; give R, G, B or Y alone",
                                                 joined(names)));
         if (names.front() == "Z" || names.front() == "depth")
-            throw InputError(place,
+            throw InputError(where,
                              fmt::format("holds distances (channel {}), no light; give R, G, "
                                          "B or Y",
                                          names.front()));
@@ -52,7 +52,7 @@ std::vector<std::string> picture_channels(const Imf::ChannelList& channels,
     for (const auto& name : names) {
         const Imf::Channel& channel = channels[name.c_str()];
         if (channel.xSampling != 1 || channel.ySampling != 1)
-            throw InputError(place, fmt::format("channel {} is subsampled", name));
+            throw InputError(where, fmt::format("channel {} is subsampled", name));
     }
     return names;
 }
@@ -63,12 +63,12 @@ Imf::Slice plane_slice(float* plane, const Imath::Box2i& window, FrameShape shap
                             sizeof(float) * static_cast<std::size_t>(shape.cols));
 }
 
-const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& place) {
+const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& where) {
     const Imath::Box2i& window = header.dataWindow();
     if (window != header.displayWindow())
-        throw InputError(place,
+        throw InputError(where,
                          "its data window differs from its display window; "
-                         "crop or pad the picture to its display window");
+                         "crop or pad the image to its display window");
     return window;
 }
 
@@ -78,39 +78,39 @@ std::uint64_t side(int low, int high) {
 
 /// \throws InputError if the file is too short for its pixels.
 void check_size(const Imf::Header& header, const std::vector<std::string>& names, FrameShape shape,
-                const std::string& place) {
+                const std::string& where) {
     std::uint64_t pixel_bytes = 0;
     for (const auto& name : names)
         pixel_bytes += header.channels()[name.c_str()].type == Imf::HALF ? 2U : 4U;
     // DWA packs what Deflate takes by blocks of 8 x 8 pixels.
     const auto packing = header.compression();
     const bool blocks = packing == Imf::DWAA_COMPRESSION || packing == Imf::DWAB_COMPRESSION;
-    const std::uint64_t bytes = std::filesystem::file_size(place);
-    check_packed(pixel_bytes * shape.pixels(), bytes, place,
+    const std::uint64_t bytes = std::filesystem::file_size(where);
+    check_packed(pixel_bytes * shape.pixels(), bytes, where,
                  blocks ? 64 * kDeflateRatio : kDeflateRatio);
-    check_memory(sizeof(float) * shape.pixels() * names.size(), place, "the picture", bytes);
+    check_memory(sizeof(float) * shape.pixels() * names.size(), where, "the image", bytes);
 }
 
-void read_planes(Imf::InputFile& input, const std::string& place, Picture& picture) {
-    const Imath::Box2i window = checked_window(input.header(), place);
-    const auto names = picture_channels(input.header().channels(), place);
-    picture.traits = {.floating = true,
-                      .has_alpha = input.header().channels().findChannel("A") != nullptr};
+void read_planes(Imf::InputFile& input, const std::string& where, Image& image) {
+    const Imath::Box2i window = checked_window(input.header(), where);
+    const auto names = image_channels(input.header().channels(), where);
+    image.traits = {.floating = true,
+                    .has_alpha = input.header().channels().findChannel("A") != nullptr};
     const FrameShape shape = checked_shape(side(window.min.y, window.max.y),
-                                           side(window.min.x, window.max.x), names.size(), place);
-    check_size(input.header(), names, shape, place);
-    picture.resize(shape);
+                                           side(window.min.x, window.max.x), names.size(), where);
+    check_size(input.header(), names, shape, where);
+    image.resize(shape);
     Imf::FrameBuffer planes;
     for (std::size_t i = 0; i < names.size(); ++i)
-        planes.insert(names[i], plane_slice(picture.values.data() + i * picture.shape.pixels(),
-                                            window, picture.shape));
+        planes.insert(names[i], plane_slice(image.values.data() + i * image.shape.pixels(), window,
+                                            image.shape));
     input.setFrameBuffer(planes);
     input.readPixels(window.min.y, window.max.y);
 }
 
-/// The file of a picture, in memory: OpenEXR swallows errors that occur when a file is closed.
+/// The file of a image, in memory: OpenEXR swallows errors that occur when a file is closed.
 std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
-                    std::string_view place) {
+                    std::string_view where) {
     // Here, as a pool that cannot be made while tasks wait for it is waited for without end.
     static_cast<void>(IlmThread::ThreadPool::globalThreadPool());
     try {
@@ -128,16 +128,16 @@ std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
-        throw DeviceError(place, fmt::format("cannot be written as OpenEXR: {}", e.what()));
+        throw DeviceError(where, fmt::format("cannot be written as OpenEXR: {}", e.what()));
     }
 }
 
 }  // namespace
 
-void read_exr(const std::filesystem::path& file, Picture& picture) {
+void read_exr(const std::filesystem::path& file, Image& image) {
     try {
         Imf::InputFile input(file.c_str(), kThreads);
-        read_planes(input, file.string(), picture);
+        read_planes(input, file.string(), image);
     } catch (const InputError&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -147,7 +147,7 @@ void read_exr(const std::filesystem::path& file, Picture& picture) {
     }
 }
 
-void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+void write_exr(const std::filesystem::path& file, std::string_view where, FrameShape shape,
                std::span<const float> frame) {
     assert(frame.size() == shape.sites());
     Imf::Header header(shape.cols, shape.rows);
@@ -160,8 +160,8 @@ void write_exr(const std::filesystem::path& file, std::string_view place, FrameS
         float* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
         planes.insert(name, plane_slice(plane, header.dataWindow(), shape));
     }
-    const std::string bytes = encoded(header, planes, place);
-    OutputFile output(file, std::string(place));
+    const std::string bytes = encoded(header, planes, where);
+    OutputFile output(file, std::string(where));
     output.write(std::as_bytes(std::span(bytes)));
     output.close();
 }

@@ -6,20 +6,20 @@
 #include <string_view>
 
 #include "core/geometry.h"
-#include "io/picture.h"
+#include "io/image.h"
 
 namespace stipple {
 
-/// Reads an OpenEXR image (half or float) into `picture`: its channels R, G, B, else Y, else its
+/// Reads an OpenEXR image (half or float) into `image`: its channels R, G, B, else Y, else its
 /// only channel if that is not depth. Alpha and other channels are omitted; nothing is scaled.
 /// \throws InputError naming the file if it is unreadable or truncated, has none of these channels,
 /// or stores another rectangle than it displays.
-void read_exr(const std::filesystem::path& file, Picture& picture);
+void read_exr(const std::filesystem::path& file, Image& image);
 
 /// Writes an OpenEXR image: float, ZIP compression, channels R, G, B or Y. The same frame gives the
-/// same bytes. `frame` holds shape.sites() floats, order (plane, row, col); `place` names the
+/// same bytes. `frame` holds shape.sites() floats, order (plane, row, col); `where` names the
 /// output in messages. \throws DeviceError.
-void write_exr(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+void write_exr(const std::filesystem::path& file, std::string_view where, FrameShape shape,
                std::span<const float> frame);
 
 }  // namespace stipple

@@ -185,7 +185,7 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     traits_.floating = bits_ < 0;
 }
 
-std::string FitsReader::place() const {
+std::string FitsReader::where() const {
     return fmt::format("{}: frame {}", file_.name(), next_slot_ - 1);
 }
 

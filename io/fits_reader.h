@@ -8,7 +8,7 @@
 
 #include "core/geometry.h"
 #include "io/file_bytes.h"
-#include "io/picture.h"
+#include "io/image.h"
 
 namespace stipple {
 
@@ -29,7 +29,7 @@ class FitsReader {
     [[nodiscard]] int slots() const { return slots_; }
     [[nodiscard]] const SourceTraits& traits() const { return traits_; }
     /// The file and the frame read last, for messages.
-    [[nodiscard]] std::string place() const;
+    [[nodiscard]] std::string where() const;
 
     /// The next frame, by row and column; false at the end. \throws InputError.
     bool read(std::span<float> frame);

@@ -77,7 +77,7 @@ std::optional<Step> step_between(std::string_view before, std::string_view name)
 }
 
 /// Tells of numbers that are missing among names of which at least half follow the one before.
-/// Else the numbers may be times, or every second picture was meant.
+/// Else the numbers may be times, or every second image was meant.
 std::string missing_numbers(const fs::path& folder, const std::vector<fs::path>& files) {
     std::int64_t missing = 0;
     std::size_t follow = 0;
@@ -182,7 +182,7 @@ ImageFiles images_in_folder(const fs::path& folder) {
         return file.filename().string().starts_with('.') ||
                image_format(file) == ImageFormat::kNone;
     });
-    if (files.empty()) throw InputError(folder.string(), "holds no PNG, TIFF, EXR or DNG pictures");
+    if (files.empty()) throw InputError(folder.string(), "holds no PNG, TIFF, EXR or DNG images");
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         return numerically_before(a.filename().string(), b.filename().string());
     });
@@ -199,7 +199,7 @@ ImageFiles images_in_folder(const fs::path& folder) {
 ImageFiles images_of_pattern(const fs::path& pattern) {
     const Pattern names(pattern);
     if (image_format(pattern) == ImageFormat::kNone)
-        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG pictures");
+        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG images");
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::map<std::int64_t, fs::path> found;
     std::vector<std::string> left_out;
@@ -224,7 +224,7 @@ ImageFiles images_of_pattern(const fs::path& pattern) {
         images.warning = fmt::format(
             "{}: takes {} to {}; left out {} of other digits: {}", pattern.string(),
             images.files.front().filename().string(), images.files.back().filename().string(),
-            left_out.size() == 1 ? "is 1 picture" : fmt::format("are {} pictures", left_out.size()),
+            left_out.size() == 1 ? "is 1 image" : fmt::format("are {} images", left_out.size()),
             *std::ranges::min_element(left_out, numerically_before));
     return images;
 }

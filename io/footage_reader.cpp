@@ -26,15 +26,15 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Reads pictures one after the other.
+/// Reads images one after the other.
 class ImageSequence {
   public:
-    /// Of pictures, at least one, or of the pages of a file.
+    /// Of images, at least one, or of the pages of a file.
     explicit ImageSequence(ImageFiles images, std::optional<TiffFile> tiff = {})
         : images_(std::move(images)), tiff_(std::move(tiff)) {
         load(0);
-        traits_ = picture_.traits;
-        shape_ = picture_.shape;
+        traits_ = image_.traits;
+        shape_ = image_.shape;
     }
 
     [[nodiscard]] FrameShape shape() const { return shape_; }
@@ -43,8 +43,8 @@ class ImageSequence {
     [[nodiscard]] int slots() const {
         return tiff_ ? tiff_->pages() : static_cast<int>(images_.files.size());
     }
-    [[nodiscard]] std::string place() const {
-        return tiff_ ? tiff_->place(next_ - 1)
+    [[nodiscard]] std::string where() const {
+        return tiff_ ? tiff_->where(next_ - 1)
                      : images_.files[static_cast<std::size_t>(next_ - 1)].string();
     }
 
@@ -52,30 +52,30 @@ class ImageSequence {
         if (next_ == slots()) return false;
         ++next_;
         if (next_ > 1) load(next_ - 1);
-        if (picture_.shape != shape_)
-            throw InputError(place(), fmt::format("is {} x {} x {} (rows x columns x planes), but "
-                                                  "the first frame is {} x {} x {}",
-                                                  picture_.shape.rows, picture_.shape.cols,
-                                                  picture_.shape.planes, shape_.rows, shape_.cols,
-                                                  shape_.planes));
-        if (picture_.traits.filter != traits_.filter)
-            throw InputError(place(), "has another colour filter array than the first frame");
-        std::copy(picture_.values.begin(), picture_.values.end(), frame.begin());
+        if (image_.shape != shape_)
+            throw InputError(where(),
+                             fmt::format("is {} x {} x {} (rows x columns x planes), but "
+                                         "the first frame is {} x {} x {}",
+                                         image_.shape.rows, image_.shape.cols, image_.shape.planes,
+                                         shape_.rows, shape_.cols, shape_.planes));
+        if (image_.traits.filter != traits_.filter)
+            throw InputError(where(), "has another colour filter array than the first frame");
+        std::copy(image_.values.begin(), image_.values.end(), frame.begin());
         return true;
     }
 
   private:
     void load(int slot) {
-        if (!tiff_) return read_image(images_.files[static_cast<std::size_t>(slot)], picture_);
+        if (!tiff_) return read_image(images_.files[static_cast<std::size_t>(slot)], image_);
         tiff_->read(slot, page_);
-        to_picture(page_, picture_);
+        to_image(page_, image_);
     }
 
     ImageFiles images_;
     std::optional<TiffFile> tiff_;
     TiffPixels page_;
     int next_ = 0;
-    Picture picture_;
+    Image image_;
     SourceTraits traits_;
     FrameShape shape_;
 };
@@ -89,7 +89,7 @@ const char* not_footage(const std::string& extension) {
     if (extension == ".strec")
         return "is no recording of a camera: it is empty, or does not begin as one";
     return "is no footage by its extension; give a folder or pattern of PNG, TIFF, EXR or DNG "
-           "pictures, a video or camera file, or .npy; a file without a header needs --raw";
+           "images, a video or camera file, or .npy; a file without a header needs --raw";
 }
 
 Source open_source(const fs::path& source, const FootageOptions& options) {
@@ -144,7 +144,7 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         },
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
-    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->film_hz();
+    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->video_hz();
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
                          "is the mosaic of a colour filter array, of which there is "
@@ -174,7 +174,7 @@ std::optional<int> FootageReader::slots() const {
     return std::visit(slots_of, impl_->source);
 }
 
-std::optional<double> FootageReader::film_hz() const {
+std::optional<double> FootageReader::video_hz() const {
     return impl_->traits.frames_hz;
 }
 
@@ -196,9 +196,9 @@ bool FootageReader::read(std::span<float> frame) {
     const auto read = [&](auto& source) {
         if (!source.read(light)) return false;
         linearise(light, impl_->options.transfer.value_or(Transfer::kLinear));
-        check_light(light, impl_->source_shape, source.place());
+        check_light(light, impl_->source_shape, source.where());
         if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value)
-            impl_->warn(brightness_warning(light, source.place()));
+            impl_->warn(brightness_warning(light, source.where()));
         return true;
     };
     if (!std::visit(read, impl_->source)) {

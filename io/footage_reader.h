@@ -40,7 +40,7 @@ class FootageReader {
     [[nodiscard]] std::optional<int> slots() const;
 
     /// Frames a second at which a video plays or a camera took them, if the source tells.
-    [[nodiscard]] std::optional<double> film_hz() const;
+    [[nodiscard]] std::optional<double> video_hz() const;
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.

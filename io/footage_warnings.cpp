@@ -36,7 +36,7 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
     return warnings;
 }
 
-std::string brightness_warning(std::span<const float> light, const std::string& place) {
+std::string brightness_warning(std::span<const float> light, const std::string& where) {
     constexpr double kFarAboveOne = 10;
     const double mean =
         std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
@@ -44,7 +44,7 @@ std::string brightness_warning(std::span<const float> light, const std::string& 
     return fmt::format(
         "{}: the mean light is {:.3g}, where the brightest of integers is 1.0; divide "
         "digital numbers by their full scale first",
-        place, mean);
+        where, mean);
 }
 
 }  // namespace stipple

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/footage_reader.h"
-#include "io/picture.h"
+#include "io/image.h"
 
 namespace stipple {
 
@@ -17,6 +17,6 @@ namespace stipple {
 /// A warning if the mean of `light` is far above 1.0, as with digital numbers stored in floating
 /// point; else empty.
 [[nodiscard]] std::string brightness_warning(std::span<const float> light,
-                                             const std::string& place);
+                                             const std::string& where);
 
 }  // namespace stipple

@@ -23,22 +23,22 @@ namespace {
 /// Writes a folder of frame_%04d.exr.
 class ExrFolderWriter {
   public:
-    ExrFolderWriter(fs::path folder, std::string place, FrameShape shape, bool live)
-        : folder_(std::move(folder)), place_(std::move(place)), shape_(shape), live_(live) {}
+    ExrFolderWriter(fs::path folder, std::string where, FrameShape shape, bool live)
+        : folder_(std::move(folder)), where_(std::move(where)), shape_(shape), live_(live) {}
 
     void write(std::span<const float> frame) {
         const std::string name = fmt::format("frame_{:04}.exr", next_slot_++);
-        const std::string place = (fs::path(place_) / name).string();
-        if (!live_) return write_exr(folder_ / name, place, shape_, frame);
+        const std::string where = (fs::path(where_) / name).string();
+        if (!live_) return write_exr(folder_ / name, where, shape_, frame);
         PendingOutput whole(folder_ / name, false);
-        write_exr(whole.partial(), place, shape_, frame);
+        write_exr(whole.partial(), where, shape_, frame);
         whole.commit();
     }
     void finish() {}
 
   private:
     fs::path folder_;
-    std::string place_;
+    std::string where_;
     FrameShape shape_;
     bool live_;
     int next_slot_ = 0;
@@ -77,18 +77,18 @@ OutputKind checked_kind(const fs::path& output, FrameShape shape,
 /// A live folder is put in place at once.
 Writer open_writer(PendingOutput& output, Format format, FrameShape shape,
                    const FrameWriterOptions& options) {
-    const std::string place = output.final_path().string();
+    const std::string where = output.final_path().string();
     switch (format) {
         case Format::kExrFolder:
             if (options.live) output.commit();
-            return ExrFolderWriter(options.live ? output.final_path() : output.partial(), place,
+            return ExrFolderWriter(options.live ? output.final_path() : output.partial(), where,
                                    shape, options.live);
         case Format::kNpy:
-            return NpyWriter(output.partial(), place, shape);
+            return NpyWriter(output.partial(), where, shape);
         case Format::kVideo:
             break;
     }
-    return VideoWriter(output.partial(), place, shape, options.frames_per_second);
+    return VideoWriter(output.partial(), where, shape, options.frames_per_second);
 }
 
 }  // namespace

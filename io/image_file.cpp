@@ -18,30 +18,30 @@
 namespace stipple {
 namespace {
 
-void read_png(const std::string& place, Picture& picture) {
-    const PngImage png = decode_png(read_file(place), place);
+void read_png(const std::string& where, Image& image) {
+    const PngImage png = decode_png(read_file(where), where);
     const PngPixels& pixels = png.pixels;
     const int planes = pixels.channels;
-    picture.resize({pixels.rows, pixels.cols, planes});
-    picture.traits = png.traits;
+    image.resize({pixels.rows, pixels.cols, planes});
+    image.traits = png.traits;
     const auto bytes = std::as_bytes(std::span(pixels.bytes));
     if (pixels.bytes_a_sample == 2)
-        split_planes<std::uint16_t>(bytes, planes, planes, picture.values, UnitScale());
+        split_planes<std::uint16_t>(bytes, planes, planes, image.values, UnitScale());
     else
-        split_planes<std::uint8_t>(bytes, planes, planes, picture.values, UnitScale());
+        split_planes<std::uint8_t>(bytes, planes, planes, image.values, UnitScale());
 }
 
 }  // namespace
 
-void to_picture(const TiffPixels& pixels, Picture& picture) {
+void to_image(const TiffPixels& pixels, Image& image) {
     using Sample = TiffPixels::Sample;
     const int planes = pixels.shape.planes;
-    picture.resize(pixels.shape);
-    picture.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
-                      .floating = pixels.sample == Sample::kF32,
-                      .has_alpha = pixels.channels > planes};
+    image.resize(pixels.shape);
+    image.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
+                    .floating = pixels.sample == Sample::kF32,
+                    .has_alpha = pixels.channels > planes};
     const auto split = [&]<typename Stored>(Stored, auto to_float) {
-        split_planes<Stored>(pixels.bytes, pixels.channels, planes, picture.values, to_float);
+        split_planes<Stored>(pixels.bytes, pixels.channels, planes, image.values, to_float);
     };
     switch (pixels.sample) {
         case Sample::kU8:
@@ -53,22 +53,21 @@ void to_picture(const TiffPixels& pixels, Picture& picture) {
     }
 }
 
-void read_image(const std::filesystem::path& file, Picture& picture) {
+void read_image(const std::filesystem::path& file, Image& image) {
     refuse_special(file);
     switch (image_format(file)) {
         case ImageFormat::kPng:
-            return read_png(file.string(), picture);
+            return read_png(file.string(), image);
         case ImageFormat::kTiff:
-            return to_picture(read_single_tiff(file), picture);
+            return to_image(read_single_tiff(file), image);
         case ImageFormat::kExr:
-            return read_exr(file, picture);
+            return read_exr(file, image);
         case ImageFormat::kDng:
-            return read_dng(file, picture);
+            return read_dng(file, image);
         case ImageFormat::kNone:
             break;
     }
-    throw InputError(file.string(),
-                     "is not a picture that can be read; give PNG, TIFF, EXR or DNG");
+    throw InputError(file.string(), "is not a image that can be read; give PNG, TIFF, EXR or DNG");
 }
 
 void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame) {

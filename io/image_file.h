@@ -4,18 +4,18 @@
 #include <span>
 
 #include "core/geometry.h"
-#include "io/picture.h"
+#include "io/image.h"
 #include "io/tiff_file.h"
 
 namespace stipple {
 
-/// Reads a .png, .tif, .tiff, .exr or .dng file (by extension) into `picture`, a TIFF file of one
+/// Reads a .png, .tif, .tiff, .exr or .dng file (by extension) into `image`, a TIFF file of one
 /// page. \throws InputError naming the file, and the offset where known, if it is missing,
 /// unreadable, truncated, or neither mono nor RGB.
-void read_image(const std::filesystem::path& file, Picture& picture);
+void read_image(const std::filesystem::path& file, Image& image);
 
 /// A page of a TIFF file.
-void to_picture(const TiffPixels& pixels, Picture& picture);
+void to_image(const TiffPixels& pixels, Image& image);
 
 /// Writes linear light as an 8-bit PNG image through the curve of io/tone_map.h. `frame` holds
 /// shape.sites() floats, order (plane, row, col). Replaces `file`. \throws DeviceError.

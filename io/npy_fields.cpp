@@ -13,10 +13,10 @@ namespace {
 /// Walks through the text of a Python literal.
 class Cursor {
   public:
-    Cursor(std::string_view text, std::string_view place) : rest_(text), place_(place) {}
+    Cursor(std::string_view text, std::string_view where) : rest_(text), where_(where) {}
 
     [[noreturn]] void fail(std::string_view problem) const {
-        throw InputError(place_, fmt::format("malformed .npy header: {}", problem));
+        throw InputError(where_, fmt::format("malformed .npy header: {}", problem));
     }
     bool accept(char c) {
         skip_space();
@@ -65,7 +65,7 @@ class Cursor {
     }
 
     std::string_view rest_;
-    std::string_view place_;
+    std::string_view where_;
 };
 
 std::vector<std::uint64_t> read_tuple(Cursor& cursor) {
@@ -83,8 +83,8 @@ std::vector<std::uint64_t> read_tuple(Cursor& cursor) {
 
 }  // namespace
 
-NpyFields read_npy_fields(std::string_view dictionary, std::string_view place) {
-    Cursor cursor(dictionary, place);
+NpyFields read_npy_fields(std::string_view dictionary, std::string_view where) {
+    Cursor cursor(dictionary, where);
     NpyFields fields;
     bool has_descr = false;
     bool has_order = false;

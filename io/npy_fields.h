@@ -16,7 +16,7 @@ struct NpyFields {
 };
 
 /// Reads the Python dictionary of a .npy header, entries in any order.
-/// \throws InputError at `place` if it is malformed or an entry is missing or unknown.
-[[nodiscard]] NpyFields read_npy_fields(std::string_view dictionary, std::string_view place);
+/// \throws InputError at `where` if it is malformed or an entry is missing or unknown.
+[[nodiscard]] NpyFields read_npy_fields(std::string_view dictionary, std::string_view where);
 
 }  // namespace stipple

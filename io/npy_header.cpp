@@ -24,48 +24,48 @@ constexpr TypeName kTypes[] = {{"|u1", NpyType::kUint8},  {"<u1", NpyType::kUint
                                {"<u2", NpyType::kUint16}, {"<f2", NpyType::kHalf},
                                {"<f4", NpyType::kFloat},  {"<f8", NpyType::kDouble}};
 
-NpyType type_of(std::string_view name, std::string_view place) {
+NpyType type_of(std::string_view name, std::string_view where) {
     for (const TypeName& known : kTypes)
         if (known.name == name) return known.type;
-    throw InputError(place, fmt::format("values of type \"{}\" cannot be read; save as "
+    throw InputError(where, fmt::format("values of type \"{}\" cannot be read; save as "
                                         "little-endian u1, u2, f2, f4 or f8",
                                         name));
 }
 
-void take_shape(const std::vector<std::uint64_t>& shape, std::string_view place,
+void take_shape(const std::vector<std::uint64_t>& shape, std::string_view where,
                 NpyHeader& header) {
     if (shape.size() != 3 && !(shape.size() == 4 && shape[3] == 3)) {
         std::vector<std::string> sizes(shape.size());
         std::transform(shape.begin(), shape.end(), sizes.begin(),
                        [](std::uint64_t size) { return std::to_string(size); });
-        throw InputError(place,
+        throw InputError(where,
                          fmt::format("shape ({}) is not (T,H,W) or (T,H,W,3)", joined(sizes)));
     }
-    if (shape[0] == 0) throw InputError(place, "holds no frames");
+    if (shape[0] == 0) throw InputError(where, "holds no frames");
     if (shape[0] > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-        throw InputError(place, fmt::format("{} frames are too many", shape[0]));
+        throw InputError(where, fmt::format("{} frames are too many", shape[0]));
     header.slots = static_cast<int>(shape[0]);
-    header.shape = checked_shape(shape[1], shape[2], shape.size() == 4 ? 3 : 1, place);
+    header.shape = checked_shape(shape[1], shape[2], shape.size() == 4 ? 3 : 1, where);
 }
 
 }  // namespace
 
-NpyDictionary find_npy_dictionary(std::string_view start, std::string_view place) {
-    if (!start.starts_with(kMagic)) throw InputError(place, "is not a .npy file");
+NpyDictionary find_npy_dictionary(std::string_view start, std::string_view where) {
+    if (!start.starts_with(kMagic)) throw InputError(where, "is not a .npy file");
     const auto byte = [&](std::size_t i) {
-        if (i >= start.size()) throw InputError(place, "ends within its header");
+        if (i >= start.size()) throw InputError(where, "ends within its header");
         return static_cast<std::size_t>(static_cast<unsigned char>(start[i]));
     };
     const std::size_t version = byte(6);
     if (version < 1 || version > 3)
-        throw InputError(place, fmt::format("offset 6: .npy version {} is unknown", version));
+        throw InputError(where, fmt::format("offset 6: .npy version {} is unknown", version));
     const std::size_t length_bytes = version == 1 ? 2 : 4;
     std::size_t length = 0;
     for (std::size_t i = 0; i < length_bytes; ++i) length |= byte(8 + i) << (8 * i);
     const std::size_t begin = 8 + length_bytes;
     if (length > kMaxNpyHeaderBytes - begin)
-        throw InputError(place, fmt::format("offset 8: a header of {} bytes is too long", length));
-    if (length > start.size() - begin) throw InputError(place, "ends within its header");
+        throw InputError(where, fmt::format("offset 8: a header of {} bytes is too long", length));
+    if (length > start.size() - begin) throw InputError(where, "ends within its header");
     return {start.substr(begin, length), begin + length};
 }
 
@@ -85,22 +85,22 @@ std::size_t npy_type_bytes(NpyType type) {
 }
 
 NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_bytes,
-                           std::string_view place) {
+                           std::string_view where) {
     // Bytes may be read through char.
     const auto text =
-        find_npy_dictionary({reinterpret_cast<const char*>(start.data()), start.size()}, place);
+        find_npy_dictionary({reinterpret_cast<const char*>(start.data()), start.size()}, where);
     NpyHeader header;
     header.data_offset = text.data_offset;
-    const NpyFields fields = read_npy_fields(text.text, place);
-    header.type = type_of(fields.descr, place);
+    const NpyFields fields = read_npy_fields(text.text, where);
+    header.type = type_of(fields.descr, where);
     if (fields.fortran_order)
-        throw InputError(place, "is in Fortran order; save numpy.ascontiguousarray(video)");
-    take_shape(fields.shape, place, header);
+        throw InputError(where, "is in Fortran order; save numpy.ascontiguousarray(video)");
+    take_shape(fields.shape, where, header);
     // At most 2^31 * 2^28 * 8 = 2^62: no overflow.
     const std::uint64_t data_bytes =
         static_cast<std::uint64_t>(header.slots) * std::uint64_t{header.frame_bytes()};
     if (file_bytes - header.data_offset != data_bytes)
-        throw InputError(place,
+        throw InputError(where,
                          fmt::format("{} frames need {} bytes, but the file holds {}; it is "
                                      "truncated or damaged",
                                      header.slots, data_bytes, file_bytes - header.data_offset));

@@ -34,16 +34,16 @@ struct NpyDictionary {
     std::size_t data_offset = 0;
 };
 
-/// Finds the dictionary in `start`, the first bytes of a file. \throws InputError at `place` if the
+/// Finds the dictionary in `start`, the first bytes of a file. \throws InputError at `where` if the
 /// file is no .npy file, has an unknown version, or ends within its header.
-[[nodiscard]] NpyDictionary find_npy_dictionary(std::string_view start, std::string_view place);
+[[nodiscard]] NpyDictionary find_npy_dictionary(std::string_view start, std::string_view where);
 
 /// Reads the header from `start`, the first min(file_bytes, kMaxNpyHeaderBytes) bytes of a file.
-/// \throws InputError at `place` if the file is no .npy file, is not little-endian u1, u2, f2, f4
+/// \throws InputError at `where` if the file is no .npy file, is not little-endian u1, u2, f2, f4
 /// or f8 in C order, has another shape, is empty, or does not match the length of the file. Source:
 /// numpy.lib.format, versions 1.0 to 3.0.
 [[nodiscard]] NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_bytes,
-                                         std::string_view place);
+                                         std::string_view where);
 
 /// A header of fixed length for float32 frames of `shape`, so that the number of slots can be
 /// written later.

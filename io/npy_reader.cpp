@@ -40,8 +40,8 @@ void to_planes(std::span<const std::byte> bytes, const NpyHeader& header, std::s
     }
 }
 
-[[noreturn]] void fail(const std::string& place) {
-    throw InputError(place, "cannot be read: " + std::generic_category().message(errno));
+[[noreturn]] void fail(const std::string& where) {
+    throw InputError(where, "cannot be read: " + std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ NpyReader::NpyReader(const std::filesystem::path& file)
     if (std::fseek(file_.get(), static_cast<long>(header_.data_offset), SEEK_SET) != 0) fail(name_);
 }
 
-std::string NpyReader::place() const {
+std::string NpyReader::where() const {
     return fmt::format("{}: frame {}", name_, next_slot_ - 1);
 }
 
@@ -68,9 +68,9 @@ bool NpyReader::read(std::span<float> frame) {
     if (next_slot_ == header_.slots) return false;
     ++next_slot_;
     const bool whole = std::fread(bytes_.data(), 1, bytes_.size(), file_.get()) == bytes_.size();
-    if (std::ferror(file_.get()) != 0) fail(place());
+    if (std::ferror(file_.get()) != 0) fail(where());
     if (!whole)
-        throw InputError(place(), "cannot be read; the file was cut short while it was read");
+        throw InputError(where(), "cannot be read; the file was cut short while it was read");
     to_planes(bytes_, header_, frame);
     return true;
 }

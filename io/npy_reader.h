@@ -21,7 +21,7 @@ class NpyReader {
     [[nodiscard]] FrameShape shape() const { return header_.shape; }
     [[nodiscard]] int slots() const { return header_.slots; }
     /// The file and the last frame read, for messages.
-    [[nodiscard]] std::string place() const;
+    [[nodiscard]] std::string where() const;
 
     /// The next frame, order (plane, row, col), integers scaled to 0..1; false at the end.
     /// \throws InputError.

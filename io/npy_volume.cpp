@@ -47,45 +47,45 @@ constexpr ValueType kTypes[] = {
     {"<i8", 8, convert<std::int64_t>}, {"<f2", 2, convert<half>},
     {"<f4", 4, convert<float>},        {"<f8", 8, convert<double>}};
 
-const ValueType& type_of(std::string_view name, std::string_view place) {
+const ValueType& type_of(std::string_view name, std::string_view where) {
     const auto found = std::ranges::find(kTypes, name, &ValueType::name);
     if (found == std::end(kTypes))
-        throw InputError(place, fmt::format("values of type \"{}\" cannot be read; save as bool, "
+        throw InputError(where, fmt::format("values of type \"{}\" cannot be read; save as bool, "
                                             "integers or little-endian floats",
                                             name));
     return *found;
 }
 
-void check_shape(const std::vector<std::uint64_t>& shape, std::string_view place) {
+void check_shape(const std::vector<std::uint64_t>& shape, std::string_view where) {
     if (shape.size() != 3)
         throw InputError(
-            place,
+            where,
             fmt::format("has {} dimensions; needs three: (slots, rows, columns)", shape.size()));
     std::uint64_t values = 1;
     for (const std::uint64_t side : shape) {
         if (side < 1 || side > kLongestSide)
-            throw InputError(place, fmt::format("shape ({}, {}, {}): sides are 1 to {}", shape[0],
+            throw InputError(where, fmt::format("shape ({}, {}, {}): sides are 1 to {}", shape[0],
                                                 shape[1], shape[2], kLongestSide));
         values *= side;
     }
     if (values > kMaxValues)
-        throw InputError(place, fmt::format("shape ({}, {}, {}) has more than 2^26 values",
+        throw InputError(where, fmt::format("shape ({}, {}, {}) has more than 2^26 values",
                                             shape[0], shape[1], shape[2]));
 }
 
 }  // namespace
 
-NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view place) {
+NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const NpyDictionary dictionary = find_npy_dictionary(text.substr(0, kMaxNpyHeaderBytes), place);
-    const NpyFields fields = read_npy_fields(dictionary.text, place);
-    const ValueType& type = type_of(fields.descr, place);
-    check_shape(fields.shape, place);
+    const NpyDictionary dictionary = find_npy_dictionary(text.substr(0, kMaxNpyHeaderBytes), where);
+    const NpyFields fields = read_npy_fields(dictionary.text, where);
+    const ValueType& type = type_of(fields.descr, where);
+    check_shape(fields.shape, where);
     check_memory(
-        bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], place,
+        bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], where,
         "the volume");
     if (fields.fortran_order)
-        throw InputError(place, "is in Fortran order; save numpy.ascontiguousarray(volume)");
+        throw InputError(where, "is in Fortran order; save numpy.ascontiguousarray(volume)");
     NpyVolume volume{.layers = static_cast<int>(fields.shape[0]),
                      .rows = static_cast<int>(fields.shape[1]),
                      .cols = static_cast<int>(fields.shape[2]),
@@ -93,7 +93,7 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view pl
     const std::size_t count = fields.shape[0] * fields.shape[1] * fields.shape[2];
     const auto data = bytes.subspan(dictionary.data_offset);
     if (data.size() != count * type.bytes)
-        throw InputError(place, fmt::format("{} values need {} bytes, but the file holds {}; it is "
+        throw InputError(where, fmt::format("{} values need {} bytes, but the file holds {}; it is "
                                             "truncated or damaged",
                                             count, count * type.bytes, data.size()));
     volume.values.resize(count);

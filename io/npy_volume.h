@@ -25,8 +25,8 @@ struct NpyVolume {
 
 /// The volume in `bytes`, a whole .npy file: three dimensions of 1..65535, at most 2^26 values,
 /// booleans, integers or floating-point numbers, little-endian, C order.
-/// \throws InputError at `place` for anything else.
-[[nodiscard]] NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view place);
+/// \throws InputError at `where` for anything else.
+[[nodiscard]] NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where);
 
 /// \throws InputError as above, or if the file cannot be read.
 [[nodiscard]] NpyVolume read_npy_volume(const std::filesystem::path& file);

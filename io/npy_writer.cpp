@@ -10,8 +10,8 @@ namespace stipple {
 
 static_assert(std::endian::native == std::endian::little, ".npy data are written as they lie");
 
-NpyWriter::NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape)
-    : file_(file, std::string(place)), shape_(shape) {
+NpyWriter::NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape)
+    : file_(file, std::string(where)), shape_(shape) {
     write_header();
 }
 

@@ -15,8 +15,8 @@ namespace stipple {
 /// file lacks at most the frames of the last second.
 class NpyWriter {
   public:
-    /// Creates `file`; messages name it `place`. \throws DeviceError.
-    NpyWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape);
+    /// Creates `file`; messages name it `where`. \throws DeviceError.
+    NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape);
 
     /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
     void write(std::span<const float> frame);

@@ -10,8 +10,8 @@
 
 namespace stipple {
 
-OutputFile::OutputFile(const std::filesystem::path& path, std::string place)
-    : place_(std::move(place)) {
+OutputFile::OutputFile(const std::filesystem::path& path, std::string where)
+    : where_(std::move(where)) {
     // Not through a link that somebody has put there.
     constexpr int kMode = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
     const int descriptor = ::open(path.c_str(), kMode, 0666);
@@ -32,7 +32,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::fail() const {
-    throw DeviceError(place_, "cannot be written: " + std::generic_category().message(errno));
+    throw DeviceError(where_, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace stipple

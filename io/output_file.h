@@ -13,8 +13,8 @@ namespace stipple {
 /// user knows.
 class OutputFile {
   public:
-    /// Creates `path`; messages name it `place`. \throws DeviceError.
-    OutputFile(const std::filesystem::path& path, std::string place);
+    /// Creates `path`; messages name it `where`. \throws DeviceError.
+    OutputFile(const std::filesystem::path& path, std::string where);
 
     void write(std::span<const std::byte> bytes);
     /// Continues at `offset` bytes from the start.
@@ -28,7 +28,7 @@ class OutputFile {
     };
     [[noreturn]] void fail() const;
 
-    std::string place_;
+    std::string where_;
     std::unique_ptr<std::FILE, Closer> file_;
 };
 

@@ -126,16 +126,16 @@ SourceTraits traits_of(png_structp png, png_infop info, bool grey) {
 /// Everything but the bytes. \throws InputError for a size that the file cannot hold or that is
 /// more than a run may take.
 PngImage image_of(png_structp png, png_infop info, std::uint64_t file_bytes,
-                  const std::string& place) {
+                  const std::string& where) {
     const int type = png_get_color_type(png, info);
     const int depth = png_get_bit_depth(png, info);
     const bool grey = (type & PNG_COLOR_MASK_COLOR) == 0;
     const std::uint64_t rows = png_get_image_height(png, info);
     const FrameShape shape =
-        checked_shape(rows, png_get_image_width(png, info), grey ? 1 : 3, place);
-    check_packed(png_get_rowbytes(png, info) * rows, file_bytes, place);
+        checked_shape(rows, png_get_image_width(png, info), grey ? 1 : 3, where);
+    check_packed(png_get_rowbytes(png, info) * rows, file_bytes, where);
     const std::size_t unpacked = depth == 16 ? 2 : 1;
-    check_memory((unpacked + sizeof(float)) * shape.sites(), place, "the picture", file_bytes);
+    check_memory((unpacked + sizeof(float)) * shape.sites(), where, "the image", file_bytes);
     return {.pixels = {.rows = shape.rows,
                        .cols = shape.cols,
                        .channels = shape.planes,
@@ -173,9 +173,9 @@ void flush(png_structp /*png*/) {}
 
 }  // namespace
 
-PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place) {
+PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where) {
     if (file.size() < kSignatureBytes || png_sig_cmp(file.data(), 0, kSignatureBytes) != 0)
-        throw InputError(place, "is not a PNG file");
+        throw InputError(where, "is not a PNG file");
     Source source{file};
     const Png reader(true);
     const png_structp png = reader.png;
@@ -183,10 +183,10 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place
     const auto check = [&](bool succeeded) {
         if (succeeded) return;
         throw InputError(
-            place, fmt::format("offset {}: {}; it is damaged", source.chunk, reader.reason()));
+            where, fmt::format("offset {}: {}; it is damaged", source.chunk, reader.reason()));
     };
     check(succeeds(png, [&] { read_header(png, info, source); }));
-    PngImage image = image_of(png, info, file.size(), place);
+    PngImage image = image_of(png, info, file.size(), where);
     std::vector<png_bytep> rows(static_cast<std::size_t>(image.pixels.rows));
     for (std::size_t row = 0; row < rows.size(); ++row)
         rows[row] = image.pixels.bytes.data() + row * row_bytes(image.pixels);

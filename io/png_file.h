@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/picture.h"
+#include "io/image.h"
 
 namespace stipple {
 
@@ -30,7 +30,7 @@ struct PngImage {
 /// 8 bits; alpha is omitted.
 /// \throws InputError if it is no PNG file, is damaged or truncated, with the byte offset of the
 /// chunk; or if the image exceeds the maximum size.
-[[nodiscard]] PngImage decode_png(std::span<const std::uint8_t> file, const std::string& place);
+[[nodiscard]] PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where);
 
 /// \throws DeviceError if the file cannot be written.
 void write_png_file(const std::filesystem::path& file, const PngPixels& pixels);

@@ -36,7 +36,7 @@ bool same_letters(std::string_view a, std::string_view b) {
     });
 }
 
-PixelFormat format_named(std::string_view name, std::string_view place) {
+PixelFormat format_named(std::string_view name, std::string_view where) {
     constexpr std::string_view kMsb = "msb";
     const bool is_msb =
         name.size() > kMsb.size() && same_letters(name.substr(name.size() - kMsb.size()), kMsb);
@@ -48,7 +48,7 @@ PixelFormat format_named(std::string_view name, std::string_view place) {
         if (is_msb) format.packing = Packing::kMsbPacked;
         return format;
     }
-    throw InputError(place,
+    throw InputError(where,
                      fmt::format("\"{}\" is no pixel format that is read; give one as mono8, "
                                  "mono16, mono12p, mono12packed, mono12msb, bayerrg12p or "
                                  "rgb8 (docs/footage.md)",
@@ -56,27 +56,27 @@ PixelFormat format_named(std::string_view name, std::string_view place) {
 }
 
 void set_key(RawFormat& raw, std::string_view key, std::string_view value) {
-    const std::string_view place = raw.text;
+    const std::string_view where = raw.text;
     const double full_scale = (1 << raw.format.significant_bits) - 1;
     if (key == "offset") {
         if (const auto offset = number_of<std::uint64_t>(value)) {
             raw.offset = *offset;
             return;
         }
-        throw InputError(place, fmt::format("offset={}: give a number of bytes", value));
+        throw InputError(where, fmt::format("offset={}: give a number of bytes", value));
     }
     const double number = number_of<double>(value).value_or(NAN);
     if (key == "black") {
         if (!(number >= 0 && number < full_scale))
             throw InputError(
-                place, fmt::format("black={}: give a DN from 0 to below {}", value, full_scale));
+                where, fmt::format("black={}: give a DN from 0 to below {}", value, full_scale));
         raw.black_dn = number;
     } else if (key == "hz") {
         if (!(number > 0 && std::isfinite(number)))
-            throw InputError(place, fmt::format("hz={}: give frames per second", value));
+            throw InputError(where, fmt::format("hz={}: give frames per second", value));
         raw.frames_hz = number;
     } else {
-        throw InputError(place,
+        throw InputError(where,
                          fmt::format("\"{}\" is no key; there are offset=BYTES, black=DN and "
                                      "hz=RATE",
                                      key));

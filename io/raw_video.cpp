@@ -35,7 +35,7 @@ RawVideoReader::RawVideoReader(RawVideo video) : video_(std::move(video)), file_
     samples_.resize(static_cast<std::size_t>(video_.shape.cols * video_.shape.planes));
 }
 
-std::string RawVideoReader::place() const {
+std::string RawVideoReader::where() const {
     return fmt::format("{}: frame {}", file_.name(), next_slot_ - 1);
 }
 
@@ -53,7 +53,7 @@ std::uint64_t RawVideoReader::offset_of(std::uint64_t slot) {
     const std::uint32_t announced =
         length < kMinLength ? 0 : number_at(offset + length - sizeof(announced));
     if (announced != bytes_.size())
-        throw InputError(place(), fmt::format("announces {} bytes, but a frame of its size has {}; "
+        throw InputError(where(), fmt::format("announces {} bytes, but a frame of its size has {}; "
                                               "it is damaged or compressed",
                                               announced, bytes_.size()));
     return offset + length;

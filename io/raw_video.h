@@ -8,7 +8,7 @@
 
 #include "core/geometry.h"
 #include "io/file_bytes.h"
-#include "io/picture.h"
+#include "io/image.h"
 #include "io/pixel_format.h"
 
 namespace stipple {
@@ -42,7 +42,7 @@ class RawVideoReader {
     [[nodiscard]] int slots() const { return static_cast<int>(video_.slots); }
     [[nodiscard]] const SourceTraits& traits() const { return video_.traits; }
     /// The file and the frame read last, for messages.
-    [[nodiscard]] std::string place() const;
+    [[nodiscard]] std::string where() const;
 
     /// The next frame, order (plane, row, col); false at the end. \throws InputError.
     bool read(std::span<float> frame);

@@ -213,7 +213,7 @@ void TiffFile::Impl::check_imagej_pages() const {
     const int announced = std::atoi(text + images + std::string_view("\nimages=").size());
     if (announced > pages)
         throw InputError(file.name(),
-                         fmt::format("announces {} pictures, but its directories hold {}; save it "
+                         fmt::format("announces {} images, but its directories hold {}; save it "
                                      "from ImageJ as an image sequence",
                                      announced, pages));
 }
@@ -231,27 +231,27 @@ int TiffFile::pages() const {
     return impl_->pages;
 }
 
-std::string TiffFile::place(int page) const {
+std::string TiffFile::where(int page) const {
     return impl_->pages == 1 ? impl_->file.name()
                              : fmt::format("{}: page {}", impl_->file.name(), page);
 }
 
 void TiffFile::read(int page, TiffPixels& pixels) {
     impl_->file.forget_message();
-    if (!impl_->turn_to(page)) impl_->file.fail(place(page));
+    if (!impl_->turn_to(page)) impl_->file.fail(where(page));
     TIFF* const tiff = impl_->file.get();
     const Page about(tiff);
     const std::string problem = about.problem();
-    if (!problem.empty()) throw InputError(place(page), problem);
+    if (!problem.empty()) throw InputError(where(page), problem);
     pixels.sample = sample_of(about);
     pixels.channels = about.channels;
-    pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, place(page));
+    pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, where(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
-    check_packed(bytes, impl_->file.file_bytes(), place(page), about.max_packed());
-    check_memory(bytes + sizeof(float) * pixels.shape.sites(), place(page), "the picture",
+    check_packed(bytes, impl_->file.file_bytes(), where(page), about.max_packed());
+    check_memory(bytes + sizeof(float) * pixels.shape.sites(), where(page), "the image",
                  impl_->file.file_bytes());
     pixels.bytes.resize(bytes);
-    if (!PageReader(tiff, about, pixels).read()) impl_->file.fail(place(page));
+    if (!PageReader(tiff, about, pixels).read()) impl_->file.fail(where(page));
     if (about.photometric == PHOTOMETRIC_MINISWHITE)
         for (std::byte& byte : pixels.bytes) byte = ~byte;
 }
@@ -260,7 +260,7 @@ TiffPixels read_single_tiff(const std::filesystem::path& file) {
     TiffFile tiff(file);
     if (tiff.pages() != 1)
         throw InputError(file.string(),
-                         fmt::format("holds {} pictures; save one picture a file", tiff.pages()));
+                         fmt::format("holds {} images; save one image a file", tiff.pages()));
     TiffPixels pixels;
     tiff.read(0, pixels);
     return pixels;

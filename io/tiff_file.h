@@ -37,7 +37,7 @@ class TiffFile {
     /// several, if it is damaged or of an unsupported kind.
     void read(int page, TiffPixels& pixels);
     /// The file, and the page if there are several, for messages.
-    [[nodiscard]] std::string place(int page) const;
+    [[nodiscard]] std::string where(int page) const;
 
   private:
     struct Impl;

@@ -59,8 +59,8 @@ TiffHandle::TiffHandle(const std::filesystem::path& file)
     if (!tiff_) fail(name_);
 }
 
-void TiffHandle::fail(const std::string& place) const {
-    throw InputError(place, fmt::format("cannot be decoded{}; it is damaged or ends too early",
+void TiffHandle::fail(const std::string& where) const {
+    throw InputError(where, fmt::format("cannot be decoded{}; it is damaged or ends too early",
                                         message_.empty() ? "" : fmt::format(" ({})", message_)));
 }
 

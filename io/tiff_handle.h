@@ -22,7 +22,7 @@ class TiffHandle {
     [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
     void forget_message() { message_.clear(); }
     /// \throws InputError with the first message of libtiff since it was forgotten.
-    [[noreturn]] void fail(const std::string& place) const;
+    [[noreturn]] void fail(const std::string& where) const;
 
   private:
     struct Closer {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/geometry.h"
-#include "io/picture.h"
+#include "io/image.h"
 
 struct AVFrame;  // of FFmpeg's libavutil
 

@@ -57,11 +57,11 @@ std::vector<std::string> VideoReader::warnings() const {
     return impl_->decoder.warnings();
 }
 
-std::optional<double> VideoReader::film_hz() const {
-    return impl_->decoder.film_hz();
+std::optional<double> VideoReader::video_hz() const {
+    return impl_->decoder.video_hz();
 }
 
-std::string VideoReader::place() const {
+std::string VideoReader::where() const {
     return fmt::format("{}: frame {}", impl_->name, impl_->next_slot - 1);
 }
 
@@ -70,7 +70,7 @@ bool VideoReader::read(std::span<float> frame) {
     if (impl_->frame == nullptr) return false;
     ++impl_->next_slot;
     if (!impl_->planes.convert(*impl_->frame, frame))
-        throw InputError(place(), "differs in size or format from the first frame");
+        throw InputError(where(), "differs in size or format from the first frame");
     return true;
 }
 

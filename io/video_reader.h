@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "io/picture.h"
+#include "io/image.h"
 
 namespace stipple {
 
@@ -28,12 +28,12 @@ class VideoReader {
 
     [[nodiscard]] FrameShape shape() const;
     /// Playback rate in frames per second, if the file gives it.
-    [[nodiscard]] std::optional<double> film_hz() const;
+    [[nodiscard]] std::optional<double> video_hz() const;
     [[nodiscard]] const SourceTraits& traits() const;
     /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;
     /// The file and the last frame read, for messages.
-    [[nodiscard]] std::string place() const;
+    [[nodiscard]] std::string where() const;
 
     /// The next frame, order (plane, row, col), scaled to 0..1; false at the end.
     /// \throws InputError if the video is damaged here, or ends well before the frame that its

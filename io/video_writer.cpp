@@ -125,7 +125,7 @@ FfmpegPtr<SwsContext> new_scaler(const AVFrame& from, const AVFrame& to) {
 }  // namespace
 
 struct VideoWriter::Impl {
-    std::string place;
+    std::string where;
     FrameShape shape;
     Sink sink;
     std::vector<std::uint8_t> pixels;  ///< as tone-mapped
@@ -140,7 +140,7 @@ struct VideoWriter::Impl {
     std::int64_t next_slot = 0;
 
     Impl(const std::filesystem::path& file, std::string_view named, FrameShape frame)
-        : place(named), shape(frame), sink{OutputFile(file, place)}, pixels(frame.sites()) {}
+        : where(named), shape(frame), sink{OutputFile(file, where)}, pixels(frame.sites()) {}
     void open(const std::filesystem::path& file, double frames_per_second);
     void open_encoder(AVRational rate);
     void pad();
@@ -149,13 +149,13 @@ struct VideoWriter::Impl {
     void check(int result, std::string_view what) const {
         if (sink.failure) std::rethrow_exception(sink.failure);
         if (result < 0)
-            throw DeviceError(place, fmt::format("{}: {}", what, ffmpeg_reason(result)));
+            throw DeviceError(where, fmt::format("{}: {}", what, ffmpeg_reason(result)));
     }
 };
 
 void VideoWriter::Impl::open_encoder(AVRational rate) {
     const AVCodec* const codec = avcodec_find_encoder(AV_CODEC_ID_H264);
-    if (codec == nullptr) throw DeviceError(place, "FFmpeg here has no encoder for H.264");
+    if (codec == nullptr) throw DeviceError(where, "FFmpeg here has no encoder for H.264");
     encoder.reset(avcodec_alloc_context3(codec));
     if (!encoder) throw std::bad_alloc();
     // Even, and at least four columns: FFmpeg 5.1 converts narrower frames beyond their memory.
@@ -231,9 +231,9 @@ void VideoWriter::Impl::encode(const AVFrame* frame) {
     }
 }
 
-VideoWriter::VideoWriter(const std::filesystem::path& file, std::string_view place,
+VideoWriter::VideoWriter(const std::filesystem::path& file, std::string_view where,
                          FrameShape shape, double frames_per_second)
-    : impl_(std::make_unique<Impl>(file, place, shape)) {
+    : impl_(std::make_unique<Impl>(file, where, shape)) {
     impl_->open(file, frames_per_second);
 }
 

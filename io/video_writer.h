@@ -14,8 +14,8 @@ namespace stipple {
 /// columns, are padded by repeating the last row or column. The same bits on any machine.
 class VideoWriter {
   public:
-    /// Creates `file` (.mp4 or .mkv); messages name it `place`. \throws DeviceError.
-    VideoWriter(const std::filesystem::path& file, std::string_view place, FrameShape shape,
+    /// Creates `file` (.mp4 or .mkv); messages name it `where`. \throws DeviceError.
+    VideoWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape,
                 double frames_per_second);
     ~VideoWriter();
     VideoWriter(VideoWriter&&) noexcept;

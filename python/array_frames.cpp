@@ -20,7 +20,7 @@ struct Cast {
     }
 };
 
-constexpr const char* kPlace = "video";
+constexpr const char* kWhere = "video";
 
 /// In the byte order of the machine, and half floats as floats, which hold them exactly.
 py::array readable(const py::array& array) {
@@ -29,7 +29,7 @@ py::array readable(const py::array& array) {
     if (kind == 'f' && bytes == 2) return py::array_t<float>(array);
     const bool known = kind == 'f' ? bytes == 4 || bytes == 8 : kind == 'u' && bytes <= 2;
     if (!known)
-        throw InputError(kPlace,
+        throw InputError(kWhere,
                          fmt::format("has dtype {}; give floating-point light, or uint8 or uint16",
                                      std::string(py::str(array.dtype()))));
     if (array.dtype().attr("isnative").cast<bool>()) return array;
@@ -39,11 +39,11 @@ py::array readable(const py::array& array) {
 FrameShape shape_of(const py::array& array) {
     const auto size = [&](int axis) { return static_cast<std::uint64_t>(array.shape(axis)); };
     if (array.ndim() != 3 && array.ndim() != 4)
-        throw InputError(kPlace, fmt::format("has {} axes; give (slot, row, col) or (slot, row, "
+        throw InputError(kWhere, fmt::format("has {} axes; give (slot, row, col) or (slot, row, "
                                              "col, plane)",
                                              array.ndim()));
-    if (array.shape(0) == 0) throw InputError(kPlace, "holds no frame");
-    return checked_shape(size(1), size(2), array.ndim() == 4 ? size(3) : 1, kPlace);
+    if (array.shape(0) == 0) throw InputError(kWhere, "holds no frame");
+    return checked_shape(size(1), size(2), array.ndim() == 4 ? size(3) : 1, kWhere);
 }
 
 /// Whether the frames are float32, one plane after the other.
@@ -107,13 +107,13 @@ std::span<const float> ArrayFrames::next() {
     if (slot_ == slots()) return {};
     const auto* first = static_cast<const std::byte*>(array_.data());
     auto light = stored(first + slot_ * array_.strides(0));
-    const std::string place = fmt::format("{}: frame {}", kPlace, slot_++);
+    const std::string where = fmt::format("{}: frame {}", kWhere, slot_++);
     if (options_.transfer.value_or(Transfer::kLinear) != Transfer::kLinear) {
         linearise(own(light), *options_.transfer);
         light = frame_;
     }
-    check_light(light, source_, place);
-    if (slot_ == 1 && !options_.max_value) warning_ = brightness_warning(light, place);
+    check_light(light, source_, where);
+    if (slot_ == 1 && !options_.max_value) warning_ = brightness_warning(light, where);
     if (!luminance_.empty()) {
         reduce_to_luminance(light, luminance_);
         light = luminance_;

@@ -62,7 +62,7 @@ void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& p
     const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;
     if (known) {
         const std::uint64_t values = static_cast<std::uint64_t>(*slots) * shape.sites();
-        check_memory(values * sizeof(float), task.options.place, "the decoded video");
+        check_memory(values * sizeof(float), task.options.where, "the decoded video");
         frames.reserve(values);
     }
     decode(
@@ -75,7 +75,7 @@ void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& p
 }
 
 py::array decode_stream(const StreamFile& stream, DecodeTask task, const py::object& tell) {
-    task.options.place = stream.name();
+    task.options.where = stream.name();
     task.options.input_bytes = input_bytes(stream.path());
     StreamReader reader = stream.reader(task.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
     auto total = reader.slots();

@@ -64,9 +64,9 @@ py::dict counts_of(const StreamFile& stream) {
         report = read_through(stream);
     }
     py::list damage;
-    for (const StreamDamage& place : report.damage)
+    for (const StreamDamage& where : report.damage)
         damage.append(
-            py::dict("offset"_a = place.offset, "bytes"_a = place.bytes, "cause"_a = place.cause));
+            py::dict("offset"_a = where.offset, "bytes"_a = where.bytes, "cause"_a = where.cause));
     return py::dict("version"_a = report.version, "slots"_a = report.slots,
                     "packets"_a = report.packets, "samples"_a = report.samples,
                     "payload_bits"_a = report.payload_bits,
@@ -93,9 +93,9 @@ std::string damage_text(const StreamReport& report) {
                                    report.missing_slots, report.slots);
     constexpr std::size_t kMaxPlaces = 10;
     const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
-    for (const StreamDamage& place : std::span(report.damage).first(listed))
-        text += fmt::format("\n  byte {}: {}, {} bytes skipped", place.offset, place.cause,
-                            place.bytes);
+    for (const StreamDamage& where : std::span(report.damage).first(listed))
+        text += fmt::format("\n  byte {}: {}, {} bytes skipped", where.offset, where.cause,
+                            where.bytes);
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
     if (places > listed) text += fmt::format("\n  and {} more", places - listed);
     if (report.tail_bytes > 0)

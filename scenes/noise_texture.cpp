@@ -68,7 +68,7 @@ NoiseTexture::NoiseTexture(int texels, float persistence, const SceneRandom& ran
     : texels_(texels),
       values_(static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels)) {
     // Variance of one octave: 1/3 (uniform lattice) x 0.479^2 (squared spline weights, averaged).
-    // Octaves beyond the default size are left out so that a larger picture shows the same scene.
+    // Octaves beyond the default size are left out so that a larger image shows the same scene.
     float variance = 0;
     float amplitude = 1;
     for (int cells = kFirstCells; cells <= kDefaultTexels / 4; cells *= 2) {

@@ -114,7 +114,7 @@ Rgb PanScene::facade(const House& house, Vec2 local) const noexcept {
     const Vec2 round{door.x, std::max(0.0F, door.y - 0.085F)};
     const float arch = std::sqrt(dot(round, round));
     const float grain = textures_->coarse.at(local.x + house.stain.x, local.y + house.stain.y);
-    if (arch < 0.034F)  // an open archway: the deepest shadow of the picture
+    if (arch < 0.034F)  // an open archway: the deepest shadow of the image
         return (3e-4F * (1 + 0.3F * grain)) * Rgb{1, 0.85F, 0.75F} +
                0.004F * square(clamp01(1 - door.y / 0.03F)) * Rgb{1, 0.8F, 0.6F};
     const float stain = textures_->smooth.at(local.x + house.stain.x, local.y + house.stain.y);

@@ -9,7 +9,7 @@ namespace stipple {
 
 namespace {
 
-constexpr float kPixel = 1.0F / 240;  // speeds are in pixels of the default picture
+constexpr float kPixel = 1.0F / 240;  // speeds are in pixels of the default image
 constexpr int kTileRows = 16;
 constexpr float kTile = 1.0F / kTileRows;
 constexpr float kMargin = 0.26F;  // longest half pencil and its shadow

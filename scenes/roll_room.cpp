@@ -39,7 +39,7 @@ Rgb RollScene::wall(Vec2 point, float shadow) const noexcept {
     if (dot(bulb, bulb) < square(0.015F)) return {13, 9.5F, 5.5F};
     const Rgb halo = 0.9F * light_pool(dot(bulb, bulb), 0.035F) * kBulbLight;
     if (std::abs(bulb.x) < 0.0025F && bulb.y < 0) return {0.015F, 0.013F, 0.011F};
-    // A doorway into a dark cellar: the deepest shadow of the picture.
+    // A doorway into a dark cellar: the deepest shadow of the image.
     const Vec2 door{std::abs(point.x - 0.36F), kFloorLine - point.y};
     if (door.x < 0.085F && door.y < 0.40F) {
         const float stairs = fraction(door.y / 0.045F) < 0.2F ? 2.0F : 1.0F;

@@ -68,7 +68,7 @@ void check(const SceneOptions& options) {
 /// Where the samples of a pixel lie, in time and area.
 struct SamplePlan {
     explicit SamplePlan(const SceneOptions& options) {
-        // Speeds grow with the picture: so do the samples in time, to keep steps below a pixel.
+        // Speeds grow with the image: so do the samples in time, to keep steps below a pixel.
         const double growth = std::max(1.0, options.shape.rows / static_cast<double>(kDefaultRows));
         const int per_unit = static_cast<int>(std::ceil(options.time_samples * growth));
         instants = static_cast<int>(std::ceil(per_unit * options.slot_duration));

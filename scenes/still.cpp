@@ -11,7 +11,7 @@ namespace {
 constexpr Vec2 kWindowCentre{-0.30F, -0.13F};
 constexpr Vec2 kWindowHalf{0.24F, 0.27F};
 constexpr float kFrame = 0.022F;
-constexpr Vec2 kHook{0.10F, -0.62F};  // the lamp's cord is fixed above the picture
+constexpr Vec2 kHook{0.10F, -0.62F};  // the lamp's cord is fixed above the image
 constexpr float kCord = 0.36F;
 constexpr Vec2 kSun{-0.40F, -0.27F};
 constexpr Rgb kWindowLight{0.85F, 0.92F, 1.0F};

@@ -8,7 +8,7 @@ namespace stipple {
 
 namespace {
 
-constexpr Vec2 kShelfCorner{0.24F, -0.40F};  // upper left; it runs out of the picture
+constexpr Vec2 kShelfCorner{0.24F, -0.40F};  // upper left; it runs out of the image
 constexpr float kShelfPitch = 0.205F;
 constexpr float kBoard = 0.016F;
 constexpr float kBookCell = 0.034F;

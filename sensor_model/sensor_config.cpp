@@ -13,7 +13,7 @@ void reject_physical_keys(const Config& config, const PhysicalTerms& terms) {
     visit_physical_keys(terms, [&](const ConfigKey& key, const auto&) {
         if (config.contains(key.name))
             throw InputError(
-                config.place(key.name),
+                config.where(key.name),
                 "is of the physical model; set mode = \"physical\" (mode is \"paper\", "
                 "which has the terms of Eq. 1 only)");
     });

@@ -11,8 +11,8 @@
 
 namespace stipple {
 
-AppendFile::AppendFile(const std::filesystem::path& file, std::string place)
-    : place_(std::move(place)),
+AppendFile::AppendFile(const std::filesystem::path& file, std::string where)
+    : where_(std::move(where)),
       descriptor_(
           ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) fail();
@@ -43,7 +43,7 @@ void AppendFile::cut(std::uint64_t bytes) noexcept {
 }
 
 void AppendFile::fail() const {
-    throw DeviceError(place_, "cannot be written: " + std::generic_category().message(errno));
+    throw DeviceError(where_, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace stipple

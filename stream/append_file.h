@@ -10,9 +10,9 @@ namespace stipple {
 /// A new file that grows at its end; each block of bytes is visible to readers at once.
 class AppendFile {
   public:
-    /// Creates or truncates `file`. Messages call it `place`.
-    /// All members \throws DeviceError naming `place` (a full disk, say).
-    AppendFile(const std::filesystem::path& file, std::string place);
+    /// Creates or truncates `file`. Messages call it `where`.
+    /// All members \throws DeviceError naming `where` (a full disk, say).
+    AppendFile(const std::filesystem::path& file, std::string where);
     ~AppendFile();
     AppendFile(const AppendFile&) = delete;
     AppendFile& operator=(const AppendFile&) = delete;
@@ -27,7 +27,7 @@ class AppendFile {
   private:
     [[noreturn]] void fail() const;
 
-    std::string place_;
+    std::string where_;
     int descriptor_;
     std::uint64_t bytes_ = 0;
 };

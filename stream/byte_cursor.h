@@ -16,9 +16,9 @@ namespace stipple {
 /// Reads numbers from a part of a file, one after the other.
 class ByteCursor {
   public:
-    /// `bytes` begin at `offset` of the file that messages call `place`.
-    ByteCursor(std::span<const std::uint8_t> bytes, std::size_t offset, std::string_view place)
-        : bytes_(bytes), offset_(offset), place_(place) {}
+    /// `bytes` begin at `offset` of the file that messages call `where`.
+    ByteCursor(std::span<const std::uint8_t> bytes, std::size_t offset, std::string_view where)
+        : bytes_(bytes), offset_(offset), where_(where) {}
 
     [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
 
@@ -47,13 +47,13 @@ class ByteCursor {
     /// \throws InputError naming file and offset of the number that was taken last.
     [[noreturn]] void fail(std::string_view problem) const {
         throw InputError(
-            std::string(place_).append(": byte ").append(std::to_string(offset_ + at_)), problem);
+            std::string(where_).append(": byte ").append(std::to_string(offset_ + at_)), problem);
     }
 
   private:
     std::span<const std::uint8_t> bytes_;
     std::size_t offset_;
-    std::string_view place_;
+    std::string_view where_;
     std::size_t at_ = 0;
 };
 

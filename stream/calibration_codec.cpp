@@ -37,7 +37,7 @@ std::string problem_of(const CalibrationTile& tile) {
                        tile.rows, tile.cols, kMaxCalibrationPixels);
 }
 
-void check(const Calibration& calibration, std::string_view place) {
+void check(const Calibration& calibration, std::string_view where) {
     const CalibrationTile& tile = calibration.tile;
     std::string problem = problem_of(calibration.dark_e_per_slot);
     if (problem.empty()) problem = problem_of(tile);
@@ -46,7 +46,7 @@ void check(const Calibration& calibration, std::string_view place) {
         problem = "calibration tile and its pixels do not match";
     for (std::size_t i = 0; problem.empty() && i < tile.pixels.size(); ++i)
         problem = problem_of(tile.pixels[i]);
-    if (!problem.empty()) throw InputError(place, problem);
+    if (!problem.empty()) throw InputError(where, problem);
 }
 
 }  // namespace
@@ -56,8 +56,8 @@ bool needs_calibration_section(const Calibration& calibration) {
 }
 
 std::vector<std::uint8_t> encode_calibration(const Calibration& calibration,
-                                             std::string_view place) {
-    check(calibration, place);
+                                             std::string_view where) {
+    check(calibration, where);
     std::vector<std::uint8_t> bytes;
     append(bytes, calibration.dark_e_per_slot);
     append(bytes, static_cast<std::uint16_t>(calibration.tile.rows));
@@ -70,8 +70,8 @@ std::vector<std::uint8_t> encode_calibration(const Calibration& calibration,
 }
 
 void decode_calibration(std::span<const std::uint8_t> section, std::size_t offset,
-                        std::string_view place, Calibration& calibration) {
-    ByteCursor cursor(section, offset, place);
+                        std::string_view where, Calibration& calibration) {
+    ByteCursor cursor(section, offset, where);
     const auto require_good = [&](const std::string& problem) {
         if (!problem.empty()) cursor.fail(problem);
     };

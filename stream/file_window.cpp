@@ -20,7 +20,7 @@ constexpr std::size_t kStepBytes = std::size_t{1} << 18U;
 }  // namespace
 
 FileWindow::FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe)
-    : place_(file.string()),
+    : where_(file.string()),
       descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
       waits_(empty_pipe == EmptyPipe::kWait) {
     if (descriptor_ < 0) fail();
@@ -98,7 +98,7 @@ std::optional<std::vector<std::uint8_t>> FileWindow::read_at(std::uint64_t offse
 }
 
 void FileWindow::fail() const {
-    throw InputError(place_, "cannot be read: " + std::generic_category().message(errno));
+    throw InputError(where_, "cannot be read: " + std::generic_category().message(errno));
 }
 
 }  // namespace stipple

@@ -49,7 +49,7 @@ class FileWindow {
     /// 0 at the end.
     [[nodiscard]] std::size_t read_some(std::uint8_t* to, std::size_t bytes);
 
-    std::string place_;
+    std::string where_;
     int descriptor_;
     bool is_pipe_ = false;
     bool waits_;

@@ -30,8 +30,8 @@ constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;
 constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes +
                                         kMaxScheduleBytes + kMaxCalibrationBytes + kCrcBytes;
 
-[[noreturn]] void fail_at(std::string_view place, std::size_t offset, std::string_view problem) {
-    throw InputError(fmt::format("{}: byte {}", place, offset), problem);
+[[noreturn]] void fail_at(std::string_view where, std::size_t offset, std::string_view problem) {
+    throw InputError(fmt::format("{}: byte {}", where, offset), problem);
 }
 
 /// A number of the header and the values it may have.
@@ -66,9 +66,9 @@ constexpr std::size_t kScheduleCrc = 88;
 /// Bytes that must be zero.
 constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {86, 2}};
 
-void check(const Field& field, double value, std::string_view place) {
+void check(const Field& field, double value, std::string_view where) {
     if (value >= field.least && value <= field.most) return;  // false for NaN
-    fail_at(place, field.offset,
+    fail_at(where, field.offset,
             fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.least,
                         field.most));
 }
@@ -81,33 +81,33 @@ struct Numbers {
     ColourFilter cfa = ColourFilter::kNone;
 };
 
-void check(const Numbers& numbers, std::string_view place) {
+void check(const Numbers& numbers, std::string_view where) {
     const auto& [shape, slot_us, calibration, cfa] = numbers;
-    check(kRows, shape.rows, place);
-    check(kCols, shape.cols, place);
-    check(kPlanes, shape.planes, place);
-    check(kSites, static_cast<double>(shape.sites()), place);
-    check(kColourFilter, static_cast<int>(cfa), place);
+    check(kRows, shape.rows, where);
+    check(kCols, shape.cols, where);
+    check(kPlanes, shape.planes, where);
+    check(kSites, static_cast<double>(shape.sites()), where);
+    check(kColourFilter, static_cast<int>(cfa), where);
     if (cfa != ColourFilter::kNone && shape.planes != 1)
-        fail_at(place, kColourFilter.offset,
+        fail_at(where, kColourFilter.offset,
                 fmt::format("a colour filter array has one plane, not {}", shape.planes));
-    check(kBitDepth, calibration.bit_depth, place);
-    check(kRounding, static_cast<int>(calibration.rounding), place);
-    check(kSlotDuration, slot_us, place);
-    check(kBlackLevel, calibration.black_level_dn, place);
-    check(kGain, calibration.gain_e_per_dn, place);
-    check(kReadNoise, calibration.read_noise_e, place);
-    check(kFullWell, calibration.full_well_e, place);
-    check(kElectronsPerUnit, calibration.electrons_per_unit, place);
+    check(kBitDepth, calibration.bit_depth, where);
+    check(kRounding, static_cast<int>(calibration.rounding), where);
+    check(kSlotDuration, slot_us, where);
+    check(kBlackLevel, calibration.black_level_dn, where);
+    check(kGain, calibration.gain_e_per_dn, where);
+    check(kReadNoise, calibration.read_noise_e, where);
+    check(kFullWell, calibration.full_well_e, where);
+    check(kElectronsPerUnit, calibration.electrons_per_unit, where);
 }
 
-void check_texts(std::string_view name, std::string_view provenance, std::string_view place) {
-    check(kNameBytes, static_cast<double>(name.size()), place);
-    check(kProvenanceBytes, static_cast<double>(provenance.size()), place);
+void check_texts(std::string_view name, std::string_view provenance, std::string_view where) {
+    check(kNameBytes, static_cast<double>(name.size()), where);
+    check(kProvenanceBytes, static_cast<double>(provenance.size()), where);
     if (!is_plain_text(name, false))
-        fail_at(place, kFixedBytes, "schedule name is not UTF-8 without control characters");
+        fail_at(where, kFixedBytes, "schedule name is not UTF-8 without control characters");
     if (!is_plain_text(provenance, true))
-        fail_at(place, kFixedBytes + name.size(),
+        fail_at(where, kFixedBytes + name.size(),
                 "provenance text is not UTF-8 without control characters");
 }
 
@@ -148,10 +148,10 @@ void append_numbers(std::vector<std::uint8_t>& bytes, const Numbers& numbers) {
         append(bytes, value);
 }
 
-void check_reserved(Bytes header, std::string_view place) {
+void check_reserved(Bytes header, std::string_view where) {
     for (const auto& [offset, bytes] : kReserved)
         for (std::size_t at = offset; at < offset + bytes; ++at)
-            if (header[at] != 0) fail_at(place, at, "reserved byte is not zero");
+            if (header[at] != 0) fail_at(where, at, "reserved byte is not zero");
 }
 
 /// The parts after the fixed one.
@@ -162,13 +162,13 @@ struct Parts {
     Bytes calibration;  ///< empty: none
 };
 
-Parts split(Bytes header, std::string_view place) {
+Parts split(Bytes header, std::string_view where) {
     std::size_t at = kFixedBytes;
     const auto part = [&](const Field& length) {
         const auto bytes = load_at<std::uint32_t>(header, length);
-        check(length, bytes, place);
+        check(length, bytes, where);
         if (bytes > header.size() - kCrcBytes - at)
-            fail_at(place, length.offset,
+            fail_at(where, length.offset,
                     fmt::format("{} {} exceeds the header", length.name, bytes));
         at += bytes;
         return header.subspan(at - bytes, bytes);
@@ -181,21 +181,21 @@ Parts split(Bytes header, std::string_view place) {
     const Bytes schedule = part(kScheduleBytes);
     const Bytes calibration = header.subspan(at, header.size() - kCrcBytes - at);
     if (calibration.empty() != (load_at<std::uint8_t>(header, kCalibrationSection) == 0))
-        fail_at(place, kHeaderLength.offset, "header bytes are not the sum of its parts");
+        fail_at(where, kHeaderLength.offset, "header bytes are not the sum of its parts");
     return {name, provenance, schedule, calibration};
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view place) {
+std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view where) {
     const Numbers numbers{header.shape, header.slot_us, header.calibration, header.cfa};
-    check(numbers, place);
-    check_texts(header.schedule_name, header.provenance, place);
-    const auto schedule = encode_schedule(header, place);
-    check(kScheduleBytes, static_cast<double>(schedule.size()), place);
+    check(numbers, where);
+    check_texts(header.schedule_name, header.provenance, where);
+    const auto schedule = encode_schedule(header, where);
+    check(kScheduleBytes, static_cast<double>(schedule.size()), where);
     const bool calibrated = needs_calibration_section(header.calibration);
     const auto calibration =
-        calibrated ? encode_calibration(header.calibration, place) : std::vector<std::uint8_t>{};
+        calibrated ? encode_calibration(header.calibration, where) : std::vector<std::uint8_t>{};
 
     std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
     append(bytes, kVersion);
@@ -219,29 +219,29 @@ std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_
     return bytes;
 }
 
-std::size_t header_bytes(Bytes start, std::string_view place) {
+std::size_t header_bytes(Bytes start, std::string_view where) {
     const auto magic = start.first(std::min(start.size(), kMagic.size()));
-    if (start.empty()) fail_at(place, 0, "the file is empty");
+    if (start.empty()) fail_at(where, 0, "the file is empty");
     if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) {
         const bool ours = start.size() > 4 && std::equal(&kMagic[1], &kMagic[5], &start[1]);
         if (ours)
-            fail_at(place, 0,
+            fail_at(where, 0,
                     "this sample stream was changed by a text-mode transfer; copy it as binary");
         fail_at(
-            place, 0,
+            where, 0,
             std::ranges::equal(magic.first(std::min(magic.size(), kRecording.size())), kRecording)
                 ? "this is the recording of a camera; \"stipple capture replay\" reads it"
                 : "this is not a sample stream (.stipple)");
     }
     if (start.size() < kHeaderStartBytes)
-        fail_at(place, start.size(), "the file ends within its header");
+        fail_at(where, start.size(), "the file ends within its header");
     const auto version = load<std::uint16_t>(&start[kVersionAt]);
     if (version < 1 || version > kVersion)
-        fail_at(place, kVersionAt,
+        fail_at(where, kVersionAt,
                 fmt::format("version {} of the sample stream; this program reads versions 1 and {}",
                             version, kVersion));
     const auto bytes = load_at<std::uint32_t>(start, kHeaderLength);
-    check(kHeaderLength, bytes, place);
+    check(kHeaderLength, bytes, where);
     return bytes;
 }
 
@@ -251,25 +251,25 @@ Framing framing_of(Bytes header) {
     return {version, version == 1 ? 0 : crc};
 }
 
-StreamHeader decode_header(Bytes header, std::string_view place, const ScheduleUse& use) {
+StreamHeader decode_header(Bytes header, std::string_view where, const ScheduleUse& use) {
     const std::size_t crc_offset = header.size() - kCrcBytes;
     if (crc32c(header.first(crc_offset)) != load<std::uint32_t>(&header[crc_offset]))
-        fail_at(place, crc_offset, "the header is damaged (CRC mismatch); get another copy");
-    check_reserved(header, place);
+        fail_at(where, crc_offset, "the header is damaged (CRC mismatch); get another copy");
+    check_reserved(header, where);
     Numbers numbers = load_numbers(header);
-    check(numbers, place);
-    check(kCalibrationSection, load_at<std::uint8_t>(header, kCalibrationSection), place);
+    check(numbers, where);
+    check(kCalibrationSection, load_at<std::uint8_t>(header, kCalibrationSection), where);
     const auto kind = load_at<std::uint8_t>(header, kScheduleKind);
-    check(kScheduleKind, kind, place);
-    const Parts parts = split(header, place);
-    check_texts(parts.name, parts.provenance, place);
+    check(kScheduleKind, kind, where);
+    const Parts parts = split(header, where);
+    check_texts(parts.name, parts.provenance, where);
     const std::size_t schedule_at = crc_offset - parts.calibration.size() - parts.schedule.size();
     auto stored = decode_schedule({ScheduleSource::Kind{kind}, parts.schedule, schedule_at},
-                                  numbers.shape, place, use);
+                                  numbers.shape, where, use);
     if (stored.crc != load<std::uint32_t>(&header[kScheduleCrc]))
-        fail_at(place, kScheduleCrc, "the schedule is not the one that was recorded");
+        fail_at(where, kScheduleCrc, "the schedule is not the one that was recorded");
     if (!parts.calibration.empty())
-        decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), place,
+        decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), where,
                            numbers.calibration);
     return {numbers.shape,
             numbers.slot_us,

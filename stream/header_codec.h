@@ -15,13 +15,13 @@ namespace stipple {
 /// First bytes of a file, which hold the length of its header.
 inline constexpr std::size_t kHeaderStartBytes = 16;
 
-/// The bytes of a header. \throws InputError at `place` if a field is outside its limits.
+/// The bytes of a header. \throws InputError at `where` if a field is outside its limits.
 [[nodiscard]] std::vector<std::uint8_t> encode_header(const StreamHeader& header,
-                                                      std::string_view place);
+                                                      std::string_view where);
 
 /// Length of a header. `start`: the first `kHeaderStartBytes` bytes of a file, or the whole file.
 /// \throws InputError naming file and offset if it is no sample stream or of an unknown version.
-[[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view place);
+[[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view where);
 
 /// Precondition: header.size() == header_bytes(start of header).
 [[nodiscard]] Framing framing_of(std::span<const std::uint8_t> header);
@@ -29,6 +29,6 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 /// The inverse of `encode_header`. Precondition: header.size() == header_bytes(start of header).
 /// \throws InputError naming file and offset, or as check_memory.
 [[nodiscard]] StreamHeader decode_header(std::span<const std::uint8_t> header,
-                                         std::string_view place, const ScheduleUse& use = {});
+                                         std::string_view where, const ScheduleUse& use = {});
 
 }  // namespace stipple

@@ -156,10 +156,10 @@ StoredSchedule count_random(const ScheduleSource& source, FrameShape shape,
     return stored;
 }
 
-StoredSchedule make_random(const ScheduleSource& source, FrameShape shape, std::string_view place,
+StoredSchedule make_random(const ScheduleSource& source, FrameShape shape, std::string_view where,
                            const ScheduleUse& use) {
     if (use.counts != nullptr) return count_random(source, shape, *use.counts);
-    check_memory(random_schedule_bytes(shape.rows, shape.cols, source.exposure_slots), place,
+    check_memory(random_schedule_bytes(shape.rows, shape.cols, source.exposure_slots), where,
                  "its schedule", use.input_bytes);
     StoredSchedule stored{
         random_schedule(shape.rows, shape.cols, source.exposure_slots, source.seed), source};
@@ -169,9 +169,9 @@ StoredSchedule make_random(const ScheduleSource& source, FrameShape shape, std::
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::string_view place) {
+std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::string_view where) {
     const auto fail = [&](std::string_view problem) {
-        throw InputError(std::string(place).append(": schedule"), problem);
+        throw InputError(std::string(where).append(": schedule"), problem);
     };
     const ExposureSchedule& schedule = header.schedule;
     const ScheduleSource& source = header.schedule_source;
@@ -194,15 +194,15 @@ std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::strin
 }
 
 StoredSchedule decode_schedule(const ScheduleSection& section, FrameShape shape,
-                               std::string_view place, const ScheduleUse& use) {
-    ByteCursor cursor(section.bytes, section.offset, place);
+                               std::string_view where, const ScheduleUse& use) {
+    ByteCursor cursor(section.bytes, section.offset, where);
     const auto reject_rest = [&] {
         if (cursor.left() > 0) cursor.fail("bytes are left over after the schedule");
     };
     if (section.kind == ScheduleSource::Kind::kRandom) {
         const ScheduleSource source = decode_random(cursor, shape);
         reject_rest();
-        return make_random(source, shape, place, use);
+        return make_random(source, shape, where, use);
     }
     StoredSchedule stored{decode_explicit(cursor), {}};
     reject_rest();

@@ -37,15 +37,15 @@ struct ScheduleUse {
     std::uint64_t input_bytes = kEndlessInput;  ///< as of check_memory
 };
 
-/// The schedule section of a header. \throws InputError at `place` if the schedule exceeds the
+/// The schedule section of a header. \throws InputError at `where` if the schedule exceeds the
 /// limits of the format, or differs from the output of its generator.
 [[nodiscard]] std::vector<std::uint8_t> encode_schedule(const StreamHeader& header,
-                                                        std::string_view place);
+                                                        std::string_view where);
 
-/// The inverse. Messages call the file `place`. \throws InputError naming file and offset, or as
+/// The inverse. Messages call the file `where`. \throws InputError naming file and offset, or as
 /// check_memory.
 [[nodiscard]] StoredSchedule decode_schedule(const ScheduleSection& section, FrameShape shape,
-                                             std::string_view place, const ScheduleUse& use = {});
+                                             std::string_view where, const ScheduleUse& use = {});
 
 /// CRC-32C of the schedule in explicit form, whatever its source.
 [[nodiscard]] std::uint32_t schedule_crc(const ExposureSchedule& schedule);

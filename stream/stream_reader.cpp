@@ -42,17 +42,17 @@ struct Opened {
     std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
 };
 
-Opened read_header(FileWindow& window, const std::string& place, ReadPolicy policy,
+Opened read_header(FileWindow& window, const std::string& where, ReadPolicy policy,
                    const WaitForMore& wait) {
-    const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), place);
+    const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), where);
     const Bytes header = peek_or_wait(window, bytes, wait);
     if (header.size() < bytes)
-        throw InputError(fmt::format("{}: byte {}", place, header.size()),
+        throw InputError(fmt::format("{}: byte {}", where, header.size()),
                          fmt::format("the file ends within its header of {} bytes", bytes));
     std::optional<DueCounts> counts;
     const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
                           wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput)};
-    StreamHeader decoded = decode_header(header, place, use);
+    StreamHeader decoded = decode_header(header, where, use);
     Opened result{std::move(decoded), framing_of(header), std::move(counts)};
     window.skip(bytes);
     return result;
@@ -75,12 +75,12 @@ std::string_view cause_of(Start start, const Framing& framing) {
 
 struct StreamReader::Impl {
     Impl(const std::filesystem::path& file, ReadPolicy read_policy, WaitForMore wait_for_more)
-        : place(file.string()),
+        : where(file.string()),
           strict(read_policy == ReadPolicy::kStrict),
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
           window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
-          stream(read_header(window, place, read_policy, wait)),
+          stream(read_header(window, where, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
           order(stream.header.shape.rows),
           checksum(stream.framing.seed) {
@@ -112,7 +112,7 @@ struct StreamReader::Impl {
     void extend_damage(std::uint64_t begin, std::uint64_t end);
     void skip_to(StreamPosition position);
 
-    std::string place;
+    std::string where;
     bool strict;
     bool any_schedule;
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
@@ -130,7 +130,7 @@ struct StreamReader::Impl {
 };
 
 void StreamReader::Impl::note(std::uint64_t bytes, std::string_view cause) {
-    if (strict) throw InputError(fmt::format("{}: byte {}", place, window.offset()), cause);
+    if (strict) throw InputError(fmt::format("{}: byte {}", where, window.offset()), cause);
     if (report.damage.size() < StreamReport::kMaxListedDamage)
         report.damage.push_back({window.offset(), bytes, std::string(cause)});
     else
@@ -149,7 +149,7 @@ void StreamReader::Impl::begin_search(std::string_view cause) {
 void StreamReader::Impl::limit_rescans(std::size_t payload_bytes) {
     vain_bytes += payload_bytes;
     if (vain_bytes / 16 > kMaxVainBytes / 16 + window.offset())
-        throw InputError(fmt::format("{}: byte {}", place, window.offset()),
+        throw InputError(fmt::format("{}: byte {}", where, window.offset()),
                          "too many damaged packets overlap; get another copy of the file");
 }
 

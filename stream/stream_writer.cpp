@@ -15,10 +15,10 @@ namespace stipple {
 
 struct StreamWriter::Impl {
     /// `encoded` comes in, so that the header is checked before the file is created.
-    Impl(const std::filesystem::path& path, const StreamHeader& stream, const std::string& place,
+    Impl(const std::filesystem::path& path, const StreamHeader& stream, const std::string& where,
          const std::vector<std::uint8_t>& encoded)
         : header(stream),
-          file(path, place),
+          file(path, where),
           order(stream.shape.rows),
           seed(framing_of(encoded).seed),
           checksum(seed) {
@@ -46,9 +46,9 @@ bool StreamWriter::Impl::is_due(const SamplePacket& packet) const {
 }
 
 StreamWriter::StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
-                           std::string place) {
-    if (place.empty()) place = file.string();
-    impl_ = std::make_unique<Impl>(file, header, place, encode_header(header, place));
+                           std::string where) {
+    if (where.empty()) where = file.string();
+    impl_ = std::make_unique<Impl>(file, header, where, encode_header(header, where));
 }
 
 StreamWriter::~StreamWriter() = default;

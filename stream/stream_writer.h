@@ -14,11 +14,11 @@ namespace stipple {
 /// and each packet can be read as soon as `write` returns.
 class StreamWriter {
   public:
-    /// Creates the file and writes the header. Messages call the output `place` (default: the
+    /// Creates the file and writes the header. Messages call the output `where` (default: the
     /// path), for a file that is renamed when it is complete. \throws InputError if a header field
     /// is outside its limits, DeviceError if the file cannot be written.
     StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
-                 std::string place = {});
+                 std::string where = {});
     ~StreamWriter();
     StreamWriter(const StreamWriter&) = delete;
     StreamWriter& operator=(const StreamWriter&) = delete;

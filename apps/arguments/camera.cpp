@@ -32,17 +32,17 @@ CameraSettings camera_settings(const CameraArguments& arguments) {
     return config.entries();
 }
 
-std::unique_ptr<Camera> open_picture_camera(const CameraArguments& arguments,
-                                            const CameraSettings& settings) {
+std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
+                                          const CameraSettings& settings) {
     auto camera = open_camera(arguments.address, settings, arguments.buffers);
     if (!camera->description().features.contains("CodedStreamHeader")) return camera;
-    const std::string place = arguments.address + ": CodedStreamHeader";
+    const std::string where = arguments.address + ": CodedStreamHeader";
     if (is_replay(arguments))
-        throw InputError(place,
-                         "what was recorded is a coded stream, not pictures; record the camera "
+        throw InputError(where,
+                         "what was recorded is a coded stream, not images; record the camera "
                          "anew with \"stipple capture record --coded\"");
-    throw InputError(place,
-                     fmt::format("the camera sends a coded stream, not pictures; write it "
+    throw InputError(where,
+                     fmt::format("the camera sends a coded stream, not images; write it "
                                  "with \"stipple capture record --coded {} -o FILE.stipple\"",
                                  arguments.address));
 }

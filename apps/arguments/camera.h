@@ -25,10 +25,10 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 
-/// Opens the camera for its pictures. \throws InputError, DeviceError as open_camera; InputError if
-/// what it sends is a coded stream, whose payloads only look like pictures.
-[[nodiscard]] std::unique_ptr<Camera> open_picture_camera(const CameraArguments& arguments,
-                                                          const CameraSettings& settings);
+/// Opens the camera for its images. \throws InputError, DeviceError as open_camera; InputError if
+/// what it sends is a coded stream, whose payloads only look like images.
+[[nodiscard]] std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
+                                                        const CameraSettings& settings);
 
 /// Whether the address is that of a recording or footage.
 [[nodiscard]] bool is_replay(const CameraArguments& arguments);

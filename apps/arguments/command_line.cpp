@@ -82,11 +82,11 @@ bool same_file(const fs::path& a, const fs::path& b) {
         kind != fs::file_type::directory)
         return false;
     if (fs::equivalent(a, b, error)) return true;
-    const auto place = [&](const fs::path& path) {
+    const auto where = [&](const fs::path& path) {
         const fs::path whole = fs::absolute(path, error).lexically_normal();
         return fs::weakly_canonical(whole.has_filename() ? whole : whole.parent_path(), error);
     };
-    return place(a) == place(b);
+    return where(a) == where(b);
 }
 
 OptionDescription described(const CLI::Option& option, const DeclaredOptions& declared) {

@@ -11,7 +11,7 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
     constexpr int kMost = 65536;
     command
         .add_option("--preview", arguments.file,
-                    "picture of what the decoder makes of the newest slots, replaced again and "
+                    "image of what the decoder makes of the newest slots, replaced again and "
                     "again: .png to look at, .npy linear light")
         .type_name("FILE")
         .output(kPreviewName);

@@ -65,7 +65,7 @@ std::string surplus_problem(const std::vector<const CLI::App*>& commands, const 
         fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
     std::error_code error;
     return std::filesystem::path(word).has_extension() && std::filesystem::exists(word, error)
-               ? problem + "; for many pictures, name their folder or a pattern as frames/%04d.png"
+               ? problem + "; for many images, name their folder or a pattern as frames/%04d.png"
                : problem;
 }
 

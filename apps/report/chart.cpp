@@ -51,11 +51,11 @@ std::string read_all(const Descriptor& source) {
     }
 }
 
-pid_t start_gnuplot(const Descriptor& script, const Descriptor& picture, const Descriptor& log) {
+pid_t start_gnuplot(const Descriptor& script, const Descriptor& image, const Descriptor& log) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, script.get(), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, picture.get(), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, image.get(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, log.get(), STDERR_FILENO);
     std::string name = kGnuplot, no_start_file = "--default-settings";
     char* const arguments[] = {name.data(), no_start_file.data(), nullptr};
@@ -76,7 +76,7 @@ std::string terminal_of(std::string_view extension, ChartSize size) {
 
 }  // namespace
 
-// The picture comes through a pipe, for gnuplot does not notice where it cannot be written.
+// The image comes through a pipe, for gnuplot does not notice where it cannot be written.
 std::string draw_chart(std::string_view extension, ChartSize size, const std::string& commands) {
     const Descriptor script(memfd_create(kGnuplot, MFD_CLOEXEC));
     const Descriptor log(memfd_create(kGnuplot, MFD_CLOEXEC));

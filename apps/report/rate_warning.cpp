@@ -48,8 +48,8 @@ std::string recording_rate_warning(const std::string& file, const FrameRate& fra
         file, *hz, slot_text(sensor), 1e6 / *hz);
 }
 
-std::string film_rate_warning(const std::string& file, double frames_hz,
-                              const SensorParams& sensor) {
+std::string video_rate_warning(const std::string& file, double frames_hz,
+                               const SensorParams& sensor) {
     if (agree(frames_hz, sensor)) return {};
     return fmt::format(
         "{}: has {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "

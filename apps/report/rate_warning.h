@@ -17,8 +17,8 @@ namespace stipple {
 [[nodiscard]] std::string recording_rate_warning(const std::string& file, const FrameRate& frames,
                                                  const SensorParams& sensor);
 
-/// Of a film that has so many frames a second. It may be meant, as slow motion is.
-[[nodiscard]] std::string film_rate_warning(const std::string& file, double frames_hz,
-                                            const SensorParams& sensor);
+/// Of a video that has so many frames a second. It may be meant, as slow motion is.
+[[nodiscard]] std::string video_rate_warning(const std::string& file, double frames_hz,
+                                             const SensorParams& sensor);
 
 }  // namespace stipple

@@ -17,7 +17,7 @@ class SideBySide {
 
     /// Puts in `frame` (order (plane, row, col)) as the version of names[version].
     void put(std::size_t version, std::span<const float> frame);
-    /// Writes the tone-mapped picture. \throws InputError as PendingOutput, DeviceError.
+    /// Writes the tone-mapped image. \throws InputError as PendingOutput, DeviceError.
     void write(const std::filesystem::path& file, bool force) const;
 
   private:

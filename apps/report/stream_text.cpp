@@ -82,9 +82,9 @@ std::string special_text(const StreamHeader& header) {
 
 ordered_json stream_json(const StreamHeader& header, const StreamReport& report) {
     ordered_json damage = ordered_json::array();
-    for (const StreamDamage& place : report.damage)
+    for (const StreamDamage& where : report.damage)
         damage.push_back(
-            {{"offset", place.offset}, {"bytes", place.bytes}, {"cause", place.cause}});
+            {{"offset", where.offset}, {"bytes", where.bytes}, {"cause", where.cause}});
     return {{"version", report.version},
             {"rows", header.shape.rows},
             {"cols", header.shape.cols},
@@ -140,9 +140,9 @@ std::string damage_text(const StreamReport& report) {
             counted(report.slots, "slot"), report.tail_bytes);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
-    for (const StreamDamage& place : std::span(report.damage).first(listed))
-        text += fmt::format("\n  byte {}: {}, {} bytes skipped", place.offset, place.cause,
-                            place.bytes);
+    for (const StreamDamage& where : std::span(report.damage).first(listed))
+        text += fmt::format("\n  byte {}: {}, {} bytes skipped", where.offset, where.cause,
+                            where.bytes);
     if (places > listed) text += fmt::format("\n  and {} more", places - listed);
     if (report.tail_bytes > 0)
         text += fmt::format("\n  the file ends within a packet, its last {} bytes are unused",

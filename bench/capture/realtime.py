@@ -42,9 +42,9 @@ class Namespace:
 def write_footage(file):
     """A texture that moves by a pixel a frame: sums of noise at three scales, up to full scale."""
     random = numpy.random.default_rng(1)
-    picture = sum(numpy.kron(random.random((SHAPE[0] // s, SHAPE[1] // s)), numpy.ones((s, s)))
+    image = sum(numpy.kron(random.random((SHAPE[0] // s, SHAPE[1] // s)), numpy.ones((s, s)))
                   for s in (1, 8, 32)) / 3 * 65535
-    numpy.save(file, numpy.stack([numpy.roll(picture, slot, axis=1) for slot in range(FRAMES)])
+    numpy.save(file, numpy.stack([numpy.roll(image, slot, axis=1) for slot in range(FRAMES)])
                .astype(numpy.uint16))
 
 
@@ -84,7 +84,7 @@ def emulate_live(stipple, seconds, folder, method):
           f" queue up to {live['queue_peak_frames']}\n    {pauses.text()}")
     if method != "none":
         shown = live["preview"]
-        print(f"    {shown['made']} pictures, delay {shown['delay_ms']}")
+        print(f"    {shown['made']} images, delay {shown['delay_ms']}")
     sys.stdout.flush()
 
 

@@ -19,10 +19,10 @@ SHAPE = (480, 640, 3)
 
 
 def write_footage(file, frames):
-    picture = numpy.random.default_rng(1).integers(0, 30000, SHAPE, dtype=numpy.uint16)
+    image = numpy.random.default_rng(1).integers(0, 30000, SHAPE, dtype=numpy.uint16)
     footage = numpy.lib.format.open_memmap(file, "w+", numpy.uint16, (frames, *SHAPE))
     for slot in range(frames):
-        footage[slot] = numpy.roll(picture, slot, axis=1)
+        footage[slot] = numpy.roll(image, slot, axis=1)
     footage.flush()
 
 

@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
     stipple::Arguments arguments;
     stipple::CommandLine line("bench_sci", "Video-SCI benchmark; docs/notes/sci_benchmark.md");
     stipple::Command command = line.root();
-    command.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of pictures");
+    command.add_option("FOLDER", arguments.folder, "clips: NAME.npy or a folder NAME of images");
     command.add_option("--masks", arguments.masks, ".npy of 8 masks of 0 and 1 (random ones)");
     command.add_list("--clips", arguments.clips, "names in FOLDER (the six)").split_at_commas();
     command.add_list("--method", arguments.methods, "methods (fast)").split_at_commas();

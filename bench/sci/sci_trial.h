@@ -14,7 +14,7 @@ namespace stipple {
 /// Frames that one measurement of the video-SCI benchmark adds up.
 inline constexpr int kSciFrames = 8;
 
-/// A clip of the benchmark: `NAME.npy` of (T, H, W) or a folder NAME of pictures in `folder`, grey
+/// A clip of the benchmark: `NAME.npy` of (T, H, W) or a folder NAME of images in `folder`, grey
 /// (colour becomes luminance), integers as parts of their full scale. Frames beyond the last whole
 /// measurement are left out. \throws InputError.
 [[nodiscard]] FluxVideo read_sci_clip(const std::filesystem::path& folder, const std::string& name);

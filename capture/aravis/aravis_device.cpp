@@ -139,11 +139,11 @@ struct AravisDevice::Impl {
     ArvDevice* device = nullptr;
 
     ~Impl() { g_clear_object(&camera); }
-    void set_number(const std::string& place, const NumberFeature& feature,
+    void set_number(const std::string& where, const NumberFeature& feature,
                     const std::string& value) const;
-    void set_choice(const std::string& place, const char* feature, const std::string& value) const;
-    void set_integer(const std::string& place, const char* feature, const std::string& value) const;
-    void set_other(const std::string& place, const char* feature, const std::string& value) const;
+    void set_choice(const std::string& where, const char* feature, const std::string& value) const;
+    void set_integer(const std::string& where, const char* feature, const std::string& value) const;
+    void set_other(const std::string& where, const char* feature, const std::string& value) const;
 };
 
 AravisDevice::AravisDevice(const std::string& address)
@@ -210,72 +210,72 @@ std::optional<double> AravisDevice::read_number(const std::string& feature) cons
     return text ? parsed<double>(*text) : std::nullopt;
 }
 
-void AravisDevice::Impl::set_number(const std::string& place, const NumberFeature& feature,
+void AravisDevice::Impl::set_number(const std::string& where, const NumberFeature& feature,
                                     const std::string& value) const {
     const auto number = parsed<double>(value);
-    if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+    if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
     // Aravis sets some to the nearest value that can be.
     double least = 0, most = 0;
     GlibError no_bounds;
     feature.bounds(camera, &least, &most, no_bounds.slot());
     const double rounding = 1e-6 * std::abs(most);
     if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
-        throw InputError(place,
+        throw InputError(where,
                          fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
     GlibError error;
     feature.set(camera, *number, error.slot());
     if (error.any())
-        throw InputError(place, fmt::format("{} cannot be set ({})", value, error.text()));
+        throw InputError(where, fmt::format("{} cannot be set ({})", value, error.text()));
 }
 
-void AravisDevice::Impl::set_choice(const std::string& place, const char* feature,
+void AravisDevice::Impl::set_choice(const std::string& where, const char* feature,
                                     const std::string& value) const {
     GlibError error;
     arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
     if (error.any())
-        throw InputError(place, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
+        throw InputError(where, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
                                             error.text(), choices_of(device, feature)));
     const char* back = arv_device_get_string_feature_value(device, feature, nullptr);
     if (back == nullptr || value != back)
-        throw DeviceError(place, fmt::format("asked for {}, the camera stays at {}", value,
+        throw DeviceError(where, fmt::format("asked for {}, the camera stays at {}", value,
                                              back == nullptr ? "?" : back));
 }
 
-void AravisDevice::Impl::set_integer(const std::string& place, const char* feature,
+void AravisDevice::Impl::set_integer(const std::string& where, const char* feature,
                                      const std::string& value) const {
     const auto number = parsed<gint64>(value);
-    if (!number) throw InputError(place, fmt::format("needs an integer, but is \"{}\"", value));
+    if (!number) throw InputError(where, fmt::format("needs an integer, but is \"{}\"", value));
     GlibError error;
     arv_device_set_integer_feature_value(device, feature, *number, error.slot());
     if (error.any())
-        throw InputError(place, fmt::format("{} cannot be set ({}){}", value, error.text(),
+        throw InputError(where, fmt::format("{} cannot be set ({}){}", value, error.text(),
                                             range_of(device, feature)));
     const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
     if (back != *number)
-        throw DeviceError(place, fmt::format("asked for {}, the camera made it {}; ask for that if "
+        throw DeviceError(where, fmt::format("asked for {}, the camera made it {}; ask for that if "
                                              "it will do",
                                              *number, back));
 }
 
-void AravisDevice::Impl::set_other(const std::string& place, const char* feature,
+void AravisDevice::Impl::set_other(const std::string& where, const char* feature,
                                    const std::string& value) const {
     GlibError error;
     ArvGcNode* node = arv_device_get_feature(device, feature);
     if (ARV_IS_GC_BOOLEAN(node)) {
         const bool on = value == "true" || value == "1";
         if (!on && value != "false" && value != "0")
-            throw InputError(place, fmt::format("needs true or false, but is \"{}\"", value));
+            throw InputError(where, fmt::format("needs true or false, but is \"{}\"", value));
         arv_device_set_boolean_feature_value(device, feature, on ? TRUE : FALSE, error.slot());
     } else if (ARV_IS_GC_COMMAND(node)) {
         arv_device_execute_command(device, feature, error.slot());
     } else if (ARV_IS_GC_FLOAT(node)) {
         const auto number = parsed<double>(value);
-        if (!number) throw InputError(place, fmt::format("needs a number, but is \"{}\"", value));
+        if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
         arv_device_set_float_feature_value(device, feature, *number, error.slot());
     } else {
         arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
     }
-    if (error.any()) throw InputError(place, error.text());
+    if (error.any()) throw InputError(where, error.text());
 }
 
 std::string AravisDevice::nearest_feature(const std::string& name) const {
@@ -287,18 +287,18 @@ std::string AravisDevice::nearest_feature(const std::string& name) const {
 }
 
 void AravisDevice::set(const std::string& feature, const std::string& value) {
-    const std::string place = fmt::format("{}: {}", address_, feature);
+    const std::string where = fmt::format("{}: {}", address_, feature);
     const auto* const known = std::find_if(
         kNumbers.begin(), kNumbers.end(), [&](const auto& entry) { return feature == entry.name; });
     if (known != kNumbers.end() && known->is_available(impl_->camera, nullptr) != FALSE)
-        return impl_->set_number(place, *known, value);
+        return impl_->set_number(where, *known, value);
     ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
     if (node == nullptr || ARV_IS_GC_FEATURE_NODE(node) == FALSE || ARV_IS_GC_CATEGORY(node))
-        throw InputError(place, "the camera has no such feature; " + nearest_feature(feature));
-    if (ARV_IS_GC_ENUMERATION(node)) return impl_->set_choice(place, feature.c_str(), value);
+        throw InputError(where, "the camera has no such feature; " + nearest_feature(feature));
+    if (ARV_IS_GC_ENUMERATION(node)) return impl_->set_choice(where, feature.c_str(), value);
     if (ARV_IS_GC_INTEGER(node) && !ARV_IS_GC_BOOLEAN(node))
-        return impl_->set_integer(place, feature.c_str(), value);
-    impl_->set_other(place, feature.c_str(), value);
+        return impl_->set_integer(where, feature.c_str(), value);
+    impl_->set_other(where, feature.c_str(), value);
 }
 
 std::map<std::string, std::string> AravisDevice::features() const {

@@ -51,9 +51,9 @@ std::optional<int> ReadAhead::slots() const {
     return footage == nullptr ? std::nullopt : footage->slots();
 }
 
-std::optional<double> ReadAhead::film_hz() const {
+std::optional<double> ReadAhead::video_hz() const {
     const auto* const footage = std::get_if<FootageReader>(&reader_);
-    return footage == nullptr ? std::nullopt : footage->film_hz();
+    return footage == nullptr ? std::nullopt : footage->video_hz();
 }
 
 ColourFilter ReadAhead::filter() const {

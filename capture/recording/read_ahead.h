@@ -28,8 +28,8 @@ class ReadAhead {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::optional<int> slots() const;
-    /// As FootageReader::film_hz; a recording tells its rate at its end.
-    [[nodiscard]] std::optional<double> film_hz() const;
+    /// As FootageReader::video_hz; a recording tells its rate at its end.
+    [[nodiscard]] std::optional<double> video_hz() const;
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.

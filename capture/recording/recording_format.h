@@ -100,8 +100,8 @@ struct RecordingEnd {
 /// JSON; bytes that are no UTF-8 are replaced.
 [[nodiscard]] std::string encode_session(const SessionRecord& session);
 [[nodiscard]] std::string encode_end(const RecordingEnd& end);
-/// \throws InputError at `place` if the text is no JSON or has wrong types.
-[[nodiscard]] SessionRecord decode_session(std::string_view text, std::string_view place);
-[[nodiscard]] RecordingEnd decode_end(std::string_view text, std::string_view place);
+/// \throws InputError at `where` if the text is no JSON or has wrong types.
+[[nodiscard]] SessionRecord decode_session(std::string_view text, std::string_view where);
+[[nodiscard]] RecordingEnd decode_end(std::string_view text, std::string_view where);
 
 }  // namespace stipple

@@ -57,11 +57,11 @@ ClockFit fit_of(const ReadJson& json) {
 
 /// What `read` makes of the JSON `text`.
 template <typename Read>
-auto parsed(std::string_view text, std::string_view place, Read read) {
+auto parsed(std::string_view text, std::string_view where, Read read) {
     try {
         return read(ReadJson::parse(text));
     } catch (const ReadJson::exception& e) {
-        throw InputError(place, std::string("is not the JSON of a recording: ").append(e.what()));
+        throw InputError(where, std::string("is not the JSON of a recording: ").append(e.what()));
     }
 }
 
@@ -81,8 +81,8 @@ std::string encode_session(const SessionRecord& session) {
                    {"started_realtime_ns", session.started_realtime_ns}});
 }
 
-SessionRecord decode_session(std::string_view text, std::string_view place) {
-    return parsed(text, place, [](const ReadJson& json) {
+SessionRecord decode_session(std::string_view text, std::string_view where) {
+    return parsed(text, where, [](const ReadJson& json) {
         return SessionRecord{.camera = camera_of(json.at("camera")),
                              .settings = json.at("settings").get<CameraSettings>(),
                              .host = json.at("host").get<Texts>(),
@@ -111,8 +111,8 @@ std::string encode_end(const RecordingEnd& end) {
                    {"clocks", clocks}});
 }
 
-RecordingEnd decode_end(std::string_view text, std::string_view place) {
-    return parsed(text, place, [](const ReadJson& json) {
+RecordingEnd decode_end(std::string_view text, std::string_view where) {
+    return parsed(text, where, [](const ReadJson& json) {
         RecordingEnd end{.reason = json.at("reason"),
                          .frames = json.at("frames"),
                          .incomplete = json.at("incomplete"),

@@ -34,15 +34,15 @@ std::optional<std::size_t> find_block(Bytes bytes, std::size_t from) {
 }  // namespace
 
 struct RecordingReader::Impl {
-    explicit Impl(const std::filesystem::path& path) : place(path.string()), file(path) {
+    explicit Impl(const std::filesystem::path& path) : where(path.string()), file(path) {
         const Bytes magic = file.peek(kRecordingMagic.size());
         const std::size_t fixed = kRecordingVersionOffset;
         if (magic.size() < kRecordingMagic.size() ||
             !std::equal(magic.begin(), magic.begin() + fixed, kRecordingMagic.begin()))
-            throw InputError(place, "is not a recording of \"stipple capture record\"");
+            throw InputError(where, "is not a recording of \"stipple capture record\"");
         if (const auto version = load<std::uint32_t>(&magic[fixed]);
             version != kRecordingMagic[fixed])
-            throw InputError(place, "has format version " + std::to_string(version) +
+            throw InputError(where, "has format version " + std::to_string(version) +
                                         "; this program reads version 1");
         file.skip(kRecordingMagic.size());
         if (read_block(BlockKind::kSession, nullptr) != Found::kSession)
@@ -65,7 +65,7 @@ struct RecordingReader::Impl {
     void count_number(std::uint32_t number);
     std::string take(const BlockHeader& header, Bytes block, CapturedFrame* frame);
 
-    std::string place;
+    std::string where;
     FileWindow file;
     SessionRecord session;
     std::optional<RecordingEnd> end;
@@ -101,7 +101,7 @@ void RecordingReader::Impl::skip_damage(std::string cause, std::size_t from) {
 void RecordingReader::Impl::waste(std::uint64_t bytes) {
     wasted_bytes += bytes;
     if (wasted_bytes > std::uint64_t{1} << 32U && wasted_bytes / 16 > file.bytes_read())
-        throw InputError(place, "is made of blocks that overlap; it is not a recording");
+        throw InputError(where, "is made of blocks that overlap; it is not a recording");
 }
 
 /// True if the file has all bytes of the block; else either the file ends here (the rest is its
@@ -133,8 +133,8 @@ std::string RecordingReader::Impl::take(const BlockHeader& header, Bytes block,
     const Bytes payload = block.subspan(kBlockHeaderBytes + header.record_bytes);
     if (crc32c(record) != header.record_crc) return "the CRC of a record is wrong";
     try {
-        if (header.kind == BlockKind::kSession) session = decode_session(text_of(record), place);
-        if (header.kind == BlockKind::kEnd) end = decode_end(text_of(record), place);
+        if (header.kind == BlockKind::kSession) session = decode_session(text_of(record), where);
+        if (header.kind == BlockKind::kEnd) end = decode_end(text_of(record), where);
     } catch (const InputError& e) {
         return e.what();
     }

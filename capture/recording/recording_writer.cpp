@@ -16,8 +16,8 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 }  // namespace
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const SessionRecord& session,
-                                 std::string place)
-    : file_(file, place.empty() ? file.string() : std::move(place)) {
+                                 std::string where)
+    : file_(file, where.empty() ? file.string() : std::move(where)) {
     file_.append(kRecordingMagic);
     append_block(BlockKind::kSession, bytes_of(encode_session(session)), {});
 }

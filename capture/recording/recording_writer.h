@@ -13,11 +13,11 @@ namespace stipple {
 /// Every prefix of the file is readable up to its last whole frame. Used from one thread.
 class RecordingWriter {
   public:
-    /// Creates the file and writes the session record. `place` is the name of the output in
+    /// Creates the file and writes the session record. `where` is the name of the output in
     /// messages (default: the path), for a file that is renamed when it is complete. \throws
     /// DeviceError.
     RecordingWriter(const std::filesystem::path& file, const SessionRecord& session,
-                    std::string place = {});
+                    std::string where = {});
 
     /// Appends a frame and computes the hash of its payload. Precondition: its layout has a format
     /// and at most 65535 x 65535 pixels, its holes are in ascending order and lie in the payload.

@@ -16,7 +16,7 @@
 namespace stipple {
 namespace {
 
-constexpr const char* kPlace = "the coded stream";  ///< in messages
+constexpr const char* kWhere = "the coded stream";  ///< in messages
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 20U;
 constexpr std::size_t kScheduleCrcAt = 88;  ///< docs/stream_format.md, "Header"
 /// A slot is one packet of samples, or two where rows are dropped.
@@ -50,14 +50,14 @@ std::size_t max_samples(const StreamHeader& header) {
 }  // namespace
 
 CodedHeader coded_header(StreamHeader stream) {
-    const Framing framing = framing_of(encode_header(stream, kPlace));
+    const Framing framing = framing_of(encode_header(stream, kWhere));
     return {std::move(stream), framing};
 }
 
 ServedImage coded_image(const StreamHeader& header) {
-    const auto encoded = encode_header(header, kPlace);
+    const auto encoded = encode_header(header, kWhere);
     if (encoded.size() > kMaxHeaderBytes)
-        throw InputError(kPlace,
+        throw InputError(kWhere,
                          fmt::format("its header has {} bytes, a client can read {} through "
                                      "registers; choose a schedule with a smaller tile",
                                      encoded.size(), kMaxHeaderBytes));
@@ -110,17 +110,17 @@ CodedSlot decode_coded_payload(const CodedHeader& header, std::span<const std::u
     return slot;
 }
 
-CodedHeader decode_coded_header(const std::string& digits, const std::string& place) {
+CodedHeader decode_coded_header(const std::string& digits, const std::string& where) {
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
         const int high = digit_value(digits[i]);
         const int low = digit_value(digits[i + 1]);
-        if (high < 0 || low < 0) throw InputError(place, "is no hexadecimal number");
+        if (high < 0 || low < 0) throw InputError(where, "is no hexadecimal number");
         bytes.push_back(static_cast<std::uint8_t>(16 * high + low));
     }
-    if (bytes.size() < kHeaderStartBytes || header_bytes(bytes, place) != bytes.size())
-        throw InputError(place, "is no whole header of a sample stream");
-    return {decode_header(bytes, place), framing_of(bytes)};
+    if (bytes.size() < kHeaderStartBytes || header_bytes(bytes, where) != bytes.size())
+        throw InputError(where, "is no whole header of a sample stream");
+    return {decode_header(bytes, where), framing_of(bytes)};
 }
 
 }  // namespace stipple

@@ -49,7 +49,7 @@ struct CodedSlot {
                                              std::span<const std::uint8_t> payload,
                                              StreamPosition expected);
 
-/// The header from its hexadecimal digits. \throws InputError at `place`.
-[[nodiscard]] CodedHeader decode_coded_header(const std::string& digits, const std::string& place);
+/// The header from its hexadecimal digits. \throws InputError at `where`.
+[[nodiscard]] CodedHeader decode_coded_header(const std::string& digits, const std::string& where);
 
 }  // namespace stipple

@@ -14,14 +14,14 @@ constexpr double kFramesPerS = 25;
 constexpr double kMinFramesPerS = 0.01;
 constexpr double kMaxFramesPerS = 100000;
 
-void check_format(const FrameLayout& layout, const std::string& place) {
+void check_format(const FrameLayout& layout, const std::string& where) {
     const PixelFormat& format = *layout.format;
     if (format.pfnc == 0)
-        throw InputError(place, fmt::format("{} has no number in GigE Vision, so it cannot be "
+        throw InputError(where, fmt::format("{} has no number in GigE Vision, so it cannot be "
                                             "served; use \"stipple capture replay\"",
                                             format.name));
     if (layout.width * format.bits_per_pixel % 8 != 0)
-        throw InputError(place, fmt::format("rows of {} pixels of {} are no whole bytes, so they "
+        throw InputError(where, fmt::format("rows of {} pixels of {} are no whole bytes, so they "
                                             "cannot be served",
                                             layout.width, format.name));
 }

@@ -32,8 +32,8 @@ std::string fourcc_text(std::uint32_t code) {
     return (code >> 31U) != 0 ? text + "-BE" : text;
 }
 
-/// The picture part of a v4l2_format, the same for both APIs.
-struct Picture {
+/// The image part of a v4l2_format, the same for both APIs.
+struct Image {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::uint32_t fourcc = 0;
@@ -43,7 +43,7 @@ struct Picture {
     std::uint32_t buffer_bytes = 0;
 };
 
-Picture picture_of(const v4l2_format& format, bool multi_planar) {
+Image image_of(const v4l2_format& format, bool multi_planar) {
     if (!multi_planar) {
         const v4l2_pix_format& pix = format.fmt.pix;
         return {pix.width, pix.height,       pix.pixelformat, pix.field,
@@ -60,19 +60,19 @@ Picture picture_of(const v4l2_format& format, bool multi_planar) {
 }
 
 /// Strides and sizes are 0: the driver's choice.
-v4l2_format request_for(const V4l2Device& device, const Picture& picture) {
+v4l2_format request_for(const V4l2Device& device, const Image& image) {
     v4l2_format format{};
     format.type = device.buffer_type();
     if (device.multi_planar()) {
-        format.fmt.pix_mp.width = picture.width;
-        format.fmt.pix_mp.height = picture.height;
-        format.fmt.pix_mp.pixelformat = picture.fourcc;
+        format.fmt.pix_mp.width = image.width;
+        format.fmt.pix_mp.height = image.height;
+        format.fmt.pix_mp.pixelformat = image.fourcc;
         format.fmt.pix_mp.field = V4L2_FIELD_NONE;
         format.fmt.pix_mp.num_planes = 1;
     } else {
-        format.fmt.pix.width = picture.width;
-        format.fmt.pix.height = picture.height;
-        format.fmt.pix.pixelformat = picture.fourcc;
+        format.fmt.pix.width = image.width;
+        format.fmt.pix.height = image.height;
+        format.fmt.pix.pixelformat = image.fourcc;
         format.fmt.pix.field = V4L2_FIELD_NONE;
     }
     return format;
@@ -85,12 +85,12 @@ class FormatSetter {
 
     V4l2Format set() {
         set_input();
-        Picture wanted = current();
+        Image wanted = current();
         choose_format(wanted);
         wanted.width = number("Width", wanted.width, 1);
         wanted.height = number("Height", wanted.height, 1);
         set_region(wanted);
-        set_picture(wanted);
+        set_image(wanted);
         read_region();
         set_rate();
         return result_;
@@ -124,14 +124,14 @@ class FormatSetter {
             result_.facts["input"] = std::to_string(input);
     }
 
-    [[nodiscard]] Picture current() const {
+    [[nodiscard]] Image current() const {
         v4l2_format format{};
         format.type = device_.buffer_type();
         device_.demand(VIDIOC_G_FMT, &format, "read its format");
-        return picture_of(format, device_.multi_planar());
+        return image_of(format, device_.multi_planar());
     }
 
-    void choose_format(Picture& wanted) {
+    void choose_format(Image& wanted) {
         if (const std::string* const name = value_of(settings_, "PixelFormat")) {
             format_ = pixel_format_named(*name);
             if (format_ == nullptr || format_->v4l2 == 0)
@@ -156,7 +156,7 @@ class FormatSetter {
 
     /// The part of the sensor, where the driver lets us choose one. Done first: a format smaller
     /// than the region would be scaled.
-    void set_region(const Picture& wanted) {
+    void set_region(const Image& wanted) {
         const auto given = [this](const char* name) {
             return value_of(settings_, name) != nullptr;
         };
@@ -182,10 +182,10 @@ class FormatSetter {
                                region.r.height, region.r.left, region.r.top));
     }
 
-    void set_picture(const Picture& wanted) {
+    void set_image(const Image& wanted) {
         v4l2_format request = request_for(device_, wanted);
         device_.demand(VIDIOC_S_FMT, &request, fmt::format("set its format to {}", format_->name));
-        const Picture got = picture_of(request, device_.multi_planar());
+        const Image got = image_of(request, device_.multi_planar());
         if (got.fourcc != wanted.fourcc)
             refuse("PixelFormat", fmt::format("the device would send {} instead of {}; {}",
                                               fourcc_text(got.fourcc), format_->name, offer()));
@@ -205,7 +205,7 @@ class FormatSetter {
         check(got);
     }
 
-    void check(const Picture& got) {
+    void check(const Image& got) {
         constexpr std::uint32_t kLargest = 65535;
         FrameLayout& layout = result_.layout;
         layout.format = format_;

@@ -40,13 +40,13 @@ struct alignas(64) Group {
 };
 
 /// The place of each patch: in the reverse order of bits the Haar transform pairs neighbours.
-constexpr int kPlace[kPatches] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+constexpr int kWhere[kPatches] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
 
 void load(const GroupFrames& group, const float* from, Group& g) {
     for (std::size_t k = 0; k < kPatches; ++k) {
         const float* row = from + group.patch[k];
         for (int r = 0; r < kSide; ++r, row += group.cols)
-            for (int c = 0; c < kSide; ++c) g.v[r * kSide + c][kPlace[k]] = row[c];
+            for (int c = 0; c < kSide; ++c) g.v[r * kSide + c][kWhere[k]] = row[c];
     }
 }
 
@@ -164,7 +164,7 @@ void add(const Group& g, float group_weight, const GroupFrames& group) {
         float* HWY_RESTRICT weight = group.weight + group.patch[k];
         for (int r = 0; r < kSide; ++r, sum += group.cols, weight += group.cols)
             for (int c = 0; c < kSide; ++c) {
-                sum[c] += window[r * kSide + c] * g.v[r * kSide + c][kPlace[k]];
+                sum[c] += window[r * kSide + c] * g.v[r * kSide + c][kWhere[k]];
                 weight[c] += window[r * kSide + c];
             }
     }

@@ -31,10 +31,10 @@ class Nearest {
     }
     void offer(const Candidate& candidate) {
         if (!(candidate.distance < bound())) return;
-        const auto place = std::upper_bound(
+        const auto where = std::upper_bound(
             list_.begin(), list_.end(), candidate,
             [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
-        list_.insert(place, candidate);
+        list_.insert(where, candidate);
         if (list_.size() > most_) list_.pop_back();
     }
     [[nodiscard]] const std::vector<Candidate>& list() const { return list_; }

@@ -33,24 +33,24 @@ const ImageStatistics* dark_of(const Series& series, const Statistics& statistic
 }
 
 const GroupStatistics& stack_of(const Series& series, const Statistics& statistics, bool dark,
-                                const std::string& place) {
+                                const std::string& where) {
     for (std::size_t i = 0; i < series.groups.size(); ++i)
         if (series.groups[i].dark == dark && series.groups[i].files.size() > 2)
             return statistics[i];
-    throw InputError(place, fmt::format("has no stack of more than two {} images, which DSNU and "
+    throw InputError(where, fmt::format("has no stack of more than two {} images, which DSNU and "
                                         "PRNU need",
                                         dark ? "dark" : "bright"));
 }
 
 std::vector<TransferPoint> transfer_curve(const Series& series, const Statistics& statistics,
-                                          const std::string& place) {
+                                          const std::string& where) {
     std::vector<TransferPoint> points;
     for (std::size_t i = 0; i < series.groups.size(); ++i) {
         const ImageGroup& group = series.groups[i];
         if (group.dark || group.files.size() != 2) continue;
         const ImageStatistics* dark = dark_of(series, statistics, group);
         if (dark == nullptr)
-            throw InputError(place, fmt::format("has no pair of dark images of {} ns, the exposure "
+            throw InputError(where, fmt::format("has no pair of dark images of {} ns, the exposure "
                                                 "of bright ones",
                                                 group.exposure_ns));
         const ImageStatistics& bright = statistics[i].images;
@@ -59,7 +59,7 @@ std::vector<TransferPoint> transfer_curve(const Series& series, const Statistics
     }
     std::ranges::stable_sort(points, {}, &TransferPoint::photons);
     if (points.size() < kMinPairs)
-        throw InputError(place, fmt::format("has {} pairs of bright images; an evaluation takes {}",
+        throw InputError(where, fmt::format("has {} pairs of bright images; an evaluation takes {}",
                                             points.size(), kMinPairs));
     return points;
 }
@@ -94,15 +94,15 @@ double linearity_error(const std::vector<TransferPoint>& points, double saturati
 }
 
 /// The points up to 70 % of saturation. \throws InputError if they do not make a line.
-std::span<const TransferPoint> linear_part(const Evaluation& evaluation, const std::string& place) {
+std::span<const TransferPoint> linear_part(const Evaluation& evaluation, const std::string& where) {
     const auto& points = evaluation.transfer;
     if (points[evaluation.saturation].variance_dn2 <= 0)
-        throw InputError(place, "more light does not give more noise, so it cannot tell electrons");
+        throw InputError(where, "more light does not give more noise, so it cannot tell electrons");
     const double max_dn = kLinearPart * points[evaluation.saturation].mean_dn;
     std::size_t count = 0;
     while (count < evaluation.saturation && points[count].mean_dn <= max_dn) ++count;
     if (count < kMinLinearPairs)
-        throw InputError(place,
+        throw InputError(where,
                          fmt::format("{} pairs of bright images are below 70 % of saturation (mean "
                                      "{:.4g} DN); an evaluation takes {}",
                                      count, max_dn / kLinearPart, kMinLinearPairs));
@@ -115,14 +115,14 @@ double dark_noise_e(double dark_variance_dn2, double gain_dn_per_e) {
 }
 
 void set_figures(Evaluation& evaluation, const ImageStatistics& bright, const ImageStatistics& dark,
-                 const std::string& place) {
-    const auto linear = linear_part(evaluation, place);
+                 const std::string& where) {
+    const auto linear = linear_part(evaluation, where);
     const TransferPoint& saturation = evaluation.transfer[evaluation.saturation];
     const double k = slope(linear, &TransferPoint::mean_dn, &TransferPoint::variance_dn2);
     const double responsivity = slope(linear, &TransferPoint::photons, &TransferPoint::mean_dn);
     if (!(k > 0 && responsivity > 0 && std::isfinite(k) && std::isfinite(responsivity) &&
           bright.mean_dn > dark.mean_dn))
-        throw InputError(place, "more light does not give more signal and more noise");
+        throw InputError(where, "more light does not give more signal and more noise");
     const double s_bright = bright.spatial_variance_dn2, s_dark = dark.spatial_variance_dn2;
     CameraFigures& f = evaluation.figures;
     f.gain_dn_per_e = k;
@@ -140,18 +140,18 @@ void set_figures(Evaluation& evaluation, const ImageStatistics& bright, const Im
 
 }  // namespace
 
-Evaluation evaluate(const Series& series, const Statistics& statistics, const std::string& place) {
+Evaluation evaluate(const Series& series, const Statistics& statistics, const std::string& where) {
     Evaluation evaluation;
-    evaluation.transfer = transfer_curve(series, statistics, place);
-    const GroupStatistics& dark = stack_of(series, statistics, true, place);
-    const GroupStatistics& bright = stack_of(series, statistics, false, place);
+    evaluation.transfer = transfer_curve(series, statistics, where);
+    const GroupStatistics& dark = stack_of(series, statistics, true, where);
+    const GroupStatistics& bright = stack_of(series, statistics, false, where);
     evaluation.saturation = static_cast<std::size_t>(
         std::ranges::max_element(evaluation.transfer, {}, &TransferPoint::variance_dn2) -
         evaluation.transfer.begin());
     evaluation.dark_mean_dn = dark.images.mean_dn;
     evaluation.dark_variance_dn2 = dark.images.temporal_variance_dn2;
     evaluation.dark_zero_fraction = dark.zero_fraction;
-    set_figures(evaluation, bright.images, dark.images, place);
+    set_figures(evaluation, bright.images, dark.images, where);
     return evaluation;
 }
 

@@ -49,11 +49,11 @@ struct GroupStatistics {
 };
 
 /// Evaluates a series; `statistics` has the statistics of its groups in their order.
-/// \throws InputError at `place` if the series does not have the necessary images: ten bright pairs
+/// \throws InputError at `where` if the series does not have the necessary images: ten bright pairs
 /// with dark images of their exposure times, at least five of them below 70 % of saturation, signal
 /// that increases with light, and one stack of more than two images each, bright and dark.
 [[nodiscard]] Evaluation evaluate(const Series& series,
                                   const std::vector<GroupStatistics>& statistics,
-                                  const std::string& place);
+                                  const std::string& where);
 
 }  // namespace stipple::emva1288

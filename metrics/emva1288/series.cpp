@@ -17,7 +17,7 @@ constexpr std::size_t kMaxImages = 1000000;
 
 class Parser {
   public:
-    explicit Parser(std::string_view place) : place_(place) {}
+    explicit Parser(std::string_view where) : where_(where) {}
 
     void read_line(const std::string& line) {
         ++line_;
@@ -48,7 +48,7 @@ class Parser {
 
   private:
     [[noreturn]] void fail(std::string_view problem) const {
-        throw InputError(fmt::format("{}:{}", place_, line_), problem);
+        throw InputError(fmt::format("{}:{}", where_, line_), problem);
     }
 
     double number(std::istringstream& words, std::string_view what, double least, double most) {
@@ -111,7 +111,7 @@ class Parser {
         series_.groups.back().files.push_back(file);
     }
 
-    std::string place_;
+    std::string where_;
     int line_ = 0;
     std::size_t images_ = 0;
     bool version_ = false;
@@ -120,8 +120,8 @@ class Parser {
 
 }  // namespace
 
-Series parse_series(std::string_view text, std::string_view place) {
-    Parser parser(place);
+Series parse_series(std::string_view text, std::string_view where) {
+    Parser parser(where);
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         parser.read_line(std::string(text.substr(0, end)));

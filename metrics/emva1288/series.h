@@ -26,9 +26,9 @@ struct Series {
 /// Reads a descriptor (release 4.0 of its format): `v 4.0`, `n bits width height`, then groups that
 /// begin with `b exposure_ns photons` or `d exposure_ns` and list their images, `i file`. Empty
 /// lines and lines that begin with # are ignored; backslashes in file names are read as slashes.
-/// \throws InputError naming `place` and line for all other text, for numbers outside their limits
+/// \throws InputError naming `where` and line for all other text, for numbers outside their limits
 /// and for a group without two images.
-[[nodiscard]] Series parse_series(std::string_view text, std::string_view place);
+[[nodiscard]] Series parse_series(std::string_view text, std::string_view where);
 
 /// The descriptor of a series.
 [[nodiscard]] std::string series_text(const Series& series);

@@ -9,13 +9,13 @@
 namespace stipple::emva1288 {
 namespace {
 
-void check(const SeriesImage& image, const Series& series, const std::string& place) {
+void check(const SeriesImage& image, const Series& series, const std::string& where) {
     if (image.rows != series.rows || image.cols != series.cols)
-        throw InputError(place, fmt::format("is {} x {}, but the descriptor says {} x {}",
+        throw InputError(where, fmt::format("is {} x {}, but the descriptor says {} x {}",
                                             image.cols, image.rows, series.cols, series.rows));
     const int most = *std::ranges::max_element(image.dn);
     if (most >> series.bits != 0)
-        throw InputError(place, fmt::format("holds the DN {}, but the descriptor says {} bits",
+        throw InputError(where, fmt::format("holds the DN {}, but the descriptor says {} bits",
                                             most, series.bits));
 }
 
@@ -37,11 +37,11 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
 }  // namespace
 
 Evaluation evaluate(const Series& series, const std::filesystem::path& folder,
-                    const ReadImage& read, const std::string& place) {
+                    const ReadImage& read, const std::string& where) {
     std::vector<GroupStatistics> statistics;
     for (const ImageGroup& group : series.groups)
         statistics.push_back(statistics_of(group, series, folder, read));
-    return evaluate(series, statistics, place);
+    return evaluate(series, statistics, where);
 }
 
 }  // namespace stipple::emva1288

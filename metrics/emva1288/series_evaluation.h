@@ -22,8 +22,8 @@ using ReadImage = std::function<SeriesImage(const std::filesystem::path& file)>;
 
 /// Evaluates a series whose images lie in `folder`; `read` is called for each, in their order.
 /// \throws InputError naming an image of another size or with a DN beyond the bits of the series,
-/// and as evaluate of their statistics, which calls the series `place`.
+/// and as evaluate of their statistics, which calls the series `where`.
 [[nodiscard]] Evaluation evaluate(const Series& series, const std::filesystem::path& folder,
-                                  const ReadImage& read, const std::string& place);
+                                  const ReadImage& read, const std::string& where);
 
 }  // namespace stipple::emva1288

@@ -32,8 +32,8 @@ std::string_view trimmed(std::string_view text) {
 
 class Parser {
   public:
-    Parser(std::string_view text, const std::string& place)
-        : rest_(text), text_bytes_(text.size()), place_(place) {}
+    Parser(std::string_view text, const std::string& where)
+        : rest_(text), text_bytes_(text.size()), where_(where) {}
 
     NamedProgram parse() {
         std::string_view line;
@@ -64,7 +64,7 @@ class Parser {
                                                                {"bits_per_pixel", 3}}};
 
     [[noreturn]] void fail(const std::string& problem) const {
-        throw InputError(fmt::format("{}:{}", place_, line_), problem);
+        throw InputError(fmt::format("{}:{}", where_, line_), problem);
     }
     [[nodiscard]] int value(Field field) const { return values_[field]; }
 
@@ -178,7 +178,7 @@ class Parser {
 
     std::string_view rest_;
     std::size_t text_bytes_;
-    const std::string& place_;
+    const std::string& where_;
     int line_ = 0;
     bool is_ours_ = false;
     std::string name_ = "program";
@@ -227,8 +227,8 @@ std::string program_text(const NamedProgram& named) {
     return text;
 }
 
-NamedProgram parse_program(std::string_view text, const std::string& place) {
-    return Parser(text, place).parse();
+NamedProgram parse_program(std::string_view text, const std::string& where) {
+    return Parser(text, where).parse();
 }
 
 }  // namespace stipple

@@ -17,8 +17,8 @@ struct NamedProgram {
 /// comments (docs/sequencer_program.md).
 [[nodiscard]] std::string program_text(const NamedProgram& program);
 
-/// The inverse. \throws InputError naming `place`, line and problem: a figure is missing, a word is
+/// The inverse. \throws InputError naming `where`, line and problem: a figure is missing, a word is
 /// not hexadecimal, has another width, comes twice or not at all.
-[[nodiscard]] NamedProgram parse_program(std::string_view text, const std::string& place);
+[[nodiscard]] NamedProgram parse_program(std::string_view text, const std::string& where);
 
 }  // namespace stipple

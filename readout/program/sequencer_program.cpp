@@ -56,13 +56,13 @@ void write_pixel(const ExposureSchedule& schedule, const PixelPeriod& where,
 /// The exposures of one pixel and store, found by following its bits from one reading to the next.
 class ExposureFinder {
   public:
-    ExposureFinder(const SequencerProgram& program, const std::string& place)
-        : program_(program), place_(place) {}
+    ExposureFinder(const SequencerProgram& program, const std::string& where)
+        : program_(program), where_(where) {}
 
     /// Appends the exposures of tile pixel (row, col) in `store` (0 or kStore).
     void find(int row, int col, unsigned store, std::vector<Exposure>& found) const {
         const auto fail = [&](int slot, std::string_view problem) {
-            throw InputError(place_, fmt::format("pixel ({}, {}) slot {}: {}", row, col,
+            throw InputError(where_, fmt::format("pixel ({}, {}) slot {}: {}", row, col,
                                                  slot % program_.period_slots, problem));
         };
         int last_reading = -1;
@@ -112,7 +112,7 @@ class ExposureFinder {
     }
 
     const SequencerProgram& program_;
-    const std::string& place_;
+    const std::string& where_;
 };
 
 }  // namespace
@@ -145,8 +145,8 @@ SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
     return program;
 }
 
-ExposureSchedule schedule_of(const SequencerProgram& program, const std::string& place) {
-    const ExposureFinder finder(program, place);
+ExposureSchedule schedule_of(const SequencerProgram& program, const std::string& where) {
+    const ExposureFinder finder(program, where);
     std::vector<std::uint32_t> first = {0};
     std::vector<Exposure> exposures;
     for (int row = 0; row < program.tile_rows; ++row)

@@ -39,9 +39,9 @@ struct SequencerProgram {
 
 /// The schedule of `program`: an exposure of a store begins in the first open slot
 /// after its last reading. `schedule_of(compile_schedule(s)) == s` if the periods are equal.
-/// \throws InputError naming `place`, pixel and slot: a pixel is read while it is closed, is open
+/// \throws InputError naming `where`, pixel and slot: a pixel is read while it is closed, is open
 /// and never read, or is open for more than 64 slots from the first to the last.
 [[nodiscard]] ExposureSchedule schedule_of(const SequencerProgram& program,
-                                           const std::string& place);
+                                           const std::string& where);
 
 }  // namespace stipple

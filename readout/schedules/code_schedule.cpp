@@ -23,13 +23,13 @@ constexpr Store kStores[] = {{'A', 'a'}, {'B', 'b'}};
 /// Reads the strings of a code.
 class CodeReader {
   public:
-    CodeReader(TileSize size, const std::string& place)
-        : size_(size), place_(place), list_(size.rows, size.cols, size.period_slots) {}
+    CodeReader(TileSize size, const std::string& where)
+        : size_(size), where_(where), list_(size.rows, size.cols, size.period_slots) {}
 
     void add_pixel(std::size_t pixel, std::string_view slots) {
         pixel_ = pixel;
         if (slots.size() != static_cast<std::size_t>(size_.period_slots))
-            throw InputError(place_, fmt::format("{}: has {} slots; period_slots is {}",
+            throw InputError(where_, fmt::format("{}: has {} slots; period_slots is {}",
                                                  pixel_name(), slots.size(), size_.period_slots));
         for (std::size_t slot = 0; slot < slots.size(); ++slot)
             if (std::string_view(".AaBb").find(slots[slot]) == std::string_view::npos)
@@ -78,11 +78,11 @@ class CodeReader {
         return fmt::format("pixel ({}, {})", pixel_ / cols, pixel_ % cols);
     }
     [[noreturn]] void fail(std::size_t slot, std::string_view problem) const {
-        throw InputError(place_, fmt::format("{} slot {}: {}", pixel_name(), slot, problem));
+        throw InputError(where_, fmt::format("{} slot {}: {}", pixel_name(), slot, problem));
     }
 
     TileSize size_;
-    const std::string& place_;
+    const std::string& where_;
     TileList list_;
     std::size_t pixel_ = 0;
 };
@@ -130,13 +130,13 @@ std::string toml_string(std::string_view text) {
 }  // namespace
 
 ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
-                               const std::string& place) {
+                               const std::string& where) {
     const std::size_t pixels =
         static_cast<std::size_t>(size.rows) * static_cast<std::size_t>(size.cols);
     if (code.size() != pixels)
-        throw InputError(place, fmt::format("holds {} pixels; a tile of {} x {} has {}",
+        throw InputError(where, fmt::format("holds {} pixels; a tile of {} x {} has {}",
                                             code.size(), size.rows, size.cols, pixels));
-    CodeReader reader(size, place);
+    CodeReader reader(size, where);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) reader.add_pixel(pixel, code[pixel]);
     return std::move(reader).schedule();
 }

@@ -23,10 +23,10 @@ inline constexpr std::size_t kMaxCodeSlots = std::size_t{1} << 24U;
 /// '.' is closed; 'A' begins an exposure in the first charge store and 'a' continues it, 'B' and
 /// 'b' in the second; other characters in between are gaps of it. 'a' before the first 'A'
 /// continues the last exposure of the previous period. An exposure is read in its last open slot.
-/// \throws InputError at `place`, naming pixel and slot, for another character, a string of another
+/// \throws InputError at `where`, naming pixel and slot, for another character, a string of another
 /// length, an exposure without beginning or with more than 64 slots from its first to its last.
 [[nodiscard]] ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
-                                             const std::string& place);
+                                             const std::string& where);
 
 /// A file of kind "code" that holds `schedule`, or two periods of it if exposures change their
 /// store from one period to the next. `name` is the value of its key `name`. \throws InputError if

@@ -38,7 +38,7 @@ std::vector<int> read_exposure_slots(Config& config) {
     const KeyReader read(config);
     read(key, lengths);
     if (lengths.empty() || lengths.size() > kMaxTiledLengths)
-        throw InputError(config.place(key.name), fmt::format("holds {} lengths; give 1 to {}",
+        throw InputError(config.where(key.name), fmt::format("holds {} lengths; give 1 to {}",
                                                              lengths.size(), kMaxTiledLengths));
     return lengths;
 }
@@ -53,12 +53,12 @@ NamedSchedule read_random(Config& config, const Made& made) {
     const FrameShape shape = made.shape;
     std::vector<int> lengths = read_exposure_slots(config);
     if (shape.pixels() * lengths.size() > kMaxRandomExposures)
-        throw InputError(config.place("kind"),
+        throw InputError(config.where("kind"),
                          fmt::format("random exposures of {} x {} pixels are too many for a "
                                      "stream; use the schedule \"tiled\"",
                                      shape.rows, shape.cols));
     // It is kept twice: by the sensor, and in the header of the stream.
-    check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.place("kind"),
+    check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.where("kind"),
                  fmt::format("random exposures of {} x {} pixels", shape.rows, shape.cols));
     ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, made.seed);
     return {.name = "random",
@@ -79,7 +79,7 @@ NamedSchedule read_full(Config& config, const Made& /*made*/) {
     read(kOpenSlots, open_slots);
     read(kPeriodSlots, period_slots);
     if (open_slots > period_slots)
-        throw InputError(config.place(kOpenSlots.name),
+        throw InputError(config.where(kOpenSlots.name),
                          fmt::format("{} is more than period_slots, {}", open_slots, period_slots));
     return {"full", {}, full_schedule(open_slots, period_slots)};
 }
@@ -90,7 +90,7 @@ std::vector<int> read_per_pixel(Config& config, const ConfigKey& key, int fallba
     std::vector<int> values = config.integers(key, {fallback});
     if (values.size() == 1) values.resize(pixels, values.front());
     if (values.size() != pixels)
-        throw InputError(config.place(key.name),
+        throw InputError(config.where(key.name),
                          fmt::format("holds {} values; give one for each of the {} pixels of the "
                                      "cell, or one for all",
                                      values.size(), pixels));
@@ -99,7 +99,7 @@ std::vector<int> read_per_pixel(Config& config, const ConfigKey& key, int fallba
 
 void check_exposures(const Config& config, const char* key, std::uint64_t exposures) {
     if (exposures > kMaxTileExposures)
-        throw InputError(config.place(key),
+        throw InputError(config.where(key),
                          fmt::format("the tile has {} exposures; 2^24 fit a stream", exposures));
 }
 
@@ -109,7 +109,7 @@ ExposureSchedule at_key(const Config& config, const char* key, const Make& make)
     try {
         return make();
     } catch (const InputError& error) {
-        throw InputError(config.place(key), error.what());
+        throw InputError(config.where(key), error.what());
     }
 }
 
@@ -184,11 +184,11 @@ NamedSchedule read_code(Config& config, const Made& /*made*/) {
     const ConfigKey key{"code", {}, "", "exposure code: a text per pixel, a character per slot"};
     const std::vector<std::string> code = config.texts(key);
     if (code.size() * static_cast<std::size_t>(size.period_slots) > kMaxCodeSlots)
-        throw InputError(config.place(key.name),
+        throw InputError(config.where(key.name),
                          fmt::format("{} pixels of {} slots are more than the 2^24 characters that "
                                      "a code may have; use a smaller tile",
                                      code.size(), size.period_slots));
-    return {"code", {}, code_schedule(size, code, config.place(key.name))};
+    return {"code", {}, code_schedule(size, code, config.where(key.name))};
 }
 
 NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
@@ -245,7 +245,7 @@ NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed
     const ConfigKey name{"name", {}, "", "name in messages and in the header of streams"};
     result.name = config.text(name, kind.name);
     if (result.name.size() > kMaxNameBytes)
-        throw InputError(config.place(name.name),
+        throw InputError(config.where(name.name),
                          fmt::format("has {} bytes; at most {} fit a stream", result.name.size(),
                                      kMaxNameBytes));
     return result;

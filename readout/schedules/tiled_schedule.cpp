@@ -11,7 +11,7 @@
 namespace stipple {
 namespace {
 
-constexpr char kPlace[] = "tiled schedule";
+constexpr char kWhere[] = "tiled schedule";
 constexpr std::size_t kMaxDrawn = 1U << 23U;  ///< well under a second
 
 int period_of(std::span<const int> lengths) {
@@ -69,14 +69,14 @@ class SlotCounts {
 
 void check(int tile_rows, int tile_cols, std::span<const int> lengths) {
     if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTiledSide || tile_cols > kMaxTiledSide)
-        throw InputError(kPlace, fmt::format("tile {} x {} is outside 1..{} rows and columns",
+        throw InputError(kWhere, fmt::format("tile {} x {} is outside 1..{} rows and columns",
                                              tile_rows, tile_cols, kMaxTiledSide));
     if (lengths.empty() || lengths.size() > kMaxTiledLengths)
-        throw InputError(kPlace,
+        throw InputError(kWhere,
                          fmt::format("{} lengths; give 1 to {}", lengths.size(), kMaxTiledLengths));
     for (const int length : lengths)
         if (length < 1 || length > kMaxExposureSlots)
-            throw InputError(kPlace, fmt::format("exposure of {} slots is outside 1..64", length));
+            throw InputError(kWhere, fmt::format("exposure of {} slots is outside 1..64", length));
 }
 
 /// What each pixel of a tile repeats, `each` exposures per pixel.

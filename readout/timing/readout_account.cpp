@@ -12,7 +12,7 @@
 namespace stipple {
 namespace {
 
-constexpr char kPlace[] = "readout timing";
+constexpr char kWhere[] = "readout timing";
 
 std::uint64_t wide(int value) {
     return static_cast<std::uint64_t>(value);
@@ -100,7 +100,7 @@ ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedu
     if (budget.policy != OverrunPolicy::kDrop || budget.clocks == 0) return;
     const auto check = [&](std::int64_t clocks, const char* what) {
         if (clocks > budget.clocks)
-            throw InputError(kPlace, fmt::format("{} takes {} clocks of a slot's {}, and dropping "
+            throw InputError(kWhere, fmt::format("{} takes {} clocks of a slot's {}, and dropping "
                                                  "rows does not help; raise slot_us",
                                                  what, clocks, budget.clocks));
     };
@@ -182,11 +182,11 @@ const SlotAccount& ReadoutAccount::add_next() {
 std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
     const double clocks = std::floor(slot_us * static_cast<double>(timing.clock_hz) / 1e6);
     if (clocks < 1)
-        throw InputError(kPlace, fmt::format("a slot of {} us is shorter than a clock of {} Hz; "
+        throw InputError(kWhere, fmt::format("a slot of {} us is shorter than a clock of {} Hz; "
                                              "raise slot_us",
                                              slot_us, timing.clock_hz));
     if (clocks > static_cast<double>(kMaxReadoutClocks))
-        throw InputError(kPlace, fmt::format("a slot of {} us has more than {} clocks of {} Hz; "
+        throw InputError(kWhere, fmt::format("a slot of {} us has more than {} clocks of {} Hz; "
                                              "lower slot_us",
                                              slot_us, kMaxReadoutClocks, timing.clock_hz));
     return static_cast<std::int64_t>(clocks);

@@ -88,7 +88,7 @@ std::optional<ReadoutTiming> read_timing(Config& config, int bits_per_sample) {
                                        {"rows", timing.rows == 0},
                                        {"cols", timing.cols == 0}})
         if (missing)
-            throw InputError(config.place(std::string(kSection) + key),
+            throw InputError(config.where(std::string(kSection) + key),
                              "is missing; the section [timing] needs it");
     timing.bits_per_sample = bits_per_sample;
     validate(timing, config.text({"name"}, "?"));

@@ -22,7 +22,7 @@ class BadFootageTest(ProgramTest):
     def test_missing(self):
         self.refuse("nothing", "no such file or folder")
 
-    def test_a_folder_without_pictures(self):
+    def test_a_folder_without_images(self):
         (self.folder / "empty").mkdir()
         self.refuse("empty", "PNG, TIFF, EXR or DNG")
 
@@ -34,7 +34,7 @@ class BadFootageTest(ProgramTest):
         (self.folder / "notes.txt").write_text("no light here")
         self.refuse("notes.txt")
 
-    def test_text_that_is_called_a_picture_or_a_video(self):
+    def test_text_that_is_called_a_image_or_a_video(self):
         for name in ("light.mp4", "frames/a.png", "frames2/a.exr", "frames3/a.tif"):
             path = self.folder / name
             path.parent.mkdir(exist_ok=True)
@@ -51,7 +51,7 @@ class BadFootageTest(ProgramTest):
         path.write_bytes(path.read_bytes()[:-1])
         self.refuse("light.npy")
 
-    def test_truncated_picture_names_the_picture(self):
+    def test_truncated_image_names_the_image(self):
         for name in ("frames/f1.png", "frames/f2.png"):
             self.write_png(name, np.zeros((9, 9)))
         path = self.folder / "frames/f2.png"

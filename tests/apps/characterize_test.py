@@ -129,7 +129,7 @@ class CharacterizeTest(ProgramTest):
         return self.run_program(*arguments, env=dict(os.environ, PATH=str(tools)))
 
     def test_charts_that_cannot_be_drawn_cost_nothing_else(self):
-        pictures = ["image_0001.png", "image_0302.png", "emva1288_data.txt"]
+        images = ["image_0001.png", "image_0302.png", "emva1288_data.txt"]
         for script, code, said in (("", OK, "no charts are drawn: gnuplot: No such file"),
                                    ("echo full >&2; exit 1", DEVICE, "gnuplot: failed: full")):
             done = self.with_gnuplot(script, "characterize", "--sensor", "t6", "-o", "series", "--force")
@@ -138,7 +138,7 @@ class CharacterizeTest(ProgramTest):
             self.assertIn("system gain K", done.stdout)
             names = {path.name for path in (self.folder / "series").iterdir()}
             self.assertEqual(len(names), 303)
-            self.assertTrue(names.issuperset(pictures))
+            self.assertTrue(names.issuperset(images))
         done = self.with_gnuplot("", "characterize", "--evaluate", "series/emva1288_data.txt", "-o", "none")
         self.assertEqual(done.returncode, OK, done.stderr)
         self.assertFalse((self.folder / "none").exists())

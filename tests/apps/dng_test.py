@@ -1,4 +1,4 @@
-""".dng pictures of cameras: the light of each number, what the camera tells, what is refused."""
+""".dng images of cameras: the light of each number, what the camera tells, what is refused."""
 
 import shutil
 import struct
@@ -16,7 +16,7 @@ GRBG = {33421: (SHORT, [2, 2]), 33422: (BYTE, [1, 0, 2, 1])}
 
 
 class Dng:
-    """Writes a DNG of one raw picture, in the first directory or in one below a small preview."""
+    """Writes a DNG of one raw image, in the first directory or in one below a small preview."""
 
     def __init__(self, order="<"):
         self.order = order
@@ -45,7 +45,7 @@ class Dng:
 
 
 def dng(values, bits=16, tags=None, order="<", below=False, exif=None, tile=None, packed=zlib.compress):
-    """The file of a picture (row, col). `below`: after a preview; `exif`: tags of that directory; `tile`: its side."""
+    """The file of a image (row, col). `below`: after a preview; `exif`: tags of that directory; `tile`: its side."""
     tags = dict(tags or {})
     file = Dng(order)
     rows, cols = values.shape
@@ -116,7 +116,7 @@ class DngTest(CameraFilesTest):
         self.assert_light([MOSAIC[0] / 4095], self.dng(MOSAIC[0], 12, camera), *physical)
         self.assertEqual(self.said, "")
 
-    def test_pictures_of_two_mosaics(self):
+    def test_images_of_two_mosaics(self):
         self.dng(MOSAIC[0], 12, GRBG, name="clip/0.dng")
         self.dng(MOSAIC[0], 12, {**GRBG, 33422: (BYTE, [0, 1, 1, 2])}, name="clip/1.dng")
         self.fails(INPUT, ["1.dng: has another colour filter array than the first"], "emulate", "clip", "-o", "x.stipple")
@@ -152,7 +152,7 @@ class DngTest(CameraFilesTest):
         for length in (0, 7, 100, len(whole) // 2, len(whole) - 30):
             with self.subTest(length=length):
                 self.refuse(["damaged"], self.write("clip.dng", whole[:length]))
-        self.refuse(["announces a picture of 480000000 bytes"], self.dng(
+        self.refuse(["announces a image of 480000000 bytes"], self.dng(
             MOSAIC[0], 16, {256: (LONG, [60000]), 257: (LONG, [4000])}))
         self.refuse(["outside 1..65535"], self.dng(MOSAIC[0], 16, {256: (LONG, [70000])}))
         self.refuse(["damaged"], self.dng(MOSAIC[0], 16, {259: (SHORT, [8])}, packed=lambda data: data))

@@ -60,7 +60,7 @@ class FaultyRuns(ProgramTest):
     def prepare_one(self, name):
         if name == "emulate":
             self.prepare("out.stipple", "emulate", "light.npy")
-        elif name == "pictures":
+        elif name == "images":
             for number, values in enumerate(np.load(self.folder / "light.npy") // 256):
                 self.write_png(f"frames/f{number}.png", values)
             self.prepare("out.stipple", "emulate", "frames")
@@ -173,8 +173,8 @@ class FaultsTest(FaultyRuns):
     def test_emulate(self):
         self.sweep("emulate")
 
-    def test_emulate_pictures(self):
-        self.sweep("pictures")
+    def test_emulate_images(self):
+        self.sweep("images")
 
     def test_decode(self):
         self.sweep("decode")

@@ -1,4 +1,4 @@
-"""scripts/figures: the pictures of docs/concept.md come from the program."""
+"""scripts/figures: the images of docs/concept.md come from the program."""
 
 import contextlib
 import importlib.machinery
@@ -54,7 +54,7 @@ class FiguresTest(ProgramTest):
         self.assertLess(nearest[read].max(), 8 / 255 / 2 + 1e-6)
 
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
-    def test_the_strip_has_five_pictures_and_their_details(self):
+    def test_the_strip_has_five_images_and_their_details(self):
         figures.SIZE, figures.FRAMES, figures.SHOWN = "32x24", "12", 8
         figures.CROP, figures.DETAILS = (slice(0, 24), slice(0, 32)), {"red": (slice(8, 14), slice(8, 16))}
         text = io.StringIO()

@@ -42,7 +42,7 @@ class FitsTest(CameraFilesTest):
         self.assert_light(MOSAIC[:1] / 32767, self.fits(MOSAIC[0, ::-1], 16))
 
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
-    def test_ffmpeg_reads_the_same_picture(self):
+    def test_ffmpeg_reads_the_same_image(self):
         ramp = np.arange(48).reshape(6, 8) * 5
         ramp[0, 1] = 255  # from 0 to 255: to these ffmpeg stretches the numbers
         name = self.fits(ramp, 8)

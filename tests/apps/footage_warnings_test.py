@@ -19,7 +19,7 @@ class FootageWarningsTest(ProgramTest):
     def said_of_png(self, values, chunks=(), *options):
         return self.said(self.write_png("f.png", values, chunks), *options)
 
-    def test_pictures_that_say_that_they_are_coded(self):
+    def test_images_that_say_that_they_are_coded(self):
         grey = np.full((8, 8), 99)
         gamma = [(b"gAMA", struct.pack(">I", 45455))]
         linear = [(b"gAMA", struct.pack(">I", 100000))]
@@ -61,7 +61,7 @@ class FootageWarningsTest(ProgramTest):
             self.assertEqual(self.said_of_png(np.full((8, 8, channels), 99), (), "--transfer", "srgb"),
                              "stipple: f.png: its alpha channel is left out\n")
 
-    def test_a_transfer_of_floating_point_pictures(self):
+    def test_a_transfer_of_floating_point_images(self):
         self.succeed("synth", "pan", "-o", "scene", "--frames", "2", "--size", "32x32")
         self.assertEqual(self.said("scene"), "")
         self.assertIn("scene: holds floating-point numbers, which are linear light as a rule; "
@@ -80,10 +80,10 @@ class FootageWarningsTest(ProgramTest):
                          "one slot forward\n")
         self.fails(INPUT, ["gap/f003.png: is missing"], "emulate", "gap/f%03d.png", "-o", "x.stipple")
 
-    def test_pictures_that_a_pattern_leaves_out(self):
+    def test_images_that_a_pattern_leaves_out(self):
         for number in range(7, 13):
             self.write_png(f"num/f{number}.png", np.zeros((8, 8)))
-        self.assertIn("num/f%02d.png: takes f10.png to f12.png; left out are 3 pictures",
+        self.assertIn("num/f%02d.png: takes f10.png to f12.png; left out are 3 images",
                       self.said("num/f%02d.png"))
         self.assertEqual(self.said("num/f%d.png"), "")
 

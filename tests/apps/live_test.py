@@ -19,7 +19,7 @@ PREVIEW_OF_FAST = ("--method", "fast", "--set", "decoder.rounds=1", "--set", "de
 
 
 def moving_light(slots, rows=24, cols=32):
-    """A smooth picture that moves by a pixel a slot, up to 0.9."""
+    """A smooth image that moves by a pixel a slot, up to 0.9."""
     y, x = np.mgrid[:rows, :cols]
     return np.stack([0.5 + 0.4 * np.sin((x - slot) / 4) * np.cos(y / 5) for slot in range(slots)])
 
@@ -97,13 +97,13 @@ class PreviewTest(LiveTest):
         self.assertEqual(self.figures("info", "clip.stipple")["command"],
                          "stipple emulate light.strec -o again.stipple")
 
-    def test_the_picture_is_replaced_while_the_recording_goes_on(self):
+    def test_the_image_is_replaced_while_the_recording_goes_on(self):
         program = self.start_loop("--preview", "now.png", "--preview-method", "naive")
-        picture = self.folder / "now.png"
-        self.assertTrue(until(picture.exists, program), "no picture came")
-        first = picture.read_bytes()
+        image = self.folder / "now.png"
+        self.assertTrue(until(image.exists, program), "no image came")
+        first = image.read_bytes()
         self.assertEqual(struct.unpack_from(">II", first, 16), (32, 24 + CAPTION))
-        self.assertTrue(until(lambda: picture.read_bytes() != first, program), "no other came")
+        self.assertTrue(until(lambda: image.read_bytes() != first, program), "no other came")
         preview, _ = self.stop(program)
         self.assertGreaterEqual(preview["made"], 2)
         self.assertEqual(preview["failed"], 0)

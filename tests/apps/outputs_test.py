@@ -87,7 +87,7 @@ class OutputsTest(ProgramTest):
         for name in (".", "clip/"):
             self.fails(INPUT, [f'output "{name}"', "name"], "emulate", "light.npy", "-o", name)
 
-    def test_a_film_of_any_shape(self):
+    def test_a_video_of_any_shape(self):
         for rows, cols in ((1, 1), (1, 40), (40, 1), (40, 2), (40, 3), (5, 7)):
             self.write_stream(f"{rows}x{cols}.stipple", slots=4, rows=rows, cols=cols)
             self.succeed("decode", f"{rows}x{cols}.stipple", "-o", f"{rows}x{cols}.mp4",

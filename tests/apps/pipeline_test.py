@@ -212,7 +212,7 @@ class PipelineTest(ProgramTest):
                      "clipped.npy")
         np.testing.assert_array_equal(self.array("clipped.npy"), np.minimum(colour, 0.25))
 
-    def test_pictures_of_a_folder_or_a_pattern_are_footage(self):
+    def test_images_of_a_folder_or_a_pattern_are_footage(self):
         for number in range(1, 4):
             self.write_png(f"frames/f{number}.png", np.full((4, 4), 51 * number))
         for footage in ("frames", "frames/f%d.png"):
@@ -235,7 +235,7 @@ class PipelineTest(ProgramTest):
         for a, b in zip(one, two, strict=True):
             self.assertEqual(a.read_bytes(), b.read_bytes(), b)
 
-    def test_demo_leaves_video_pictures_and_figures(self):
+    def test_demo_leaves_video_images_and_figures(self):
         demo = ["demo", "--frames", "20", "--size", "48x40", "-o", "shown"]
         trials = self.figures(*demo)["trials"]
         self.assertEqual([trial["name"] for trial in trials],
@@ -247,8 +247,8 @@ class PipelineTest(ProgramTest):
         self.assertEqual(len(list((self.folder / "shown/decoded").glob("frame_*.exr"))), 20)
         self.expect_demo_figures(trials)
         # Six versions of 48 x 40, 4 pixels apart, under 20 rows of text.
-        pictures = [self.folder / f"shown/side_by_side_{number}.png" for number in (1, 2, 3)]
-        sizes = {struct.unpack_from(">II", picture.read_bytes(), 16) for picture in pictures}
+        images = [self.folder / f"shown/side_by_side_{number}.png" for number in (1, 2, 3)]
+        sizes = {struct.unpack_from(">II", image.read_bytes(), 16) for image in images}
         self.assertEqual(sizes, {(6 * 48 + 5 * 4, 40 + 20)})
         self.assertEqual((self.folder / "shown/decoded.mp4").read_bytes()[4:8], b"ftyp")
         self.assertEqual(self.figures("info", "shown/random.stipple")["slots"], 20)

@@ -20,7 +20,7 @@ class PngTest(ProgramTest):
         return name
 
     def write_bits(self, name, rows, depth, colour_type=0, chunks=()):
-        """A picture of fewer than 8 bits a pixel."""
+        """A image of fewer than 8 bits a pixel."""
         packed = b"".join(
             b"\0" + np.packbits(np.unpackbits(row[:, None], axis=1)[:, 8 - depth:]).tobytes() for row in rows)
         head = struct.pack(">IIBBBBB", rows.shape[1], rows.shape[0], depth, colour_type, 0, 0, 0)
@@ -31,7 +31,7 @@ class PngTest(ProgramTest):
         return name
 
     def light(self, name):
-        """The light of the picture, and what was said of it."""
+        """The light of the image, and what was said of it."""
         done = self.run_program("emulate", name, "-o", "clip.stipple", "--truth", "light.npy", "--force", "-q")
         self.assertEqual(done.returncode, OK, done.stderr)
         return self.array("light.npy")[0], done.stderr

@@ -210,21 +210,21 @@ class ProportionTest(ProgramTest):
     def emulate_refuses(self, name, *parts):
         self.refuses([name, *parts], "emulate", name, "-o", "x.stipple")
 
-    def test_pictures_are_not_larger_than_their_files_can_hold(self):
+    def test_images_are_not_larger_than_their_files_can_hold(self):
         content = bytearray((self.folder / self.write_png("a.png", np.zeros((4, 4)))).read_bytes())
-        for side, part in ((20_000, "outside"), (16_000, "announces a picture of 256000000 bytes")):
+        for side, part in ((20_000, "outside"), (16_000, "announces a image of 256000000 bytes")):
             struct.pack_into(">II", content, 16, side, side)
             struct.pack_into(">I", content, 29, zlib.crc32(content[12:29]))
             self.write("a.png", content)
             self.emulate_refuses("a.png", part)
         self.succeed("synth", "pan", "-o", "frames", "--size", "32x32", "--frames", 1)
-        picture = next((self.folder / "frames").iterdir()).read_bytes()
+        image = next((self.folder / "frames").iterdir()).read_bytes()
         window = struct.pack("<iiii", 0, 0, 31, 31)
-        self.assertEqual(picture.count(window), 2)  # data and display
+        self.assertEqual(image.count(window), 2)  # data and display
         last = b"screenWindowWidth\0float\0"
-        head = picture[:picture.index(last) + len(last) + 8 + 1]  # size, value, end of the header
+        head = image[:image.index(last) + len(last) + 8 + 1]  # size, value, end of the header
         self.write("a.exr", head.replace(window, struct.pack("<iiii", 0, 0, 8191, 8191)) + b"\0" * 4096)
-        self.emulate_refuses("a.exr", "announces a picture of")
+        self.emulate_refuses("a.exr", "announces a image of")
 
     def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
         side = 16_000
@@ -234,9 +234,9 @@ class ProportionTest(ProgramTest):
             content = b"II*\0" + struct.pack("<IH", 8, len(tags))
             content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
             self.write("a.tif", content + bytes(200 - len(content) + size))
-            self.emulate_refuses("a.tif", "announces a picture of 256000000 bytes")
+            self.emulate_refuses("a.tif", "announces a image of 256000000 bytes")
 
-    def test_well_packed_pictures_are_not_larger_than_small_files_may_be(self):
+    def test_well_packed_images_are_not_larger_than_small_files_may_be(self):
         side = 16_000
         packer = zlib.compressobj(9)
         strip = b"".join(packer.compress(bytes(side * 100)) for _ in range(side // 100))
@@ -246,7 +246,7 @@ class ProportionTest(ProgramTest):
         content = b"II*\0" + struct.pack("<IH", 8, len(tags))
         content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
         self.write("a.tif", content + bytes(200 - len(content)) + strip)
-        self.emulate_refuses("a.tif", "needs 1.2 GiB of memory for the picture", "--max-memory 1280M")
+        self.emulate_refuses("a.tif", "needs 1.2 GiB of memory for the image", "--max-memory 1280M")
         side = 4000
         self.write_png("a.png", np.zeros((side, side)))
         self.emulate_refuses("a.png", f"for frames of {side} x {side}", "--max-memory")
@@ -256,7 +256,7 @@ class ProportionTest(ProgramTest):
                         "-frames:v", "1", "-c:v", "ffv1", self.folder / "a.mkv"], check=True)
         self.emulate_refuses("a.mkv", "needs 1.6 GiB of memory for a frame", "--max-memory")
 
-    def test_pictures_are_files(self):
+    def test_images_are_files(self):
         (self.folder / "frames").mkdir()
         (self.folder / "frames" / "a.png").symlink_to("/dev/zero")
         self.refuses(["frames/a.png", "is a device"], "emulate", "frames", "-o", "x.stipple")

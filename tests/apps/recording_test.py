@@ -75,27 +75,27 @@ class RecordingTest(ProgramTest):
         self.assertNotIn("slots/s", self.succeed(*live, "--force"))
 
     def test_the_emulator_says_that_a_recording_has_another_rate_than_slots(self):
-        self.write_flat("film.npy", 12)
+        self.write_flat("video.npy", 12)
         for rate, slot_us, said in ((50, 5000, True), (50, 20000, False), (200, 5000, False)):
-            self.succeed("capture", "record", "replay:film.npy", "-o", "film.strec", "--set",
+            self.succeed("capture", "record", "replay:video.npy", "-o", "video.strec", "--set",
                          f"camera.AcquisitionFrameRate={rate}", "--force")
-            done = self.run_program("emulate", "film.strec", "-o", "a.stipple", "--force", "-q",
+            done = self.run_program("emulate", "video.strec", "-o", "a.stipple", "--force", "-q",
                                     "--set", f"sensor.slot_us={slot_us}")
             self.assertEqual(done.returncode, 0, done.stderr)
             if not said:
                 self.assertEqual(done.stderr, "")
                 continue
-            for part in ("film.strec: the camera sent 50 frames/s", "takes 5000 us (200 a second)",
+            for part in ("video.strec: the camera sent 50 frames/s", "takes 5000 us (200 a second)",
                          "--set sensor.slot_us=20000"):
                 self.assertIn(part, done.stderr)
 
-    def test_the_emulator_says_that_a_film_has_another_rate_than_slots(self):
-        self.succeed("synth", "pan", "-o", "film.mp4", "--size", "32x32", "--frames", 4)
-        emulate = ("emulate", "film.mp4", "-o", "a.stipple", "--force", "-q", "--transfer", "srgb")
+    def test_the_emulator_says_that_a_video_has_another_rate_than_slots(self):
+        self.succeed("synth", "pan", "-o", "video.mp4", "--size", "32x32", "--frames", 4)
+        emulate = ("emulate", "video.mp4", "-o", "a.stipple", "--force", "-q", "--transfer", "srgb")
         done = self.run_program(*emulate)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        for part in ("film.mp4: has 30 frames/s", "6.67 times as fast", "--set sensor.slot_us=33333"):
+        for part in ("video.mp4: has 30 frames/s", "6.67 times as fast", "--set sensor.slot_us=33333"):
             self.assertIn(part, done.stderr)
         self.assertEqual(self.run_program(*emulate, "--set", "sensor.slot_us=33333").stderr, "")
 

@@ -69,25 +69,25 @@ class RecoverTest(ProgramTest):
 
     def test_leftovers_are_listed_and_said_to_the_next_run(self):
         left = self.killed_stream()
-        for name in (".film.999999999.partial.npy", ".x.partial.npy", "clip.1.partial.npy"):
+        for name in (".video.999999999.partial.npy", ".x.partial.npy", "clip.1.partial.npy"):
             (self.folder / name).write_bytes(b"half")
         (self.folder / ".frames.999999998.partial").mkdir()
         listed = self.figures("recover")["left"]
         self.assertEqual(sorted((one["output"], one["kind"]) for one in listed),
-                         [("clip.stipple", "stream"), ("film.npy", None), ("frames", None)])
+                         [("clip.stipple", "stream"), ("video.npy", None), ("frames", None)])
         said = self.succeed("recover", ".")
         self.assertIn(f"{left}: 0.0 MB, a stream that becomes clip.stipple", said)
-        self.assertIn("of film.npy, cannot be recovered; delete it", said)
+        self.assertIn("of video.npy, cannot be recovered; delete it", said)
         done = self.run_program("emulate", "light.npy", "-o", "clip.stipple")
         self.assertEqual((done.returncode, done.stderr.count("\n")), (0, 1), done.stderr)
         self.assertIn(f"a run that was killed left {left}", done.stderr)
-        done = self.run_program("emulate", "light.npy", "-o", "b.stipple", "--truth", "film.npy")
-        self.assertIn("a run that was killed left .film.999999999.partial.npy;", done.stderr)
+        done = self.run_program("emulate", "light.npy", "-o", "b.stipple", "--truth", "video.npy")
+        self.assertIn("a run that was killed left .video.999999999.partial.npy;", done.stderr)
         (self.folder / "elsewhere").mkdir()
-        (self.folder / "elsewhere" / "link.npy").symlink_to("../film.npy")
+        (self.folder / "elsewhere" / "link.npy").symlink_to("../video.npy")
         done = self.run_program("emulate", "light.npy", "-o", "c.stipple", "--force", "--truth",
                                 "elsewhere/link.npy")
-        self.assertIn("a run that was killed left .film.999999999.partial.npy;", done.stderr)
+        self.assertIn("a run that was killed left .video.999999999.partial.npy;", done.stderr)
         synth = ("synth", "pan", "--size", "8x8", "--frames", 2, "-q", "-o")
         done = self.run_program(*synth, "frames/")
         self.assertIn("a run that was killed left .frames.999999998.partial;", done.stderr)
@@ -95,7 +95,7 @@ class RecoverTest(ProgramTest):
         before = (self.folder / "clip.stipple").read_bytes()
         self.fails(INPUT, ["clip.stipple: exists already", "-o"], "recover", left, "--force")
         self.assertEqual((self.folder / "clip.stipple").read_bytes(), before)
-        self.fails(INPUT, ["cannot be recovered"], "recover", ".film.999999999.partial.npy")
+        self.fails(INPUT, ["cannot be recovered"], "recover", ".video.999999999.partial.npy")
         self.fails(INPUT, ["folder of frames"], "recover", ".frames.999999998.partial")
 
     def test_what_is_being_written_is_left_alone(self):

@@ -59,9 +59,9 @@ class ShowTest(ProgramTest):
         self.assertIn("1 to 9 read at its end, after so many open slots", lines[5])
         self.assertIn("2 charge stores", "\n".join(lines))
         self.succeed("schedule", "show", "mine.toml", "-o", "mine.svg")
-        picture = (self.folder / "mine.svg").read_text()
+        image = (self.folder / "mine.svg").read_text()
         for words in ("Schedule it's", "(0, 1)  1", ">read<", "charge store"):
-            self.assertIn(words, picture)
+            self.assertIn(words, image)
 
     def test_the_ruler_stands_over_the_slots(self):
         for slots, every in ((24, 4), (64, 4), (1024, 8)):
@@ -74,16 +74,16 @@ class ShowTest(ProgramTest):
                 self.assertEqual(int(number.group()) % every, 0)
             self.assertEqual(len(ruler.split()), 1 + -(-slots // every))
 
-    def test_pictures(self):
+    def test_images(self):
         for name in ("random", "two_bucket", "global_flutter", "rolling"):
             text = self.succeed("schedule", "show", name, "-o", f"{name}.svg", "--size", "32x32")
             self.assertTrue(text.startswith(f"{name}.svg: {name}: tile of "), text)
-            picture = ElementTree.parse(self.folder / f"{name}.svg").getroot()
-            self.assertTrue(picture.tag.endswith("svg"))
+            image = ElementTree.parse(self.folder / f"{name}.svg").getroot()
+            self.assertTrue(image.tag.endswith("svg"))
         self.succeed("schedule", "show", "random", "-o", "random.png", "--pixels", "16")
         self.assertTrue((self.folder / "random.png").read_bytes().startswith(b"\x89PNG"))
 
-    def test_a_picture_of_another_kind_is_refused(self):
+    def test_a_image_of_another_kind_is_refused(self):
         self.fails(USAGE, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")
 
 
@@ -125,7 +125,7 @@ class ImportTest(ProgramTest):
             codes.add((self.folder / "masks.toml").read_text())
         self.assertEqual(len(codes), 1)
 
-    def test_masks_that_are_stored_as_pictures(self):
+    def test_masks_that_are_stored_as_images(self):
         masks = np.random.default_rng(4).random((4, 8, 8)) < 0.5
         for name, values in (("one", masks), ("white", 255 * masks)):
             self.write_array("masks.npy", values, np.uint8)

@@ -256,7 +256,7 @@ class ServeTest(ProgramTest):
         self.assertIn("--mode coded", done.stderr)
         self.assertNotIn("x.stipple", self.names())
 
-    def test_a_coded_stream_is_not_taken_for_pictures(self):
+    def test_a_coded_stream_is_not_taken_for_images(self):
         address = self.serve(self.scene(), "--mode", "coded")
         for verb in ("live", "record"):
             done = self.run_program("capture", verb, "gige:" + address, "-o", "x", "--frames", 5)

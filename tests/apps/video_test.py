@@ -12,7 +12,7 @@ HINT = "looks gamma-coded: add --transfer srgb"
 
 
 def but_the_rate(said):
-    """Without the warning that the film plays at another rate than that of the slots."""
+    """Without the warning that the video plays at another rate than that of the slots."""
     return "".join(line for line in said.splitlines(True) if " frames/s, but a slot " not in line)
 
 
@@ -116,15 +116,15 @@ class VideoTest(ProgramTest):
         self.assertGreater(len(np.unique(light[0, :, :, 1])), 400)
 
     def test_chroma_is_upsampled_as_by_ffmpeg(self):
-        self.write_moving("film.mp4", "-pix_fmt", "yuv420p", "-c:v", "libx264", seconds=0.2)
-        light, _ = self.emulate("film.mp4")
+        self.write_moving("video.mp4", "-pix_fmt", "yuv420p", "-c:v", "libx264", seconds=0.2)
+        light, _ = self.emulate("video.mp4")
         # Theirs rounds light and colour to 8 bits, of which one of colour is 1.8 of blue.
-        np.testing.assert_allclose(light * 255, self.shown("film.mp4", light.shape), atol=3.5)
+        np.testing.assert_allclose(light * 255, self.shown("video.mp4", light.shape), atol=3.5)
 
     def test_turned_video_is_set_upright(self):
-        self.write_moving("film.mp4", "-pix_fmt", "yuv444p", "-c:v", "libx264", seconds=0.2)
+        self.write_moving("video.mp4", "-pix_fmt", "yuv444p", "-c:v", "libx264", seconds=0.2)
         for degrees in (90, 180, 270):
-            self.ffmpeg("-i", "film.mp4", "-c", "copy", "-metadata:s:v:0", f"rotate={degrees}",
+            self.ffmpeg("-i", "video.mp4", "-c", "copy", "-metadata:s:v:0", f"rotate={degrees}",
                         "turned.mp4")
             light, _ = self.emulate("turned.mp4")
             self.assertEqual(light.shape[1:3], (48, 64) if degrees == 180 else (64, 48))
@@ -145,8 +145,8 @@ class VideoTest(ProgramTest):
         self.assertEqual(but_the_rate(message).count("\n"), 1, message)
 
     def test_a_truncated_file_is_refused(self):
-        for name, codec in (("film.mkv", "libx264"), ("film.avi", "mpeg4"),
-                            ("film.mov", "prores_ks")):
+        for name, codec in (("video.mkv", "libx264"), ("video.avi", "mpeg4"),
+                            ("video.mov", "prores_ks")):
             self.write_moving(name, "-c:v", codec)
             whole = (self.folder / name).read_bytes()
             for percent in (1, 30, 60, 85):
@@ -155,49 +155,49 @@ class VideoTest(ProgramTest):
                     self.refuse(name, "damaged")
 
     def test_a_truncated_file_with_sound_is_refused(self):
-        self.write_moving("film.mkv", "-f", "lavfi", "-i", "sine=duration=1", "-c:v", "ffv1", "-c:a",
+        self.write_moving("video.mkv", "-f", "lavfi", "-i", "sine=duration=1", "-c:v", "ffv1", "-c:a",
                           "flac")
-        self.assertEqual(self.emulate("film.mkv", "--transfer", "srgb")[1], "")
-        whole = (self.folder / "film.mkv").read_bytes()
+        self.assertEqual(self.emulate("video.mkv", "--transfer", "srgb")[1], "")
+        whole = (self.folder / "video.mkv").read_bytes()
         (self.folder / "cut.mkv").write_bytes(whole[:len(whole) // 2])
         (self.folder / "clip.stipple").unlink()
         self.refuse("cut.mkv", "damaged")
 
     def test_a_cut_end_is_told(self):
-        self.write_moving("film.mkv", "-c:v", "ffv1")
-        whole = (self.folder / "film.mkv").read_bytes()
-        (self.folder / "film.mkv").write_bytes(whole[:len(whole) * 94 // 100])
-        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.write_moving("video.mkv", "-c:v", "ffv1")
+        whole = (self.folder / "video.mkv").read_bytes()
+        (self.folder / "video.mkv").write_bytes(whole[:len(whole) * 94 // 100])
+        light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertLess(len(light), 30)
-        self.assertIn(f"film.mkv: ends after {len(light)} frames, at {len(light) / 30:.3f} of 1.000 s; "
+        self.assertIn(f"video.mkv: ends after {len(light)} frames, at {len(light) / 30:.3f} of 1.000 s; "
                       "frames may be missing", said)
 
     def test_frames_that_last_unequally_long_are_told(self):
-        self.write_moving("film.mkv", "-c:v", "ffv1", "-vf", "setpts=N*N/300/TB", "-fps_mode", "vfr")
-        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.write_moving("video.mkv", "-c:v", "ffv1", "-vf", "setpts=N*N/300/TB", "-fps_mode", "vfr")
+        light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertGreater(len(light), 20)  # ffmpeg leaves out some that would be shown at once
-        self.assertRegex(said, r"^stipple: film.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each "
+        self.assertRegex(said, r"^stipple: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each "
                          r"becomes one slot; some may be missing\n$")
         for rate in (24, 59.94, 240, 700):  # times in whole milliseconds
-            self.write_moving("film.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
-            self.assertEqual(self.emulate("film.mkv", "--transfer", "srgb")[1], "")
+            self.write_moving("video.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
+            self.assertEqual(self.emulate("video.mkv", "--transfer", "srgb")[1], "")
 
     def test_a_damaged_frame_is_refused_by_its_number(self):
-        self.write_moving("film.mkv", "-c:v", "libx264", "-g", "10")
-        film = bytearray((self.folder / "film.mkv").read_bytes())
-        for at in range(len(film) // 2, len(film) // 2 + 40):
-            film[at] ^= 0xFF
-        (self.folder / "film.mkv").write_bytes(film)
-        self.refuse("film.mkv", ": frame ", "damaged")
+        self.write_moving("video.mkv", "-c:v", "libx264", "-g", "10")
+        video = bytearray((self.folder / "video.mkv").read_bytes())
+        for at in range(len(video) // 2, len(video) // 2 + 40):
+            video[at] ^= 0xFF
+        (self.folder / "video.mkv").write_bytes(video)
+        self.refuse("video.mkv", ": frame ", "damaged")
 
     def test_errors_that_the_decoder_only_logs_are_counted(self):
-        self.write_moving("film.mkv", "-c:v", "ffv1", "-slicecrc", "1")
-        film = bytearray((self.folder / "film.mkv").read_bytes())
-        film[len(film) // 2] ^= 0xFF
-        (self.folder / "film.mkv").write_bytes(film)
-        light, said = self.emulate("film.mkv", "--transfer", "srgb")
+        self.write_moving("video.mkv", "-c:v", "ffv1", "-slicecrc", "1")
+        video = bytearray((self.folder / "video.mkv").read_bytes())
+        video[len(video) // 2] ^= 0xFF
+        (self.folder / "video.mkv").write_bytes(video)
+        light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertEqual(len(light), 30)
-        self.assertRegex(said, r"film.mkv: the decoder reports \d+ errors?, the first at frame \d+")
+        self.assertRegex(said, r"video.mkv: the decoder reports \d+ errors?, the first at frame \d+")
 
     def test_pixels_that_are_no_such_numbers_are_refused(self):
         self.write_flat_colour("flat.mkv", 48, "ycgco", "out_color_matrix=bt709", "yuv444p", "-c:v",
@@ -205,14 +205,14 @@ class VideoTest(ProgramTest):
         self.refuse("flat.mkv", 'the matrix "ycgco"', "BT.709")
 
     def test_coded_video_is_hinted_at_and_linear_video_is_not(self):
-        self.write_moving("film.mp4", "-c:v", "libx264", seconds=0.2)
+        self.write_moving("video.mp4", "-c:v", "libx264", seconds=0.2)
         for options, hinted in (([], True), (["--transfer", "linear"], False),
                                 (["--transfer", "srgb"], False)):
-            _, said = self.emulate("film.mp4", *options)
+            _, said = self.emulate("video.mp4", *options)
             self.assertEqual(HINT in said, hinted, options)
         grey = np.zeros((1, 8, 8), "<u2")
         self.assertEqual(self.emulate(self.write_raw("deep.mkv", grey, "gray16le"))[1], "")
-        declared = self.write_raw("film.mkv", grey.astype(np.uint8), "gray", "-color_trc", "linear")
+        declared = self.write_raw("video.mkv", grey.astype(np.uint8), "gray", "-color_trc", "linear")
         self.assertEqual(self.emulate(declared)[1], "")
         _, said = self.emulate(self.write_raw("hdr.mkv", grey, "gray16le", "-color_trc", "smpte2084"))
         self.assertIn("hdr.mkv: is HDR video in the curve smpte2084", said)

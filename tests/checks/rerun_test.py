@@ -112,7 +112,7 @@ class RunTestsTest(unittest.TestCase):
         self.assertEqual(self.run_tests()[0], ["test_one"])
         clip = Path(self.environment["STIPPLE_FOOTAGE"]) / "clip/1.png"
         clip.parent.mkdir(parents=True)
-        clip.write_text("picture")
+        clip.write_text("image")
         self.assertEqual(self.run_tests()[0], ["test_one"])
         self.lists = [line.replace("--flag", "--other") for line in self.lists]
         self.configure()

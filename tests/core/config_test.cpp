@@ -176,8 +176,8 @@ TEST_F(ConfigTest, RefusesAnOverrideWithoutKeyOrValue) {
 
 TEST_F(ConfigTest, NamesPlaceAndKeyOfAWrongType) {
     Config config = parse("\ngain = \"high\"\nbits = 8.0\nlist = [1, 2.5]\n[on]\nx = 1\n", {"t=5"});
-    const auto expect = [](const std::string& message, const char* place, const char* problem) {
-        expect_parts(message, {place, problem});
+    const auto expect = [](const std::string& message, const char* where, const char* problem) {
+        expect_parts(message, {where, problem});
     };
     expect(message_of<InputError>([&] { return number(config); }),
            "sensor.toml:2: gain: ", "needs a number, but is text");

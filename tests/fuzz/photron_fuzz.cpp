@@ -2,7 +2,7 @@
 #include <array>
 #include <fstream>
 
-#include "tests/fuzz/picture_fuzz.h"
+#include "tests/fuzz/image_fuzz.h"
 
 /// Input: a header of a Photron camera, .cihx or, if it begins with '#', .cih; after a zero byte
 /// its frames.

@@ -1,7 +1,7 @@
-#include "tests/fuzz/picture_fuzz.h"
+#include "tests/fuzz/image_fuzz.h"
 
 /// Input: a PNG file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    stipple::read_picture({data, size}, ".png");
+    stipple::read_image({data, size}, ".png");
     return 0;
 }

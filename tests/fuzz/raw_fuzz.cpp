@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "tests/fuzz/picture_fuzz.h"
+#include "tests/fuzz/image_fuzz.h"
 
 /// Input: what stands after --raw in a line of its own, then the file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

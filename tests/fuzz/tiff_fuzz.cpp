@@ -1,5 +1,5 @@
 #include "io/tiff_file.h"
-#include "tests/fuzz/picture_fuzz.h"
+#include "tests/fuzz/image_fuzz.h"
 
 namespace stipple {
 namespace {
@@ -28,6 +28,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace stipple;
     const std::span<const std::uint8_t> bytes(data, size);
     read_pages(MemoryFile(bytes).path());
-    read_picture(bytes, ".tif");
+    read_image(bytes, ".tif");
     return 0;
 }

@@ -37,7 +37,7 @@ TEST(DnImageTest, DoesNotScaleEightBits) {
 TEST(DnImageTest, RefusesWhatHoldsNoDigitalNumbersByName) {
     const TemporaryFolder folder;
     cv::imwrite((folder / "colour.png").string(), cv::Mat::zeros(2, 2, CV_8UC3));
-    write_text(folder / "broken.png", "no picture");
+    write_text(folder / "broken.png", "no image");
     const auto refuse = [&](const char* name, const std::vector<std::string>& parts) {
         expect_parts(message_of<InputError>([&] { return read_dn_image(folder / name); }), parts);
     };

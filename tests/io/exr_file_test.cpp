@@ -14,7 +14,7 @@ namespace {
 
 using Floats = std::vector<float>;
 
-/// A 2 x 3 picture, all channels 0, 1, 2, ... in scan order plus 10 times their place in the list.
+/// A 2 x 3 image, all channels 0, 1, 2, ... in scan order plus 10 times their place in the list.
 void write_channels(const std::filesystem::path& file, const std::vector<std::string>& names,
                     Imf::PixelType type, Imf::Header header = Imf::Header(3, 2)) {
     std::vector<half> halves(6 * names.size());
@@ -38,10 +38,10 @@ void write_channels(const std::filesystem::path& file, const std::vector<std::st
 
 class ExrFileTest : public testing::Test {
   protected:
-    Picture read() {
-        Picture picture;
-        read_exr(file_, picture);
-        return picture;
+    Image read() {
+        Image image;
+        read_exr(file_, image);
+        return image;
     }
     std::string problem() {
         return message_of<InputError>([&] { read(); });

@@ -57,7 +57,7 @@ TEST_F(FootageErrorsTest, NamesFilesOfUnknownKind) {
 
 TEST_F(FootageErrorsTest, NamesEmptyAndForeignFiles) {
     for (const char* name : {"a.png", "a.tiff", "a.exr", "a.npy", "a.mp4", "a.mkv", "a.avi"})
-        for (const char* content : {"", "hello, this is not a picture"}) {
+        for (const char* content : {"", "hello, this is not a image"}) {
             write_text(folder_ / name, content);
             expect_parts(error_of(folder_ / name), {name});
         }
@@ -86,7 +86,7 @@ TEST_F(FootageErrorsTest, NamesUnreadableFiles) {
     ASSERT_EQ(seteuid(user), 0);
 }
 
-TEST_F(FootageErrorsTest, NamesTheTruncatedPictureWhateverItsLength) {
+TEST_F(FootageErrorsTest, NamesTheTruncatedImageWhateverItsLength) {
     for (const char* extension : {".png", ".tiff"}) {
         const fs::path second = folder_ / (std::string("f1") + extension);
         cv::Mat image(9, 7, CV_16UC3);
@@ -114,13 +114,13 @@ TEST_F(FootageErrorsTest, SaysWhereAPngIsDamaged) {
     }
 }
 
-TEST_F(FootageErrorsTest, NamesATiffWithSeveralPagesAmongPictures) {
+TEST_F(FootageErrorsTest, NamesATiffWithSeveralPagesAmongImages) {
     const std::vector<cv::Mat> pages(2, cv::Mat(2, 2, CV_8UC1, cv::Scalar(5)));
     cv::imwritemulti((folder_ / "f1.tiff").string(), pages);
-    expect_parts(error_of(folder_.path()), {"f1.tiff: holds 2 pictures"});
+    expect_parts(error_of(folder_.path()), {"f1.tiff: holds 2 images"});
 }
 
-TEST_F(FootageErrorsTest, NamesThePictureThatDiffersInSizeOrPlanes) {
+TEST_F(FootageErrorsTest, NamesTheImageThatDiffersInSizeOrPlanes) {
     write_flat(folder_ / "f0.png", 4, 6, CV_8UC1, 1);
     write_flat(folder_ / "f1.png", 4, 5, CV_8UC1, 1);
     expect_parts(error_of(folder_.path()), {"f1.png: is 4 x 5 x 1", "4 x 6 x 1"});

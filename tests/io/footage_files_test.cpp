@@ -37,7 +37,7 @@ TEST(FootageFilesTest, OrdersDigitsAsNumbers) {
                 << ordered[i] << " and " << ordered[j];
 }
 
-TEST(FootageFilesTest, ListsPicturesInNumericOrderAndNothingElse) {
+TEST(FootageFilesTest, ListsImagesInNumericOrderAndNothingElse) {
     const TemporaryFolder folder;
     for (const char* name : {"f10.png", "f9.PNG", "f100.png", "meta.json", "._f1.png", "notes"})
         write_text(folder / name, "");
@@ -56,14 +56,14 @@ TEST(FootageFilesTest, RefusesMixedFormats) {
     EXPECT_EQ(images_in_folder(tiffs.path()).files.size(), 2U);
 }
 
-TEST(FootageFilesTest, RefusesAFolderWithoutPictures) {
+TEST(FootageFilesTest, RefusesAFolderWithoutImages) {
     const TemporaryFolder folder;
     write_text(folder / "f1.jpg", "");
     expect_parts(message_of<InputError>([&] { return images_in_folder(folder.path()); }),
                  {"holds no PNG, TIFF, EXR or DNG"});
 }
 
-TEST(FootageFilesTest, FindsThePicturesOfAPattern) {
+TEST(FootageFilesTest, FindsTheImagesOfAPattern) {
     const TemporaryFolder folder;
     for (const char* name : {"f_0098.png", "f_0099.png", "f_0100.png", "f_101.png", "f_00101.png",
                              "f_0101.png.bak", "g_0101.png", "f_-099.png", "f_.png"})
@@ -73,20 +73,20 @@ TEST(FootageFilesTest, FindsThePicturesOfAPattern) {
     EXPECT_EQ(names_of(images_of_pattern(folder / "f_%d.png")), Names{"f_101.png"});
 }
 
-TEST(FootageFilesTest, NamesTheMissingPictureOfAPattern) {
+TEST(FootageFilesTest, NamesTheMissingImageOfAPattern) {
     const TemporaryFolder folder;
     for (const char* name : {"f1.png", "f2.png", "f4.png", "f6.png"}) write_text(folder / name, "");
     expect_parts(message_of<InputError>([&] { return images_of_pattern(folder / "f%d.png"); }),
                  {"/f3.png: is missing from the sequence"});
 }
 
-/// The warning about a folder of these pictures, without the folder's name.
+/// The warning about a folder of these images, without the folder's name.
 std::string warning_of(const Names& names) {
     const TemporaryFolder folder;
     for (const std::string& name : names) write_text(folder / name, "");
     const std::string warning = images_in_folder(folder.path()).warning;
-    const std::string place = folder.path().string() + "/";
-    return warning.starts_with(place) ? warning.substr(place.size()) : warning;
+    const std::string where = folder.path().string() + "/";
+    return warning.starts_with(where) ? warning.substr(where.size()) : warning;
 }
 
 TEST(FootageFilesTest, NamesTheNumbersThatAFolderSkips) {
@@ -115,7 +115,7 @@ TEST(FootageFilesTest, SaysWhichNumbersAPatternLeavesOut) {
     const TemporaryFolder folder;
     for (int i = 7; i <= 12; ++i) write_text(folder / fmt::format("f{}.png", i), "");
     expect_parts(images_of_pattern(folder / "f%02d.png").warning,
-                 {"f%02d.png: takes f10.png to f12.png; left out are 3 pictures of other digits: "
+                 {"f%02d.png: takes f10.png to f12.png; left out are 3 images of other digits: "
                   "f7.png"});
     EXPECT_EQ(images_of_pattern(folder / "f%d.png").warning, "");
 }

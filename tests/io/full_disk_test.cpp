@@ -36,7 +36,7 @@ class FileSizeLimit {
     void (*old_handler_)(int);
 };
 
-/// A picture that no codec makes small.
+/// A image that no codec makes small.
 Floats noise(FrameShape shape, std::uint32_t state) {
     Floats frame(shape.sites());
     for (float& value : frame) {
@@ -70,7 +70,7 @@ TEST(FullDiskTest, AFailureOfTheLastBytesIsReportedOnClose) {
                  {"clip.npy: cannot be written: No space left on device"});
 }
 
-TEST(FullDiskTest, APictureReportsIt) {
+TEST(FullDiskTest, AImageReportsIt) {
     expect_parts(message_of<DeviceError>([] {
                      write_png("/dev/full", {1, 1, 1}, Floats{1});
                  }),

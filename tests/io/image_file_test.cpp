@@ -44,7 +44,7 @@ TEST(ImageFileTest, WritesToneMappedMonoAndColour) {
     EXPECT_EQ(rgb.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 191, 224));
 }
 
-TEST(ImageFileTest, ReportsAPictureThatCannotBeWritten) {
+TEST(ImageFileTest, ReportsAImageThatCannotBeWritten) {
     const TemporaryFolder folder;
     expect_parts(message_of<DeviceError>([&] {
                      write_png(folder / "no/f.png", {1, 1, 1}, std::vector<float>{1});
@@ -55,19 +55,19 @@ TEST(ImageFileTest, ReportsAPictureThatCannotBeWritten) {
 TEST(ImageFileTest, ReadsFloatTiff) {
     const TemporaryFolder folder;
     write_flat(folder / "f.tiff", 2, 1, CV_32FC1, 7.25);
-    Picture picture;
-    read_image(folder / "f.tiff", picture);
-    EXPECT_EQ(picture.values, (std::vector<float>{7.25F, 7.25F}));
+    Image image;
+    read_image(folder / "f.tiff", image);
+    EXPECT_EQ(image.values, (std::vector<float>{7.25F, 7.25F}));
 }
 
 TEST(ImageFileTest, RefusesAnotherPixelTypeOrFormat) {
     const TemporaryFolder folder;
-    Picture picture;
+    Image image;
     write_flat(folder / "f.tiff", 2, 1, CV_64FC1, 7.25);
-    expect_parts(message_of<InputError>([&] { read_image(folder / "f.tiff", picture); }),
+    expect_parts(message_of<InputError>([&] { read_image(folder / "f.tiff", image); }),
                  {"f.tiff: holds samples of 64 bits (float); give 8- or 16-bit"});
-    expect_parts(message_of<InputError>([&] { read_image(folder / "f.jpg", picture); }),
-                 {"f.jpg: is not a picture that can be read"});
+    expect_parts(message_of<InputError>([&] { read_image(folder / "f.jpg", image); }),
+                 {"f.jpg: is not a image that can be read"});
 }
 
 }  // namespace

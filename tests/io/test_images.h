@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// A PNG or TIFF picture of one colour. `colour`: grey, or blue, green, red (, alpha).
+/// A PNG or TIFF image of one colour. `colour`: grey, or blue, green, red (, alpha).
 inline void write_flat(const std::filesystem::path& file, int rows, int cols, int cv_type,
                        cv::Scalar colour) {
     cv::imwrite(file.string(), cv::Mat(rows, cols, cv_type, colour));

@@ -180,7 +180,7 @@ TEST_F(TiffFileTest, ReadsPagesAsFrames) {
         EXPECT_EQ(pixels.shape, (FrameShape{3, 5, 1}));
     }
     expect_parts(message_of<InputError>([&] { return read_dn_image(file_); }),
-                 {"f.tif: holds 3 pictures"});
+                 {"f.tif: holds 3 images"});
 }
 
 TEST_F(TiffFileTest, NamesThePageThatDiffers) {
@@ -209,7 +209,7 @@ TEST_F(TiffFileTest, RefusesOtherKindsByOneError) {
 TEST_F(TiffFileTest, RefusesAStackOfImageJThatHasItsFirstPageOnly) {
     const Layout of_two{.description = "ImageJ=1.54f\nimages=2\nslices=2\n"};
     write({of_two});
-    expect_parts(problem(), {"f.tif: announces 2 pictures, but its directories hold 1"});
+    expect_parts(problem(), {"f.tif: announces 2 images, but its directories hold 1"});
     write({of_two, of_two});
     EXPECT_EQ(FootageReader(file_).slots(), 2);
 }

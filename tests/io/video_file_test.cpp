@@ -76,7 +76,7 @@ TEST_P(VideoFileTest, WritesTheFrameRate) {
         writer.finish();
         cv::VideoCapture capture(file_.string(), cv::CAP_FFMPEG);
         EXPECT_NEAR(capture.get(cv::CAP_PROP_FPS), rate, 1e-5 * rate);
-        EXPECT_NEAR(FootageReader(file_).film_hz().value(), rate, 1e-5 * rate);
+        EXPECT_NEAR(FootageReader(file_).video_hz().value(), rate, 1e-5 * rate);
         EXPECT_EQ(read_all(file_).size(), std::size_t{5 * 3 * 32 * 32});
     }
 }

@@ -36,7 +36,7 @@ TEST(SciTest, TheMasksAreHalfOnesAndDifferFromFrameToFrame) {
 }
 
 // At rest the mean of a measurement is the light, up to the rounding to 16 bits (8 / 65535 / 2).
-TEST(SciTest, AStillPictureIsExactButForRounding) {
+TEST(SciTest, AStillImageIsExactButForRounding) {
     FluxVideo video(8, kShape);
     for (int slot = 0; slot < 8; ++slot)
         for (int row = 0; row < kShape.rows; ++row)

@@ -46,9 +46,9 @@ class EmulateTest(ProgramTest):
 
     def test_a_folder_and_how_its_numbers_are_read_are_those_of_the_program(self):
         for frame in range(20):
-            self.write_png(f"film/{frame}.png", np.full((8, 8, 3), (10 * frame, 20, 30)))
-        wanted = self.program_makes("film", "--transfer", "srgb", "--luminance", "--max-value", "0.5")
-        stream = stipple.emulate(self.folder / "film", transfer="srgb", luminance=True, max_value=0.5)
+            self.write_png(f"video/{frame}.png", np.full((8, 8, 3), (10 * frame, 20, 30)))
+        wanted = self.program_makes("video", "--transfer", "srgb", "--luminance", "--max-value", "0.5")
+        stream = stipple.emulate(self.folder / "video", transfer="srgb", luminance=True, max_value=0.5)
         stream.save(self.folder / "python.stipple")
         self.assertEqual((self.folder / "python.stipple").read_bytes(), wanted)
 

@@ -53,7 +53,7 @@ TEST(NoiseTextureTest, IsPeriodicAndContinuousAcrossTheSeam) {
     }
 }
 
-TEST(NoiseTextureTest, LargerPicturesAddDetailToTheSamePattern) {
+TEST(NoiseTextureTest, LargerImagesAddDetailToTheSamePattern) {
     const NoiseTexture small(kTexels, 0.55F, SceneRandom(1), 0);
     const NoiseTexture large(2 * kTexels, 0.55F, SceneRandom(1), 0);
     double difference2 = 0;

@@ -12,7 +12,7 @@
 
 namespace stipple {
 
-/// vivid's smallest webcam picture, a pattern that does not move; `more` comes after, and wins.
+/// vivid's smallest webcam image, a pattern that does not move; `more` comes after, and wins.
 inline CameraSettings still(const CameraSettings& more = {}) {
     CameraSettings settings{
         {"Input", "0"},    {"PixelFormat", "Mono8"}, {"Width", "320"},

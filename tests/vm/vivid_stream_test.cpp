@@ -103,7 +103,7 @@ void set_timings(int number, int fps) {
 TEST(VividStreamTest, ARegionHoldsThePixelsOfItsPlace) {
     shell("v4l2-ctl -d0 --set-input 1");
     set_timings(0, 60);
-    const auto picture = [](const CameraSettings& region) {
+    const auto image = [](const CameraSettings& region) {
         CameraSettings settings{{"PixelFormat", "Mono8"}, {"osd_text_mode", "2"},
                                 {"test_pattern", "20"},   {"OffsetX", "0"},
                                 {"OffsetY", "0"},         {"Width", "640"},
@@ -113,9 +113,9 @@ TEST(VividStreamTest, ARegionHoldsThePixelsOfItsPlace) {
         camera->start();
         return frame_from(*camera);
     };
-    const CapturedFrame whole = picture({});
+    const CapturedFrame whole = image({});
     const CapturedFrame part =
-        picture({{"OffsetX", "64"}, {"OffsetY", "32"}, {"Width", "320"}, {"Height", "240"}});
+        image({{"OffsetX", "64"}, {"OffsetY", "32"}, {"Width", "320"}, {"Height", "240"}});
     EXPECT_EQ(part.record.layout.offset_x, 64);
     EXPECT_EQ(part.record.layout.offset_y, 32);
     for (std::size_t row = 0; row < 240; ++row) {
@@ -124,7 +124,7 @@ TEST(VividStreamTest, ARegionHoldsThePixelsOfItsPlace) {
         const auto* const got = part.payload.data() + row * part.record.layout.stride_bytes;
         ASSERT_TRUE(std::equal(got, got + 320, expected)) << row;
     }
-    static_cast<void>(picture({}));  // leaves the whole sensor behind
+    static_cast<void>(image({}));  // leaves the whole sensor behind
 }
 
 /// Noise, each frame different from the others, with its number in its first four bytes.

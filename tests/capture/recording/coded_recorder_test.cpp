@@ -90,7 +90,7 @@ TEST_F(CodedRecorderTest, WithoutASlotThereIsNoFile) {
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST_F(CodedRecorderTest, ACameraOfPicturesIsRefused) {
+TEST_F(CodedRecorderTest, ACameraOfImagesIsRefused) {
     EXPECT_THROW(CodedRecorder(std::make_unique<ScriptedCamera>(std::deque<ScriptedStep>{}), file_,
                                false, {}),
                  InputError);

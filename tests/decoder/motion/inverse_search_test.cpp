@@ -16,9 +16,9 @@ namespace {
 
 /// Grey levels of an image that goes on beyond its border.
 template <typename Level>
-class Picture {
+class Image {
   public:
-    Picture(int rows, int cols, const Level& level) : rows_(rows), cols_(cols) {
+    Image(int rows, int cols, const Level& level) : rows_(rows), cols_(cols) {
         for (int row = -kFlowBorder; row < rows + kFlowBorder; ++row)
             for (int col = -kFlowBorder; col < cols + kFlowBorder; ++col)
                 pixels_.push_back(static_cast<std::uint8_t>(std::lround(level(row, col))));
@@ -58,9 +58,9 @@ double largest_error(const DenseFlow& flow, int begin_col, int end_col, double d
 }
 
 TEST(InverseSearchTest, FindsWhereATextureWent) {
-    const Picture from(50, 61, moved_texture(0, 0));
+    const Image from(50, 61, moved_texture(0, 0));
     for (const int stride : {3, 4, 6, 8}) {
-        const Picture to(50, 61, moved_texture(1.25, -1.5));
+        const Image to(50, 61, moved_texture(1.25, -1.5));
         const DenseFlow flow =
             inverse_search(from.image(), to.image(), nullptr, {.patch_stride_px = stride});
         ASSERT_EQ(flow.rows, 50);
@@ -71,23 +71,23 @@ TEST(InverseSearchTest, FindsWhereATextureWent) {
 }
 
 TEST(InverseSearchTest, IsAtRestWithoutTexture) {
-    const Picture grey(20, 30, [](int, int) { return 77; });
+    const Image grey(20, 30, [](int, int) { return 77; });
     const DenseFlow flow = inverse_search(grey.image(), grey.image(), nullptr, {});
     EXPECT_TRUE(std::ranges::all_of(flow.row_shift, [](int shift) { return shift == 0; }));
     EXPECT_TRUE(std::ranges::all_of(flow.col_shift, [](int shift) { return shift == 0; }));
 }
 
 TEST(InverseSearchTest, DoesNotMindAnotherMeanLight) {
-    const Picture from(40, 40, moved_texture(0, 0));
-    const Picture brighter(40, 40, [](int row, int col) { return 20 + texture(row, col - 1); });
+    const Image from(40, 40, moved_texture(0, 0));
+    const Image brighter(40, 40, [](int row, int col) { return 20 + texture(row, col - 1); });
     const DenseFlow flow = inverse_search(from.image(), brighter.image(), nullptr, {});
     EXPECT_LT(largest_error(flow, 4, 36, 0, 1), 0.05);
 }
 
 // A patch that lies across the border may follow either side: 8 pixels, 4 of them on each side.
 TEST(InverseSearchTest, KeepsTheBorderOfTwoMotions) {
-    const Picture from(48, 80, moved_texture(0, 0));
-    const Picture to(48, 80, [](int row, int col) {
+    const Image from(48, 80, moved_texture(0, 0));
+    const Image to(48, 80, [](int row, int col) {
         return col < 40 ? texture(row, col) : texture(row - 1.5, col);
     });
     const DenseFlow flow = inverse_search(from.image(), to.image(), nullptr, {});
@@ -96,8 +96,8 @@ TEST(InverseSearchTest, KeepsTheBorderOfTwoMotions) {
 }
 
 TEST(InverseSearchTest, GoesFartherThanAPatchFromTheCoarserFlow) {
-    const Picture from(40, 64, moved_texture(0, 0));
-    const Picture to(40, 64, moved_texture(0, 14.5));
+    const Image from(40, 64, moved_texture(0, 0));
+    const Image to(40, 64, moved_texture(0, 14.5));
     const DenseFlow coarser{20, 32, std::vector<std::int16_t>(20 * 32, 0),
                             std::vector<std::int16_t>(20 * 32, 7 * kFlowShiftsPerPixel)};
     const DenseFlow flow = inverse_search(from.image(), to.image(), &coarser, {});
@@ -109,7 +109,7 @@ TEST(InverseSearchTest, GoesFartherThanAPatchFromTheCoarserFlow) {
 // The long waves on the left lead the way; from rest, the short ones end a wave too early.
 TEST(InverseSearchTest, FollowsItsNeighbours) {
     const auto waves = [](double right) {
-        return Picture(48, 80, [=](double row, double col) {
+        return Image(48, 80, [=](double row, double col) {
             const double x = col - right;
             return x < 36 ? 128 + 60 * std::sin(0.25 * x + 0.1 * row) + 60 * std::sin(0.3 * row)
                           : 128 + 60 * std::sin(1.2 * x + 0.3 * row) +
@@ -126,14 +126,14 @@ TEST(InverseSearchTest, AveragesWhatIsAlike) {
     constexpr int kStride = kSide + 2 * kFlowBorder;
     const auto noisy = [](double down, unsigned seed) {
         const auto noise = random_values(kStride * kStride, -20, 20, seed);
-        return Picture(kSide, kSide, [=](int row, int col) {
+        return Image(kSide, kSide, [=](int row, int col) {
             const int i = (row + kFlowBorder) * kStride + col + kFlowBorder;
             return texture(row - down, col) +
                    static_cast<double>(noise[static_cast<std::size_t>(i)]);
         });
     };
-    const Picture from = noisy(0, 1);
-    const Picture to = noisy(0.5, 2);
+    const Image from = noisy(0, 1);
+    const Image to = noisy(0.5, 2);
     const auto error = [&](float range_sigma_px) {
         return largest_error(
             inverse_search(from.image(), to.image(), nullptr, {.range_sigma_px = range_sigma_px}),
@@ -144,8 +144,8 @@ TEST(InverseSearchTest, AveragesWhatIsAlike) {
 
 TEST(InverseSearchTest, EverySimdTargetGivesTheSameBits) {
     for (const auto& [rows, cols] : {std::pair(8, 8), std::pair(9, 45), std::pair(33, 70)}) {
-        const Picture from(rows, cols, moved_texture(0, 0));
-        const Picture to(rows, cols, moved_texture(-0.7, 3.2));
+        const Image from(rows, cols, moved_texture(0, 0));
+        const Image to(rows, cols, moved_texture(-0.7, 3.2));
         std::vector<DenseFlow> flows;
         for_each_simd_target([&](const std::string& target) {
             flows.push_back(inverse_search(from.image(), to.image(), nullptr, {}));

@@ -26,13 +26,13 @@ MatchList random_matches(const PatchSize& size, std::uint32_t seed) {
     };
     MatchList list{.size = size, .groups = {}, .matches = {}};
     for (int group = 0; group < 40; ++group) {
-        const auto place = [&] {
+        const auto where = [&] {
             return PatchPosition{below(kSlots - size.slots + 1), below(kShape.rows - size.rows + 1),
                                  below(kShape.cols - size.cols + 1)};
         };
-        const PatchPosition reference = place();
+        const PatchPosition reference = where();
         for (int match = 0; match < 5; ++match) {
-            const PatchPosition at = match == 0 ? reference : place();
+            const PatchPosition at = match == 0 ? reference : where();
             list.matches.push_back(
                 {static_cast<std::int16_t>(at.slot), static_cast<std::int16_t>(at.row),
                  static_cast<std::int16_t>(at.col), 0.1F * static_cast<float>(1 + below(10))});

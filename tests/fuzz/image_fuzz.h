@@ -10,14 +10,14 @@
 
 namespace stipple {
 
-/// Reads a picture as light and, if it can be one, as digital numbers. What passes has all its
+/// Reads a image as light and, if it can be one, as digital numbers. What passes has all its
 /// numbers.
-inline void read_picture(std::span<const std::uint8_t> bytes, const char* extension) {
+inline void read_image(std::span<const std::uint8_t> bytes, const char* extension) {
     const NamedMemoryFile file(bytes, extension);
     try {
-        Picture picture;
-        read_image(file.path(), picture);
-        if (picture.values.size() != picture.shape.sites() || picture.values.empty()) std::abort();
+        Image image;
+        read_image(file.path(), image);
+        if (image.values.size() != image.shape.sites() || image.values.empty()) std::abort();
     } catch (const InputError&) {
     }
     try {

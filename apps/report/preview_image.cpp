@@ -1,4 +1,4 @@
-#include "apps/report/preview_picture.h"
+#include "apps/report/preview_image.h"
 
 #include <fmt/format.h>
 
@@ -26,18 +26,18 @@ std::vector<float> marked(const PreviewFrame& frame) {
     return light;
 }
 
-void write_picture(const std::filesystem::path& file, const PreviewFrame& frame) {
+void write_image(const std::filesystem::path& file, const PreviewFrame& frame) {
     const auto text = fmt::format("slot {}: mean light {:.3f}, {:.2f} % too bright", frame.slot,
                                   frame.mean_light(), 100 * frame.too_bright_fraction());
-    SideBySide picture({frame.shape.rows, frame.shape.cols, 3}, {text});
-    picture.put(0, marked(frame));
-    picture.write(file, true);
+    SideBySide image({frame.shape.rows, frame.shape.cols, 3}, {text});
+    image.put(0, marked(frame));
+    image.write(file, true);
 }
 
 }  // namespace
 
 void write_preview(const std::filesystem::path& file, const PreviewFrame& frame) {
-    if (file.extension() == ".png") return write_picture(file, frame);
+    if (file.extension() == ".png") return write_image(file, frame);
     FrameWriter writer(file, frame.shape, {.force = true});
     writer.write(frame.light);
     writer.finish();

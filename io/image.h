@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-/// What a picture or a video says of its numbers, and of the camera that took it.
+/// What a image or a video says of its numbers, and of the camera that took it.
 struct SourceTraits {
     bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
     bool floating = false;
@@ -21,9 +21,9 @@ struct SourceTraits {
     std::optional<double> exposure_us = {};     ///< of a frame
 };
 
-/// One decoded picture, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),
+/// One decoded image, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),
 /// floating-point values are as the file holds them, unchecked.
-struct Picture {
+struct Image {
     FrameShape shape;
     SourceTraits traits;
     std::vector<float> values;

@@ -1,4 +1,4 @@
-"""The films that the program writes, as ffmpeg and ffprobe read them."""
+"""The videos that the program writes, as ffmpeg and ffprobe read them."""
 
 import json
 import os
@@ -20,8 +20,8 @@ def tone_mapped(light):
 
 
 @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
-class FilmTest(ProgramTest):
-    def write_film(self, name, light):
+class OutputVideoTest(ProgramTest):
+    def write_video(self, name, light):
         self.succeed("emulate", self.write_array("light.npy", light), "-o", "clip.stipple", "--force", "-q",
                      "--truth", name)
         return name
@@ -48,16 +48,16 @@ class FilmTest(ProgramTest):
         for rows, cols in ((48, 64), (720, 16)):
             light = np.repeat(np.repeat(COLOURS, rows // 2, axis=0), cols // 2, axis=1)
             for name in ("a.mp4", "a.mkv"):
-                picture = self.shown(self.write_film(name, [light] * 3), rows, cols)
-                inner = picture[rows // 4::rows // 2, cols // 4::cols // 2]
+                image = self.shown(self.write_video(name, [light] * 3), rows, cols)
+                inner = image[rows // 4::rows // 2, cols // 4::cols // 2]
                 # Lossy: two steps of luma, which are 1.2, and two of chroma, up to 2.1. BT.601 is off by 15.
                 np.testing.assert_allclose(inner, tone_mapped(COLOURS), atol=6)
 
     def test_grey_has_no_colour(self):
         light = np.repeat([[0, 0.18, 1, 4]], 16, axis=0).repeat(16, axis=1)
-        picture = self.shown(self.write_film("a.mkv", [light] * 3), 16, 64)
-        self.assertLessEqual(np.ptp(picture.astype(int), axis=2).max(), 1)
-        np.testing.assert_allclose(picture[8, 8::16, 0], tone_mapped(light[8, 8::16]), atol=2)
+        image = self.shown(self.write_video("a.mkv", [light] * 3), 16, 64)
+        self.assertLessEqual(np.ptp(image.astype(int), axis=2).max(), 1)
+        np.testing.assert_allclose(image[8, 8::16, 0], tone_mapped(light[8, 8::16]), atol=2)
 
     def test_bytes_are_the_same_on_one_processor_and_on_all(self):
         for name in ("a.mp4", "a.mkv"):
@@ -91,7 +91,7 @@ class FilmTest(ProgramTest):
                    env=environment)
         self.succeed("synth", "pan", "-o", "a.npy", "--size", "8x8", "--frames", 1)
 
-    def test_a_start_loads_neither_ffmpeg_nor_what_reads_pictures_in_opencv(self):
+    def test_a_start_loads_neither_ffmpeg_nor_what_reads_images_in_opencv(self):
         needed = self.run_tool("readelf", "--wide", "--dynamic", PROGRAM).decode()
         for library in ("libav", "libsw", "libopencv_imgcodecs", "libopencv_videoio", "libopencv_optflow"):
             self.assertNotIn(f"[{library}", needed)
