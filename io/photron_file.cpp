@@ -8,9 +8,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "core/light.h"
@@ -52,6 +56,7 @@ class Header {
     explicit Header(const fs::path& file);
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] bool has(const Key& key) const { return values_.contains(key.name); }
     /// \throws InputError if it is missing.
     [[nodiscard]] std::string_view text(const Key& key) const;
     /// The same of a whole number above 0.
@@ -168,7 +173,7 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
         throw InputError(header.name(), fmt::format("tells of files of the format \"{}\"; MRAW is "
                                                     "read",
                                                     header.text(kFormat)));
-    if (!same_letters(header.text(kColour), "mono"))
+    if (header.has(kColour) && !same_letters(header.text(kColour), "mono"))
         throw InputError(header.name(), fmt::format("tells of colour (\"{}\"); grey is read",
                                                     header.text(kColour)));
     if (stored != 8 && stored != 12 && stored != 16)

@@ -53,6 +53,11 @@ class PhotronTest(CameraFilesTest):
                         self.assert_light(MOSAIC % (most + 1) / most, name, "--set", "sensor.slot_us=200")
                         self.assertEqual(self.said, "")
 
+    def test_a_header_without_a_kind_of_colour_is_of_grey(self):
+        self.photron()
+        self.write("clip.cihx", photron_header().replace(b"<type>Mono</type>", b""))
+        self.assert_light(MOSAIC / 4095, "clip.mraw")
+
     def test_rate_and_exposure(self):
         for shutter in ("0.00005", "1/20000"):
             self.light(self.photron(shutter=shutter))
