@@ -76,8 +76,8 @@ void doctor(const std::string& address, const RunOptions& run) {
 }  // namespace
 
 void add_capture_doctor(Command& capture, Action& action) {
-    Command command = capture.add_command(
-        "doctor", "What of this machine, or of a camera, would cost frames, with its fix");
+    Command command =
+        capture.add_command("doctor", "Diagnose the network and camera settings that cost frames");
     const auto address = std::make_shared<std::string>();
     command.add_option("ADDRESS", *address, "a camera to look at: gige:IP or usb:SERIAL");
     command.footer(

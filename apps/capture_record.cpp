@@ -129,10 +129,10 @@ void record_coded_stream(const RecordArguments& arguments, const RunOptions& run
             return stop_signal() == 0;
         });
     }();
-    if (recording.failure) {
-        if (recording.kept) say_kept(arguments.output.c_str());
-        std::rethrow_exception(recording.failure);
-    }
+    if ((recording.failure || recording.lost) && recording.kept) say_kept(arguments.output.c_str());
+    if (recording.failure) std::rethrow_exception(recording.failure);
+    if (recording.lost && recording.lost->bad_file) throw InputError(*recording.lost->bad_file);
+    if (recording.lost) throw DeviceError(address, "camera lost: " + recording.lost->reason);
     if (!recording.kept) {
         throw_if_stopped();
         throw DeviceError(address, "no slot of the coded stream arrived");
@@ -152,7 +152,7 @@ void record(const RecordArguments& arguments, const RunOptions& run) {
 }  // namespace
 
 void add_capture_record(Command& capture, Action& action) {
-    Command command = capture.add_command("record", "Record a camera, every frame accounted for");
+    Command command = capture.add_command("record", "A camera to a recording");
     const auto options = std::make_shared<RecordArguments>();
     add_camera_arguments(command, options->camera);
     add_settings(command, {{"camera", &options->camera.settings}},

@@ -9,14 +9,14 @@
 
 namespace stipple {
 
-/// What the command line asks for.
+/// The run that the command line asks for.
 struct Action {
-    std::function<void(const RunOptions&)> run;  ///< what the subcommand that it names does
+    std::function<void(const RunOptions&)> run;  ///< of the subcommand
     RunOptions options;
 };
 
-/// If the command line names `command` and `check` does not refuse it (UsageError), `run` is what
-/// is done, with `options`.
+/// Sets `action` to `run` with `options` if the command line names `command`. `check` may throw
+/// UsageError.
 template <typename Options>
 void set_action(
     Command& command, Action& action, const std::shared_ptr<Options>& options,

@@ -63,7 +63,7 @@ void add_timing(Command& app, Action& action) {
         .listed("sensors")
         .required()
         .input();
-    command.add_option("--schedule", options->sensor.schedule, "who is read when (random)")
+    command.add_option("--schedule", options->sensor.schedule, "exposure schedule (random)")
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();

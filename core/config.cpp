@@ -248,7 +248,7 @@ std::size_t Config::choice(const ConfigKey& key, std::size_t fallback) {
     return static_cast<std::size_t>(found - key.choices.begin());
 }
 
-std::vector<int> Config::integers(const ConfigKey& key, std::vector<int> fallback) {
+std::vector<int> Config::integers(const ConfigKey& key, const std::vector<int>& fallback) {
     const auto min = static_cast<std::int64_t>(key.range.min);
     const auto max = static_cast<std::int64_t>(key.range.max);
     std::vector<int> values;
@@ -262,7 +262,7 @@ std::vector<int> Config::integers(const ConfigKey& key, std::vector<int> fallbac
     return given ? values : fallback;
 }
 
-std::vector<double> Config::numbers(const ConfigKey& key, std::vector<double> fallback) {
+std::vector<double> Config::numbers(const ConfigKey& key, const std::vector<double>& fallback) {
     const double min = key.range.min, max = key.range.max;
     std::vector<double> values;
     const bool given =

@@ -62,9 +62,10 @@ class Config {
     /// The index in `key.choices`. \throws InputError listing them.
     [[nodiscard]] std::size_t choice(const ConfigKey& key, std::size_t fallback);
     /// One integer or a list of integers.
-    [[nodiscard]] std::vector<int> integers(const ConfigKey& key, std::vector<int> fallback);
+    [[nodiscard]] std::vector<int> integers(const ConfigKey& key, const std::vector<int>& fallback);
     /// One number or a list of numbers.
-    [[nodiscard]] std::vector<double> numbers(const ConfigKey& key, std::vector<double> fallback);
+    [[nodiscard]] std::vector<double> numbers(const ConfigKey& key,
+                                              const std::vector<double>& fallback);
     /// A list of texts; empty if absent.
     [[nodiscard]] std::vector<std::string> texts(const ConfigKey& key);
     /// Whether the key is given; asking does not make it known.

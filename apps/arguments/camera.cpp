@@ -18,9 +18,7 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
     command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
         .type_name("FILE")
         .input();
-    command
-        .add_option("--buffers", arguments.buffers.frames,
-                    "frames that the host can hold while we are busy (32)")
+    command.add_option("--buffers", arguments.buffers.frames, "buffers for frames on the host (32)")
         .check(whole_check(2, 1024))
         .type_name("N");
 }

@@ -20,8 +20,8 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments);
 
 [[nodiscard]] PreviewOptions preview_options(const PreviewArguments& arguments);
 
-/// \throws InputError if `file` cannot become the preview of a recording named `output`: another
-/// file of that name, no folder, or the recording itself.
+/// \throws InputError if the preview cannot be written: its folder is missing, or a file of its
+/// name exists and not `force`.
 void check_preview_file(const PreviewArguments& arguments, bool force);
 
 }  // namespace stipple

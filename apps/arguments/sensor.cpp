@@ -13,7 +13,7 @@ void add_sensor_arguments(Command& command, SensorChoice& sensor) {
         .input();
     command
         .add_option("--schedule", sensor.schedule,
-                    "who exposes when, of \"stipple list schedules\" (random)")
+                    "exposure schedule, of \"stipple list schedules\" (random)")
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();

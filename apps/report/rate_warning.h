@@ -7,8 +7,8 @@
 
 namespace stipple {
 
-// What is wrong where frames of another rate each become a slot of a sensor. Empty if the rates
-// agree within 2 %, or if too few frames have come to say.
+// Warnings that the frame rate of footage differs from the slot rate of the sensor. Empty if the
+// rates agree within 2 %, or if too few frames have come to tell.
 
 /// Of a camera at work.
 [[nodiscard]] std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sensor);

@@ -10,8 +10,8 @@
 
 namespace stipple {
 
-// Standard error may be a full disk, a pipe that nobody reads, or closed: what cannot be shown
-// there is lost, and the run goes on.
+// Standard error may be a full disk, a pipe that nobody reads, or closed: text that
+// cannot be written is dropped, and the run goes on.
 
 constexpr std::string_view kNoMemory =
     "not enough memory; end other programs, or give smaller or fewer frames";

@@ -75,7 +75,7 @@ struct CodedRecorder::Impl {
     CodedRecording result;
 };
 
-/// True if it was not stopped: all slots are there, or the camera sends no more.
+/// True if all slots are there, or the camera sends no more; false if it was stopped or lost.
 bool CodedRecorder::Impl::run(const GoesOn& goes_on) {
     const auto start = Clock::now();
     auto last = start;
@@ -88,8 +88,11 @@ bool CodedRecorder::Impl::run(const GoesOn& goes_on) {
         if (const auto* const frame = std::get_if<CapturedFrame>(&arrival)) {
             take(*frame);
             last = Clock::now();
-        } else if (std::holds_alternative<DeviceLost>(arrival) || now - last > kSilence) {
-            break;
+        } else if (const auto* const lost = std::get_if<DeviceLost>(&arrival)) {
+            if (!lost->at_end) result.lost = *lost;
+            return lost->at_end;
+        } else if (now - last > kSilence) {
+            return true;
         }
     }
     return true;

@@ -17,6 +17,7 @@ struct CodedRecording {
     std::int64_t slots = 0;
     std::int64_t missing_slots = 0;   ///< of these; they are dropped packets in the stream
     std::int64_t damaged_frames = 0;  ///< whose payload held something else behind its packets
+    std::optional<DeviceLost> lost;   ///< the camera is gone; nothing stands for what it kept
     bool kept = false;                ///< the file is in place; it is where a slot is in it
     std::exception_ptr failure;       ///< of the disk (DeviceError), or the stream (InputError)
 };
@@ -40,7 +41,7 @@ class CodedRecorder {
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// Records until all slots are there, a limit is reached, `goes_on` says no, or the camera is
-    /// silent for 3 s or gone, and puts the file in place, as far as it goes. Called once.
+    /// silent for 3 s or gone (`lost`), and puts the file in place, as far as it goes. Called once.
     /// \throws DeviceError if the camera refuses to start, or if the file cannot be put in place.
     [[nodiscard]] CodedRecording record(const GoesOn& goes_on);
 

@@ -77,8 +77,8 @@ inline ScriptedStep arrives(const CapturedFrame& frame, const TransportCounts& c
     return {[frame] { return Arrival(frame); }, counts};
 }
 
-inline ScriptedStep is_lost(const std::string& reason) {
-    return {[reason] { return Arrival(DeviceLost{reason}); }, {}};
+inline ScriptedStep is_lost(const std::string& reason, bool at_end = false) {
+    return {[=] { return Arrival(DeviceLost{reason, at_end}); }, {}};
 }
 
 }  // namespace stipple

@@ -32,7 +32,7 @@ class CodedRecorderTest : public ::testing::Test {
         CameraDescription camera;
         camera.features["CodedStreamHeader"] = image_.coded_header;
         if (!frame_count.empty()) camera.features["SourceFrameCount"] = frame_count;
-        steps.push_back(is_lost("end of the script"));
+        steps.push_back(is_lost("end of the script", true));
         CodedRecorder recorder(std::make_unique<ScriptedCamera>(std::move(steps), camera), file_,
                                false, limits);
         slots_ = recorder.slots();
@@ -66,6 +66,15 @@ TEST_F(CodedRecorderTest, SlotsThatDoNotArriveAreDroppedPackets) {
                                              dropped(3),       packets_of(4)[0], dropped(5),
                                              dropped(6)};
     EXPECT_EQ(recorded(), expected);
+}
+
+TEST_F(CodedRecorderTest, OfALostCameraThereIsWhatItSent) {
+    const CodedRecording recording = record({slot(0), slot(2), is_lost("unplugged")}, {}, "7");
+    ASSERT_TRUE(recording.lost);
+    EXPECT_EQ(recording.lost->reason, "unplugged");
+    EXPECT_TRUE(recording.kept);
+    EXPECT_EQ(recording.slots, 3);
+    EXPECT_EQ(recorded().size(), 3U);
 }
 
 TEST_F(CodedRecorderTest, TheLimitEndsItBeforeTheSource) {
