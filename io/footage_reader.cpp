@@ -154,7 +154,7 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
 }
 
 FootageReader::FootageReader(const fs::path& source, FootageOptions options)
-    : impl_(std::make_unique<Impl>(source, options)) {}
+    : impl_(std::make_unique<Impl>(source, std::move(options))) {}
 
 FootageReader::~FootageReader() = default;
 FootageReader::FootageReader(FootageReader&&) noexcept = default;

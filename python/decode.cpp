@@ -38,33 +38,19 @@ DecodeTask decode_task(const std::string& method, const py::dict& settings, bool
     return task;
 }
 
-/// The frames, order (slot, plane, row, col), as an array that owns them: (slot, row, col), or of
-/// colour (slot, row, col, plane), plane by plane in memory.
-py::array as_array(std::unique_ptr<std::vector<float>> frames, FrameShape shape) {
-    const auto slots = static_cast<py::ssize_t>(frames->size() / shape.sites());
-    const py::capsule owner(frames.get(),
-                            [](void* memory) { delete static_cast<std::vector<float>*>(memory); });
-    float* const data = frames.release()->data();
-    if (shape.planes == 1)
-        return py::array_t<float>({slots, py::ssize_t{shape.rows}, py::ssize_t{shape.cols}}, data,
-                                  owner);
-    const py::array_t<float> planar(
-        {slots, py::ssize_t{shape.planes}, py::ssize_t{shape.rows}, py::ssize_t{shape.cols}}, data,
-        owner);
-    return py::array(planar.attr("transpose")(0, 2, 3, 1));
+/// What the user should know of a stream that was decoded to its end, or to `until`.
+std::string warning_of(const StreamReport& report, bool to_end) {
+    const std::string damage = damage_text(report);
+    if (!damage.empty()) return damage + "\n  the output is made of what is left";
+    if (report.samples == 0) return "holds no sample, so the frames are black";
+    if (to_end && !report.complete)
+        return "has no end marker: it was cut off, or is still being written";
+    return {};
 }
 
-/// Without the GIL.
+/// Appends the frames that are decoded. Without the GIL.
 void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& progress,
                    std::vector<float>& frames) {
-    const FrameShape shape = decoded_shape(reader.header());
-    const auto known = reader.slots();
-    const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;
-    if (known) {
-        const std::uint64_t values = static_cast<std::uint64_t>(*slots) * shape.sites();
-        check_memory(values * sizeof(float), task.options.where, "the decoded video");
-        frames.reserve(values);
-    }
     decode(
         reader, task.options,
         [&](std::int64_t slot, std::span<const float> frame) {
@@ -78,22 +64,25 @@ py::array decode_stream(const StreamFile& stream, DecodeTask task, const py::obj
     task.options.where = stream.name();
     task.options.input_bytes = input_bytes(stream.path());
     StreamReader reader = stream.reader(task.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
-    auto total = reader.slots();
-    if (task.until) total = std::min(*task.until, total.value_or(*task.until));
-    CallProgress progress(tell, total);
+    const FrameShape shape = decoded_shape(reader.header());
+    const auto known = reader.slots();
+    const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;
     auto frames = std::make_unique<std::vector<float>>();
+    if (known) {
+        const std::uint64_t values = static_cast<std::uint64_t>(*slots) * shape.sites();
+        check_memory(values * sizeof(float), task.options.where, "the decoded video");
+        frames->reserve(values);
+    }
+    CallProgress progress(tell, slots);
     {
         const py::gil_scoped_release released;
         decode_frames(reader, task, progress, *frames);
     }
     progress.finish();
     if (frames->empty()) throw InputError(stream.name(), "holds no slot to decode");
-    const std::string damage = damage_text(reader.report());
-    if (!damage.empty())
-        warn(fmt::format("{}: {}\n  the output is made of what is left", stream.name(), damage));
-    else if (reader.report().samples == 0)
-        warn(fmt::format("{}: holds no sample, so the frames are black", stream.name()));
-    return as_array(std::move(frames), decoded_shape(reader.header()));
+    const std::string warning = warning_of(reader.report(), !task.until);
+    if (!warning.empty()) warn(fmt::format("{}: {}", stream.name(), warning));
+    return as_array(std::move(frames), shape);
 }
 
 }  // namespace

@@ -4,11 +4,14 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <fstream>
+#include <memory>
 #include <utility>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "io/footage_files.h"
 #include "python/bindings.h"
+#include "python/call_progress.h"
 #include "python/errors.h"
 
 namespace stipple::python {
@@ -80,6 +83,20 @@ FootageOptions options_of(const std::optional<std::string>& transfer, bool lumin
 
 }  // namespace
 
+py::array as_array(std::unique_ptr<std::vector<float>> frames, FrameShape shape) {
+    const auto slots = static_cast<py::ssize_t>(frames->size() / shape.sites());
+    const py::capsule owner(frames.get(),
+                            [](void* memory) { delete static_cast<std::vector<float>*>(memory); });
+    float* const data = frames.release()->data();
+    if (shape.planes == 1)
+        return py::array_t<float>({slots, py::ssize_t{shape.rows}, py::ssize_t{shape.cols}}, data,
+                                  owner);
+    const py::array_t<float> planar(
+        {slots, py::ssize_t{shape.planes}, py::ssize_t{shape.rows}, py::ssize_t{shape.cols}}, data,
+        owner);
+    return py::array(planar.attr("transpose")(0, 2, 3, 1));
+}
+
 void warn(const std::string& text, int level) {
     if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), level) != 0)
         throw py::error_already_set();
@@ -132,7 +149,31 @@ void Footage::pass_warnings_on() {
     if (array_) warn(array_->warning());
 }
 
+namespace {
+
+/// All frames of footage, as light.
+py::array load(Footage& footage, const py::object& tell) {
+    auto frames = std::make_unique<std::vector<float>>();
+    CallProgress progress(tell, footage.slots());
+    {
+        const py::gil_scoped_release released;
+        double done = 0;
+        for (auto frame = footage.next(); !frame.empty(); frame = footage.next()) {
+            check_memory((frames->size() + frame.size()) * sizeof(float), footage.name(),
+                         "the video");
+            frames->insert(frames->end(), frame.begin(), frame.end());
+            if (!progress.reach(++done)) break;
+        }
+    }
+    progress.finish();
+    footage.pass_warnings_on();
+    return as_array(std::move(frames), footage.shape());
+}
+
+}  // namespace
+
 void bind_footage(py::module_& module) {
+    module.def("load", &load);
     py::class_<Footage>(module, "Footage")
         .def(py::init([](const py::object& video, const std::optional<std::string>& transfer,
                          bool luminance, std::optional<double> max_value) {

@@ -80,6 +80,11 @@ class Footage {
     std::unique_ptr<ReadAhead> files_;
 };
 
+/// The frames, order (slot, plane, row, col), as an array that owns them: (slot, row, col), or of
+/// colour (slot, row, col, plane), plane by plane in memory.
+[[nodiscard]] pybind11::array as_array(std::unique_ptr<std::vector<float>> frames,
+                                       FrameShape shape);
+
 /// Has Python warn, unless the text is empty. `level` as warnings.warn: 1 blames who has called us,
 /// 2 who has called that. With the GIL.
 void warn(const std::string& text, int level = 2);

@@ -48,21 +48,8 @@ py::dict schedule_dict(const StreamHeader& header) {
     return dict;
 }
 
-/// Reads the stream through. Without the GIL.
-StreamReport read_through(const StreamFile& stream) {
-    StreamReader reader = stream.reader();
-    SamplePacket packet;
-    while (reader.next(packet)) {
-    }
-    return reader.report();
-}
-
 py::dict counts_of(const StreamFile& stream) {
-    StreamReport report;
-    {
-        const py::gil_scoped_release released;
-        report = read_through(stream);
-    }
+    const StreamReport report = stream.read_through();
     py::list damage;
     for (const StreamDamage& where : report.damage)
         damage.append(
@@ -89,6 +76,12 @@ py::dict header_dict(const StreamHeader& header) {
 
 std::string damage_text(const StreamReport& report) {
     if (report.damage.empty() && report.missing_slots == 0 && report.tail_bytes == 0) return {};
+    if (report.damage.empty() && report.missing_slots == 0)
+        return fmt::format(
+            "the stream is cut off: {} slots are whole, then it ends within a packet, of which "
+            "there "
+            "are {} bytes",
+            report.slots, report.tail_bytes);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
     constexpr std::size_t kMaxPlaces = 10;

@@ -51,6 +51,8 @@ class StreamFile {
     /// Of its emulation, a dict; None if it was opened.
     [[nodiscard]] const pybind11::object& figures() const { return figures_; }
 
+    /// What it holds and what is damaged. Gives the GIL up meanwhile.
+    [[nodiscard]] StreamReport read_through() const;
     /// Slots that it holds. Reads it through, once, where no index says so.
     [[nodiscard]] std::int64_t slots();
     /// The samples of a slot: an array with the fields row, col, plane, exposure_slots, light_slots

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "io/output_file.h"
 #include "io/pending_output.h"
+#include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/stream.h"
 
@@ -92,14 +93,22 @@ bool StreamFile::advance() {
     return has_packet_;
 }
 
+StreamReport StreamFile::read_through() const {
+    StreamReader all = reader();
+    CallProgress progress(py::none(), std::nullopt);
+    {
+        const py::gil_scoped_release released;
+        SamplePacket packet;
+        while (all.next(packet) && progress.reach(0)) {
+        }
+    }
+    progress.finish();
+    return all.report();
+}
+
 std::int64_t StreamFile::slots() {
     if (!slots_) slots_ = reader_.slots();
-    if (slots_) return *slots_;
-    StreamReader all = reader();
-    SamplePacket packet;
-    while (all.next(packet)) {
-    }
-    slots_ = all.report().slots;
+    if (!slots_) slots_ = read_through().slots;
     return *slots_;
 }
 
@@ -110,7 +119,10 @@ py::array StreamFile::samples(std::int64_t slot) {
         reader_ = reader();
         advance();
     }
-    while (has_packet_ && packet_.slot < slot) advance();
+    while (has_packet_ && packet_.slot < slot) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        advance();
+    }
     std::vector<SampleRow> rows;
     for (; has_packet_ && packet_.slot == slot; advance()) add_rows(packet_, header(), rows);
     return py::array_t<SampleRow>(static_cast<py::ssize_t>(rows.size()), rows.data());

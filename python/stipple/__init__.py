@@ -8,7 +8,7 @@ Light 1.0 is the sensor's `photons_per_unit` photons per site and time slot; a f
 and values are those of the program `stipple`, whose documentation holds here too. Errors of values are
 ValueError, errors of files OSError, both with the program's texts."""
 
-from ._pipeline import Schedule, compare, decode, decode_methods, emulate, timing
+from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
 
 __all__ = [
@@ -24,5 +24,6 @@ __all__ = [
     "decode",
     "decode_methods",
     "emulate",
+    "load",
     "timing",
 ]

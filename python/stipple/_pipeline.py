@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _stipple
 from ._stipple import Sensor, Stream, VideoQuality, decode_methods
 
-__all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "timing"]
+__all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "load", "timing"]
 
 Name = Union[str, "PathLike[str]"]
 Video = Union[Name, npt.ArrayLike]
@@ -59,6 +59,21 @@ class Schedule(_stipple.Schedule):
             raise
         weakref.finalize(schedule, shutil.rmtree, folder)
         return schedule
+
+
+def load(
+    video: Video,
+    *,
+    transfer: Optional[str] = None,
+    luminance: bool = False,
+    max_value: Optional[float] = None,
+    progress: Tell = None,
+) -> npt.NDArray[np.float32]:
+    """Footage as an array of linear light: what "stipple emulate" would emulate (its option --truth).
+
+    video, transfer, luminance, max_value, progress: as for `emulate`. The array is as that of `decode`.
+    """
+    return _stipple.load(_stipple.Footage(video, transfer, luminance, max_value), progress)
 
 
 def emulate(

@@ -1,6 +1,9 @@
 """Figures of quality are those of the program."""
 
 import math
+import os
+import signal
+import threading
 import unittest
 
 import numpy as np
@@ -34,6 +37,17 @@ class CompareTest(ProgramTest):
         error = (self.a.astype(float) - self.b) ** 2
         self.assertAlmostEqual(stipple.compare(self.a, self.b).psnr_db, -10 * math.log10(error.mean()), 6)
         self.assertEqual(stipple.compare(self.a, self.a).psnr_db, math.inf)
+
+    def test_control_c_ends_it(self):
+        """Without, it would take days, and so does making a stream of as much light."""
+        endless = np.broadcast_to(np.float32(0.5), (10**9, 16, 16))
+        for call in (lambda: stipple.compare(endless, endless), lambda: stipple.emulate(endless)):
+            # From another thread, which runs as long calls let others run.
+            timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                call()
+            timer.join()
 
     def test_refuses_videos_that_do_not_match(self):
         for message, arguments in {

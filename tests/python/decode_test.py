@@ -72,6 +72,24 @@ class DecodeTest(ProgramTest):
         with self.assertRaisesRegex(ValueError, "clip.stipple: byte"):
             self.decodes("naive", strict=True)
 
+    def test_a_stream_that_was_cut_off_is_warned_of(self):
+        self.write_clip()
+        path = self.folder / "clip.stipple"
+        whole = path.read_bytes()
+        said = set()
+        for cut in range(1, 900):
+            path.write_bytes(whole[:-cut])
+            counts = stipple.Stream.open(path).counts()
+            self.assertFalse(counts["complete"] and counts["tail_bytes"])
+            if counts["complete"] or counts["damage"]:
+                continue
+            wanted = "ends within a packet" if counts["tail_bytes"] else "has no end marker"
+            if wanted not in said:
+                with self.assertWarnsRegex(UserWarning, wanted):
+                    self.decodes("naive")
+                said.add(wanted)
+        self.assertEqual(len(said), 2)
+
     def test_refuses_what_the_program_refuses(self):
         self.write_clip()
         with self.assertRaisesRegex(ValueError, "is none of naive, fast"):

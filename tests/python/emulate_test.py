@@ -52,6 +52,13 @@ class EmulateTest(ProgramTest):
         stream.save(self.folder / "python.stipple")
         self.assertEqual((self.folder / "python.stipple").read_bytes(), wanted)
 
+    def test_loads_the_light_that_the_program_emulates(self):
+        self.write_array("light.npy", light(planes=3))
+        for options, arguments in (((), {}), (("--luminance", "--max-value", 0.4, "--transfer", "srgb"),
+                                              dict(luminance=True, max_value=0.4, transfer="srgb"))):
+            self.program_makes("light.npy", "--truth", "truth.npy", *options)
+            np.testing.assert_array_equal(stipple.load(self.folder / "light.npy", **arguments), self.array("truth.npy"))
+
     def test_an_array_gives_the_samples_of_its_file(self):
         colour = light(planes=3)
         arrays = {"mono": light(), "colour": colour, "double": light().astype(np.float64),
