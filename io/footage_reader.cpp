@@ -153,8 +153,8 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         warn(std::move(text));
 }
 
-FootageReader::FootageReader(const fs::path& source, FootageOptions options)
-    : impl_(std::make_unique<Impl>(source, std::move(options))) {}
+FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
+    : impl_(std::make_unique<Impl>(source, options)) {}
 
 FootageReader::~FootageReader() = default;
 FootageReader::FootageReader(FootageReader&&) noexcept = default;

@@ -30,7 +30,7 @@ class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.
     /// \throws InputError if it is missing, unreadable, empty or of a wrong shape.
-    explicit FootageReader(const std::filesystem::path& source, FootageOptions options = {});
+    explicit FootageReader(const std::filesystem::path& source, const FootageOptions& options = {});
     ~FootageReader();
     FootageReader(FootageReader&&) noexcept;
     FootageReader& operator=(FootageReader&&) noexcept;

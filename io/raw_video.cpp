@@ -32,7 +32,8 @@ RawVideoReader::RawVideoReader(RawVideo video) : video_(std::move(video)), file_
                                          "{}; it is damaged or cut short",
                                          video_.offsets[i], bytes, file_.size()));
     bytes_.resize(bytes);
-    samples_.resize(static_cast<std::size_t>(video_.shape.cols * video_.shape.planes));
+    samples_.resize(static_cast<std::size_t>(video_.shape.cols) *
+                    static_cast<std::size_t>(video_.shape.planes));
 }
 
 std::string RawVideoReader::where() const {

@@ -59,7 +59,7 @@ bool are_planar(const py::array& array, FrameShape shape) {
 
 }  // namespace
 
-ArrayFrames::ArrayFrames(py::array array, const FootageOptions& options)
+ArrayFrames::ArrayFrames(const py::array& array, const FootageOptions& options)
     : array_(readable(array)),
       options_(options),
       source_(shape_of(array_)),

@@ -38,7 +38,7 @@ std::string in_python(const char* message) {
 
 void translate(std::exception_ptr thrown) {
     try {
-        if (thrown) std::rethrow_exception(thrown);
+        if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const FileError& error) {
         PyErr_SetString(class_of(error.number()), in_python(error.what()).c_str());
     } catch (const InputError& error) {

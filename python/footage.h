@@ -24,7 +24,7 @@ namespace stipple::python {
 class ArrayFrames {
   public:
     /// With the GIL. \throws InputError for another shape or type.
-    ArrayFrames(pybind11::array array, const FootageOptions& options);
+    ArrayFrames(const pybind11::array& array, const FootageOptions& options);
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::int64_t slots() const { return array_.shape(0); }

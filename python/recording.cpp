@@ -120,7 +120,7 @@ void bind_frame(py::module_& module) {
 void bind_recording(py::module_& module) {
     bind_frame(module);
     py::class_<RecordingFrames>(module, "RecordingFrames")
-        .def("__iter__", [](py::object self) { return self; })
+        .def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", &next_frame);
     py::class_<RecordingFile>(module, "Recording",
                               R"(Frames of a camera, as "stipple capture record" keeps them.
