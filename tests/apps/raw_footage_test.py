@@ -34,7 +34,7 @@ class RawTest(CameraFilesTest):
         self.assert_light(np.maximum(MOSAIC - 64, 0) / (4095 - 64), name, "--raw",
                           "8x6:mono12:offset=100:black=64:hz=1000")
         self.assertIn("clip.raw: has 1000 frames/s, but a slot of sensor \"paper\" takes 5000 us", self.said)
-        self.assertIn("slot_us=1000 of the sensor", self.said)
+        self.assertIn("--set sensor.slot_us=1000", self.said)
         self.light(name, "--raw", "8x6:mono12:offset=100:hz=1000", "--set", "sensor.slot_us=1000")
         self.assertEqual(self.said, "")
 

@@ -74,7 +74,7 @@ class RecoverTest(ProgramTest):
         (self.folder / ".frames.999999998.partial").mkdir()
         listed = self.figures("recover")["left"]
         self.assertEqual(sorted((one["output"], one["kind"]) for one in listed),
-                         [("clip.stipple", "stream"), ("video.npy", None), ("frames", None)])
+                         [("clip.stipple", "stream"), ("frames", None), ("video.npy", None)])
         said = self.succeed("recover", ".")
         self.assertIn(f"{left}: 0.0 MB, a stream that becomes clip.stipple", said)
         self.assertIn("of video.npy, cannot be recovered; delete it", said)
