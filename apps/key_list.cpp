@@ -55,6 +55,7 @@ std::vector<KeyList> key_lists(const std::string& section, const std::string& of
     std::erase_if(lists,
                   [&](const KeyList& list) { return !section.empty() && list.section != section; });
     std::vector<std::string> names;
+    names.reserve(lists.size());
     for (const KeyList& list : lists) names.push_back(list.of);
     std::erase_if(lists, [&](const KeyList& list) { return !of.empty() && list.of != of; });
     if (lists.empty())
