@@ -38,7 +38,8 @@ std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& opti
     };
     // Folders and printf patterns are no files.
     const bool is_file = path.string().find('%') == std::string::npos && !fs::is_directory(path);
-    return is_file ? reading(path, open_it) : open_it();
+    if (is_file) return reading(path, open_it);
+    return open_it();
 }
 
 /// The regular files of footage, in the order in which they are read.
