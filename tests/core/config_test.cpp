@@ -277,7 +277,7 @@ TEST_F(ConfigTest, TellsASectionAsLinesThatMakeItAgain) {
 
 TEST_F(ConfigTest, TellsWhatItsReadersSaidOfTheKeys) {
     Config config(Texts{"c=3"});
-    static_cast<void>(config.number({"a", {0, 1}, "m", "length"}, 0.1F));
+    static_cast<void>(config.number({"a", {0, 1}, "m", "length"}, static_cast<double>(0.1F)));
     static_cast<void>(config.integer({"b", {1, 9}, "slots"}, 0));  // out of range: none
     static_cast<void>(config.integers({"c", {1, 9}}, {1, 2}));
     static_cast<void>(config.choice({.name = "d", .choices = kModes}, 1));

@@ -53,7 +53,7 @@ TEST(FlatFieldTest, SeedDecidesTheImages) {
 
 TEST(FlatFieldTest, UnequalPixelsAreRefused) {
     SensorParams params{.mode = SensorMode::kPhysical};
-    params.physical.transmittance = {{1, 0.5F}};
+    params.physical.transmittance = {{1, 0.5}};
     EXPECT_THROW(FlatField(params, 1), InputError);
 }
 
