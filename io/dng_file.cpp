@@ -44,7 +44,7 @@ Number number_or(tiff* file, std::uint32_t tag, Number otherwise) {
 std::optional<double> rational(tiff* file, std::uint32_t tag) {
     const TIFFField* const field = TIFFFindField(file, tag, TIFF_ANY);
     if (field == nullptr) return {};
-    const TIFFDataType type = TIFFFieldDataType(field);
+    const int type = TIFFFieldDataType(field);  // of an unknown tag any number: none of the enum
     if (type != TIFF_RATIONAL && type != TIFF_SRATIONAL) return {};
     const bool is_double = TIFFFieldSetGetSize(field) == sizeof(double);
     double value = 0;
