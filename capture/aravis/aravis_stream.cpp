@@ -19,6 +19,8 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMaxPayloadBytes = std::size_t{1} << 30U;
+/// After so many openings of a stream the traffic of others does not pause.
+constexpr int kMaxOpenings = 10;
 
 /// Memory of a buffer.
 struct Slot {
@@ -86,6 +88,8 @@ struct AravisStream::Impl {
     Impl& operator=(const Impl&) = delete;
 
     void create(std::optional<int> packet_bytes);
+    void open_stream();
+    void drop_foreign_packets();
     void check_buffers() const;
     void push_buffers();
     void hand_back(ArvBuffer* buffer, bool complete);
@@ -111,6 +115,15 @@ AravisStream::Impl::~Impl() {
 void AravisStream::Impl::create(std::optional<int> packet_bytes) {
     if (device.is_gige()) link.emplace(device, packet_bytes);
     check_buffers();
+    open_stream();
+    chunks = arv_camera_create_chunk_parser(camera);
+    const auto on_lost = +[](ArvDevice*, std::atomic<bool>* flag) { *flag = true; };
+    lost_handler = g_signal_connect(arv_camera_get_device(camera), "control-lost",
+                                    reinterpret_cast<GCallback>(on_lost), &lost);
+}
+
+void AravisStream::Impl::open_stream() {
+    g_clear_object(&stream);
     GError* error = nullptr;
     stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
     if (stream == nullptr) {
@@ -119,11 +132,14 @@ void AravisStream::Impl::create(std::optional<int> packet_bytes) {
         throw DeviceError(device.address(), fmt::format("gives no stream: {}", why));
     }
     if (link) link->set_socket_buffer(stream, layout.payload_bytes(), buffers.socket_frames);
-    chunks = arv_camera_create_chunk_parser(camera);
-    const auto on_lost = +[](ArvDevice*, std::atomic<bool>* flag) { *flag = true; };
-    lost_handler = g_signal_connect(arv_camera_get_device(camera), "control-lost",
-                                    reinterpret_cast<GCallback>(on_lost), &lost);
     push_buffers();
+}
+
+/// Aravis (0.8.26) opens its packet socket before it sets the filter, so packets for other streams
+/// of this host come in. It takes them for its own: then it discards frames with lower ids as late.
+/// Before the acquisition starts every packet is foreign.
+void AravisStream::Impl::drop_foreign_packets() {
+    for (int i = 0; i < kMaxOpenings && info("n_received_packets") > 0; ++i) open_stream();
 }
 
 /// What a buffer must hold.
@@ -322,6 +338,7 @@ TransportCounts AravisStream::counts() const {
 }
 
 void AravisStream::start() {
+    if (impl_->link) impl_->drop_foreign_packets();
     GError* error = nullptr;
     arv_camera_set_acquisition_mode(impl_->camera, ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
     arv_camera_start_acquisition(impl_->camera, &error);

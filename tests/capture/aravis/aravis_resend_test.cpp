@@ -169,5 +169,46 @@ TEST_F(AravisResendTest, AForgedLeaderDoesNotChangeTheLayout) {
     EXPECT_EQ(camera->layout().width, 64);
 }
 
+/// Traffic of another camera: leaders of block 60, until it is gone.
+class OtherCamera {
+  public:
+    ~OtherCamera() { stop(); }
+    void stop() {
+        thread_.request_stop();
+        if (thread_.joinable()) thread_.join();
+    }
+
+  private:
+    UdpSocket host_{{kHost, 0}};
+    UdpSocket camera_{{kHost, 0}};
+    std::jthread thread_{[this](const std::stop_token& stop) {
+        GvspBlock block;
+        block.id = 60;
+        const GvspPacket leader = gvsp_packet(block, 0);
+        while (!stop.stop_requested()) {
+            camera_.send(host_.local(), std::span(leader.head).first(leader.head_bytes));
+            while (host_.receive()) {
+            }
+        }
+    }};
+    static constexpr std::uint32_t kHost = 0x7F010203;
+};
+
+TEST_F(AravisResendTest, TheStreamOfAnotherCameraHidesNoFrame) {
+    NoiseFrames source(64, 48, {"Mono8"}, kFrames);
+    const GigeServing server(source);
+    ASSERT_EQ(server.failure(), "");
+    for (int i = 0; i < 5; ++i) {  // the gap in Aravis is short
+        OtherCamera other;
+        const auto camera =
+            open_camera("gige:" + ipv4_text(server.address()), {{"GevSCPSPacketSize", "1500"}}, {});
+        other.stop();
+        camera->start();
+        const Arrival arrival = camera->wait(kLong);
+        ASSERT_TRUE(std::holds_alternative<CapturedFrame>(arrival));
+        EXPECT_EQ(std::get<CapturedFrame>(arrival).record.wire_id, 1U);
+    }
+}
+
 }  // namespace
 }  // namespace stipple
