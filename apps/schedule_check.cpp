@@ -26,7 +26,8 @@ void check(const CheckOptions& options, const RunOptions& run) {
                                              .schedule_settings = choice.settings,
                                              .seed = choice.seed},
                                             choice.shape);
-    const auto& [name, source, schedule] = setup.schedule;
+    const std::string& name = setup.schedule.name;
+    const ExposureSchedule& schedule = setup.schedule.schedule;
     const SensorParams& sensor = setup.params;
     JsonFile json(run);
     auto problem = store_problem(schedule, sensor.charge_stores);

@@ -75,8 +75,10 @@ py::dict figures_of(const StreamRecorder& recorder) {
 py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::object& tell,
                       const std::filesystem::path& file, bool force) {
     const std::string provenance = provenance_of(setup, footage.origin());
-    const auto recorder = creating(
-        file, [&] { return std::make_unique<StreamRecorder>(file, force, setup, provenance); });
+    const auto recorder = creating(file, [&] {
+        return std::make_unique<StreamRecorder>(
+            file, setup, StreamRecorderOptions{.force = force, .provenance = provenance});
+    });
     CallProgress progress(tell, footage.slots());
     {
         const py::gil_scoped_release released;

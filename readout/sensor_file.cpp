@@ -35,6 +35,14 @@ Config schedule_config(const SensorChoice& choice) {
     return open_config("schedules", choice.schedule, choice.schedule_settings);
 }
 
+/// The schedule of a stream whose keys are longer is in its header only.
+constexpr std::size_t kMaxScheduleKeys = 16384;
+
+/// The name of a sensor or schedule without its folders.
+std::string file_name(const std::string& name) {
+    return std::filesystem::path(name).filename().string();
+}
+
 /// True for a compiled schedule (docs/sequencer_program.md).
 bool is_program(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
@@ -50,8 +58,10 @@ NamedSchedule read_program(const SensorChoice& choice) {
     const auto bytes = read_file(choice.schedule);
     const NamedProgram named =
         parse_program({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice.schedule);
-    return {
-        .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
+    return {.name = named.name,
+            .source = {},
+            .schedule = schedule_of(named.program, choice.schedule),
+            .origin = ConfigOrigin{.name = file_name(choice.schedule)}};
 }
 
 /// The array that footage of this shape falls on.
@@ -74,14 +84,6 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
 
 }  // namespace
 
-std::string timing_keys(const SensorChoice& choice) {
-    return sensor_config(choice).as_toml("timing");
-}
-
-std::string schedule_keys(const SensorChoice& choice) {
-    return is_program(choice.schedule) ? "" : schedule_config(choice).as_toml("");
-}
-
 std::string no_timing_text() {
     std::vector<std::string> timed;
     for (const std::string& name : config_names("sensors")) {
@@ -97,14 +99,18 @@ NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
     Config config = schedule_config(choice);
     NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing);
     config.reject_unknown_keys();
+    std::string keys = config.as_toml("");
+    if (keys.size() > kMaxScheduleKeys) keys.clear();
+    schedule.origin = {file_name(choice.schedule), choice.schedule_settings, std::move(keys)};
     return schedule;
 }
 
 SensorDescription read_sensor_file(const SensorChoice& choice) {
     Config config = sensor_config(choice);
-    SensorDescription sensor{.params = read_sensor(config), .timing = {}};
+    SensorDescription sensor{.params = read_sensor(config)};
     sensor.timing = read_timing(config, sensor.params.bit_depth);
     config.reject_unknown_keys();
+    sensor.origin = {file_name(choice.sensor), choice.settings, config.as_toml("")};
     return sensor;
 }
 
@@ -128,7 +134,7 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, Colour
             .seed = choice.seed,
             .timing = sensor.timing,
             .overrun = choice.overrun,
-            .choice = choice};
+            .origin = sensor.origin};
 }
 
 std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
@@ -136,10 +142,8 @@ std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
         return {};
     return fmt::format(
         "the frames are a mosaic of colours ({}), but sensor \"{}\" has no colour filter array: "
-        "they "
-        "are taken for grey, and decoding smooths over their pattern. A sensor of mode "
-        "\"physical\" "
-        "with cfa={}, such as \"ideal\", gives colour",
+        "they are taken for grey, and decoding smooths over their pattern. A sensor of mode "
+        "\"physical\" with cfa={}, such as \"ideal\", gives colour",
         name_of(mosaic), setup.params.name, name_of(mosaic));
 }
 

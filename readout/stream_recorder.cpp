@@ -6,11 +6,11 @@
 
 namespace stipple {
 
-StreamRecorder::StreamRecorder(const std::filesystem::path& file, bool force,
-                               const SensorSetup& setup, std::string provenance)
-    : output_(file, force),
+StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
+                               StreamRecorderOptions options)
+    : output_(file, options.force),
       emulator_(setup),
-      writer_(output_.partial(), stream_header_of(setup, std::move(provenance)),
+      writer_(output_.partial(), stream_header_of(setup, std::move(options.provenance)),
               output_.final_path().string()) {}
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {

@@ -37,7 +37,7 @@ void write_stream(const FluxVideo& video, const ExposureSchedule& schedule,
                             .schedule = {.name = "masks", .source = {}, .schedule = schedule},
                             .shape = video.shape(),
                             .footage = video.shape()};
-    StreamRecorder recorder(file, true, setup, "");
+    StreamRecorder recorder(file, setup, {.force = true});
     for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
     recorder.finish();
 }

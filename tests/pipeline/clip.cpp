@@ -45,7 +45,7 @@ SensorSetup setup_of(const NamedSchedule& named, FrameShape footage, const Senso
 
 void write_stream(const FluxVideo& video, const SensorSetup& setup,
                   const std::filesystem::path& file) {
-    StreamRecorder recorder(file, true, setup, "");
+    StreamRecorder recorder(file, setup, {.force = true});
     for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
     recorder.finish();
 }
