@@ -53,8 +53,9 @@ class Config {
     Config(Config&&) noexcept;
     Config& operator=(Config&&) noexcept;
 
-    /// The value of `key`, or `fallback` if absent. \throws InputError naming file, line and key
-    /// if the type is wrong or the value lies outside its range.
+    /// The value of `key`, or `fallback` if absent, which may lie outside the range and is returned
+    /// as it is. \throws InputError naming file, line and key if the type is wrong or the value
+    /// lies outside its range.
     [[nodiscard]] double number(const ConfigKey& key, double fallback);
     [[nodiscard]] std::int64_t integer(const ConfigKey& key, std::int64_t fallback);
     [[nodiscard]] bool boolean(const ConfigKey& key, bool fallback);
