@@ -8,7 +8,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 
 namespace stipple {

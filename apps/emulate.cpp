@@ -15,7 +15,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"

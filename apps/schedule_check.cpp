@@ -6,7 +6,7 @@
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {

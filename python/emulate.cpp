@@ -13,6 +13,7 @@
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "readout/program/sequencer_program.h"
 #include "readout/provenance.h"
 #include "readout/stream_recorder.h"
 

@@ -15,8 +15,8 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/sensor.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/schedules/code_schedule.h"
-#include "readout/schedules/schedule_check.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;

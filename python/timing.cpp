@@ -10,6 +10,7 @@
 #include "python/bindings.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
+#include "readout/program/sequencer_program.h"
 #include "readout/timing/readout_account.h"
 #include "readout/timing/readout_rate.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/arguments/checks.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 #include "scenes/scene.h"
 

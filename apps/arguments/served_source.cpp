@@ -7,7 +7,7 @@
 #include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"

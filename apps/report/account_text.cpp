@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/number_text.h"
+#include "readout/program/sequencer_program.h"
 
 namespace stipple {
 namespace {

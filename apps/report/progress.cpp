@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "apps/report/number_text.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 
 namespace stipple {
 namespace {

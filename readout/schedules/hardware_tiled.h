@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/exposure_schedule.h"
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
 
 namespace stipple {
 

@@ -9,13 +9,13 @@
 #include "core/error.h"
 #include "core/key_reader.h"
 #include "core/memory_limit.h"
+#include "readout/column_addressing.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/full_schedule.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/random_codes.h"
 #include "readout/schedules/tiled_schedule.h"
-#include "readout/timing/column_addressing.h"
 
 namespace stipple {
 namespace {

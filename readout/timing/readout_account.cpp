@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "readout/program/sequencer_program.h"
 
 namespace stipple {
 namespace {
@@ -190,11 +189,6 @@ std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
                                              "lower slot_us",
                                              slot_us, kMaxReadoutClocks, timing.clock_hz));
     return static_cast<std::int64_t>(clocks);
-}
-
-std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule) {
-    return wide(program_bits_per_pixel(schedule)) * wide(schedule.tile_rows()) *
-           wide(schedule.tile_cols()) * wide(schedule.period_slots());
 }
 
 }  // namespace stipple

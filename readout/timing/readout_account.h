@@ -112,8 +112,4 @@ class ReadoutAccount {
 /// \throws InputError if there is none or more than `kMaxReadoutClocks`.
 [[nodiscard]] std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us);
 
-/// Memory of the sequencer for the schedule (docs/sequencer_program.md), in bits: per slot of the
-/// period and pixel of the tile one bit, two with gaps, three with two charge stores.
-[[nodiscard]] std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule);
-
 }  // namespace stipple

@@ -152,8 +152,7 @@ TEST(StreamRecorderTest, TheHeaderSaysWhatWasMadeInCode) {
     const FootageOrigin origin{.name = "clip", .sha256 = "00"};
     SensorSetup setup = set_up_sensor({.schedule = "tiled"}, kShape);
     EXPECT_EQ(provenance_of(setup, origin).find("made_in_code"), std::string::npos);
-    setup.schedule = {
-        "mine", {}, ExposureSchedule(1, 1, 1, {0, 1}, {{0, open_without_gap(1)}})};
+    setup.schedule = {"mine", {}, ExposureSchedule(1, 1, 1, {0, 1}, {{0, open_without_gap(1)}})};
     const std::string text = provenance_of(setup, origin);
     EXPECT_NE(text.find("[schedule]\nmade_in_code = true\nname = 'mine'\n"), std::string::npos)
         << text;

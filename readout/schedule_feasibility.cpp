@@ -1,4 +1,4 @@
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
