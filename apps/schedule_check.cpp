@@ -27,14 +27,12 @@ void check(const CheckOptions& options, const RunOptions& run) {
                                              .seed = choice.seed},
                                             choice.shape);
     const std::string& name = setup.schedule.name;
-    const ExposureSchedule& schedule = setup.schedule.schedule;
     const SensorParams& sensor = setup.params;
     JsonFile json(run);
-    auto problem = store_problem(schedule, sensor.charge_stores);
+    const auto problem = schedule_problem(setup);
     std::optional<std::string> remark;
-    if (setup.timing && !problem)
-        problem = timing_problem(schedule, *setup.timing, setup.shape, sensor.slot_us);
-    if (setup.timing) remark = group_remark(schedule, setup.timing->addressing, setup.shape);
+    if (setup.timing)
+        remark = group_remark(setup.schedule.schedule, setup.timing->addressing, setup.shape);
     json.write({{"schedule", name},
                 {"sensor", sensor.name},
                 {"legal", !problem.has_value()},

@@ -66,12 +66,7 @@ std::optional<std::string> problem_of(const ChosenSchedule& schedule, const py::
     choice.seed = schedule.choice.seed;
     choice.schedule = schedule.choice.schedule;
     choice.schedule_settings = schedule.choice.schedule_settings;
-    const SensorSetup setup = set_up_sensor(choice, schedule.shape);
-    auto problem = store_problem(setup.schedule.schedule, setup.params.charge_stores);
-    if (setup.timing && !problem)
-        problem = timing_problem(setup.schedule.schedule, *setup.timing, setup.shape,
-                                 setup.params.slot_us);
-    return problem;
+    return schedule_problem(set_up_sensor(choice, schedule.shape));
 }
 
 /// The text of a schedule file of these exposures: an array as `exposures_of` makes.

@@ -58,6 +58,14 @@ std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
         static_cast<double>(worst.clocks) / clocks_per_us, slot_us, name_of(worst.limit));
 }
 
+std::optional<std::string> schedule_problem(const SensorSetup& setup) {
+    const ExposureSchedule& schedule = setup.schedule.schedule;
+    auto problem = store_problem(schedule, setup.params.charge_stores);
+    if (setup.timing && !problem)
+        problem = timing_problem(schedule, *setup.timing, setup.shape, setup.params.slot_us);
+    return problem;
+}
+
 std::optional<std::string> group_remark(const ExposureSchedule& schedule,
                                         const ColumnAddressing& addressing, FrameShape shape) {
     if (addressing.kind != ColumnAddressing::Kind::kGroup) return std::nullopt;

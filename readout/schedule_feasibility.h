@@ -6,6 +6,7 @@
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
 #include "readout/column_addressing.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
@@ -21,6 +22,9 @@ namespace stipple {
 [[nodiscard]] std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                                         const ReadoutTiming& timing,
                                                         FrameShape shape, double slot_us);
+
+/// The first of these problems of a sensor with its schedule; without a timing only `store_problem`.
+[[nodiscard]] std::optional<std::string> schedule_problem(const SensorSetup& setup);
 
 /// Remark that names the first pixel whose exposures differ from those of its group. This is
 /// allowed, but the group is transferred whole whenever one of its pixels is due. Nothing if the
