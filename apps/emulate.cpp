@@ -75,7 +75,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (truth) truth->finish();
     recorder.finish();
     if (waveform)
-        waveform->write(*recorder.account(), setup.params.name,
+        waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
     if (frame.empty() && footage.recording() != nullptr) {

@@ -34,17 +34,17 @@ SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const p
 }
 
 /// What the readout cost: the key `readout` of "emulate" in docs/cli.md.
-py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
-    const ReadoutCounts& totals = account.totals();
-    const auto clocks = static_cast<double>(account.clocks());
-    const auto slots = static_cast<double>(account.slots());
-    const double seconds = clocks / static_cast<double>(account.timing().clock_hz);
-    const int rows = account.shape().rows + account.timing().dark_rows;
-    const bool drops = account.budget().policy == OverrunPolicy::kDrop;
+py::dict readout_dict(const ReadoutCost& cost, double light_throughput) {
+    const ReadoutCounts& totals = cost.totals();
+    const auto clocks = static_cast<double>(cost.clocks());
+    const auto slots = static_cast<double>(cost.slots());
+    const double seconds = clocks / static_cast<double>(cost.timing().clock_hz);
+    const int rows = cost.shape().rows + cost.timing().dark_rows;
+    const bool drops = cost.budget().policy == OverrunPolicy::kDrop;
     return py::dict(
-        "overrun_policy"_a = drops ? "drop" : "stretch", "slot_clocks"_a = account.budget().clocks,
-        "clocks"_a = account.clocks(), "seconds"_a = seconds, "sensor_slots_hz"_a = slots / seconds,
-        "overrun_slots"_a = account.overruns(), "dropped_samples"_a = totals.dropped_samples,
+        "overrun_policy"_a = drops ? "drop" : "stretch", "slot_clocks"_a = cost.budget().clocks,
+        "clocks"_a = cost.clocks(), "seconds"_a = seconds, "sensor_slots_hz"_a = slots / seconds,
+        "overrun_slots"_a = cost.overruns(), "dropped_samples"_a = totals.dropped_samples,
         "readout_clocks"_a = totals.readout_clocks, "rows_read"_a = totals.rows,
         "conversions"_a = totals.conversions, "transferred_samples"_a = totals.transferred,
         "link_bits"_a = totals.bits,
@@ -54,9 +54,9 @@ py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
         "energy_uj"_a = totals.energy_pj * 1e-6,
         "sample_energy_pj"_a = totals.energy_pj / static_cast<double>(totals.samples),
         "light_throughput"_a = light_throughput,
-        "schedule_memory_bits"_a = schedule_memory_bits(account.schedule()),
+        "schedule_memory_bits"_a = schedule_memory_bits(cost.schedule()),
         "code_load_bits_per_second"_a =
-            static_cast<double>(account.shape().pixels()) * (slots / seconds));
+            static_cast<double>(cost.shape().pixels()) * (slots / seconds));
 }
 
 /// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
@@ -67,8 +67,8 @@ py::dict figures_of(const StreamRecorder& recorder) {
                      "light_throughput"_a = recorder.light_throughput(),
                      "light_read"_a = recorder.light_read(),
                      "saturated_fraction"_a = recorder.saturated_fraction());
-    if (const ReadoutAccount* account = recorder.account())
-        figures["readout"] = readout_dict(*account, recorder.light_throughput());
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        figures["readout"] = readout_dict(*cost, recorder.light_throughput());
     return figures;
 }
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 namespace {
@@ -44,12 +44,12 @@ std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                           const ReadoutTiming& timing, FrameShape shape,
                                           double slot_us) {
     const std::int64_t budget = slot_clocks(timing, slot_us);
-    ReadoutAccount account(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
-    const std::int64_t first = account.first_steady_slot();
+    ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
+    const std::int64_t first = cost.first_steady_slot();
     std::int64_t slowest = first;
     for (std::int64_t slot = first; slot < first + schedule.period_slots(); ++slot)
-        if (account.of(slot).clocks > account.of(slowest).clocks) slowest = slot;
-    const SlotAccount& worst = account.of(slowest);
+        if (cost.of(slot).clocks > cost.of(slowest).clocks) slowest = slot;
+    const SlotCost& worst = cost.of(slowest);
     if (!worst.overrun) return std::nullopt;
     const double clocks_per_us = static_cast<double>(timing.clock_hz) / 1e6;
     return fmt::format(

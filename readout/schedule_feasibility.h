@@ -18,12 +18,13 @@ namespace stipple {
 
 /// Message if a sensor cannot read an array of `shape` by this schedule within slots of `slot_us`:
 /// names the slowest slot of the period and its limit. Nothing if it can, or if nothing is read.
-/// \throws InputError as ReadoutAccount.
+/// \throws InputError as ReadoutCost.
 [[nodiscard]] std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                                         const ReadoutTiming& timing,
                                                         FrameShape shape, double slot_us);
 
-/// The first of these problems of a sensor with its schedule; without a timing only `store_problem`.
+/// The first of these problems of a sensor with its schedule; without a timing only
+/// `store_problem`.
 [[nodiscard]] std::optional<std::string> schedule_problem(const SensorSetup& setup);
 
 /// Remark that names the first pixel whose exposures differ from those of its group. This is

@@ -9,7 +9,7 @@
 #include "core/geometry.h"
 #include "readout/config_origin.h"
 #include "readout/schedules/schedule_catalogue.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_timing.h"
 #include "sensor_model/sensor_params.h"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 
 namespace stipple {
 
@@ -31,7 +31,7 @@ bool StreamRecorder::keep() {
 }
 
 std::uint64_t StreamRecorder::samples() const {
-    return stats().samples - (account() ? account()->totals().dropped_samples : 0);
+    return stats().samples - (readout_cost() ? readout_cost()->totals().dropped_samples : 0);
 }
 
 std::uint64_t StreamRecorder::payload_bits() const {

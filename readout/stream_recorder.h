@@ -50,8 +50,8 @@ class StreamRecorder {
     /// Fraction of the light since slot 0 that the samples hold, as in Emulator.
     [[nodiscard]] double light_read() const { return emulator_.light_read(); }
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
-    [[nodiscard]] const ReadoutAccount* account() const { return emulator_.account(); }
+    [[nodiscard]] ReadoutCost* readout_cost() { return emulator_.readout_cost(); }
+    [[nodiscard]] const ReadoutCost* readout_cost() const { return emulator_.readout_cost(); }
 
   private:
     PendingOutput output_;

@@ -6,7 +6,7 @@
 namespace stipple {
 
 /// Larger means are reduced to this.
-inline constexpr float kLargestPoissonMean = 1e9F;
+inline constexpr float kMaxPoissonMean = 1e9F;
 
 /// Poisson draw with the given mean, the quantile of one random word: the smallest k with
 /// P(X <= k) >= u. Word bit 0 and the rest give u as in `normal_one`. A slightly brighter scene

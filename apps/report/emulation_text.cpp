@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/report/account_text.h"
 #include "apps/report/number_text.h"
+#include "apps/report/readout_text.h"
 
 namespace stipple {
 
@@ -26,8 +26,8 @@ nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
         json["samples_per_second"] =
             *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
     }
-    if (const ReadoutAccount* account = recorder.account())
-        json["readout"] = account_json(*account, recorder.light_throughput());
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        json["readout"] = readout_json(*cost, recorder.light_throughput());
     return json;
 }
 
@@ -47,8 +47,8 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         any ? per_sample : ": no exposure ended within the footage",
         100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
         slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
-    if (const ReadoutAccount* account = recorder.account())
-        text.append(1, '\n').append(account_text(*account));
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        text.append(1, '\n').append(readout_text(*cost));
     return text;
 }
 

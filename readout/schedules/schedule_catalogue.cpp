@@ -197,7 +197,7 @@ NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
     const KeyReader read(config);
     HardwareTile tile{.addressing = made.addressing, .array_cols = made.shape.cols};
     read_addressing(read, tile.addressing);
-    read_tile_size(config, {0, kLongestHardwareSide}, tile.tile_rows, tile.tile_cols);
+    read_tile_size(config, {0, kMaxHardwareSide}, tile.tile_rows, tile.tile_cols);
     read({"arrangement", {}, "", "arrangement of the codes in the tile", kArrangements},
          tile.arrangement);
     const std::vector<int> lengths = read_exposure_slots(config);

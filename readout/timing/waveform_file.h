@@ -5,7 +5,7 @@
 #include <string>
 
 #include "io/pending_output.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 
@@ -23,7 +23,7 @@ class WaveformFile {
 
     /// Writes the slots of `range`, of which the first begins at time 0, while `goes_on`.
     /// \throws DeviceError.
-    void write(ReadoutAccount& account, const std::string& sensor, SlotRange range,
+    void write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
                const std::function<bool()>& goes_on);
 
   private:

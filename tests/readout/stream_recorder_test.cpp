@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/flux_video.h"
 #include "readout/coded_sensor.h"
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 #include "readout/provenance.h"
 #include "sensor_model/colour_mosaic.h"
 #include "stream/stream_reader.h"
@@ -91,7 +91,7 @@ TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfThei
     EXPECT_EQ(rows, kSlots * kShape.rows);
     EXPECT_GT(dropped_rows, 0);
     EXPECT_LT(dropped_rows, rows);
-    EXPECT_EQ(recorder.samples() + recorder.account()->totals().dropped_samples,
+    EXPECT_EQ(recorder.samples() + recorder.readout_cost()->totals().dropped_samples,
               recorder.stats().samples);
     EXPECT_EQ(read(folder / "a.stipple"), packets);
 }

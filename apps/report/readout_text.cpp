@@ -1,4 +1,4 @@
-#include "apps/report/account_text.h"
+#include "apps/report/readout_text.h"
 
 #include <fmt/format.h>
 
@@ -30,29 +30,29 @@ Utilisation utilisation(const ReadoutCounts& counts, double clocks, double slots
             static_cast<double>(counts.link_clocks) / clocks};
 }
 
-Utilisation utilisation(const ReadoutAccount& account) {
-    return utilisation(account.totals(), static_cast<double>(account.clocks()),
-                       static_cast<double>(account.slots()),
-                       account.shape().rows + account.timing().dark_rows);
+Utilisation utilisation(const ReadoutCost& cost) {
+    return utilisation(cost.totals(), static_cast<double>(cost.clocks()),
+                       static_cast<double>(cost.slots()),
+                       cost.shape().rows + cost.timing().dark_rows);
 }
 
-Utilisation utilisation(const ReadoutRate& rate, const ReadoutAccount& account) {
-    const int period = account.schedule().period_slots();
+Utilisation utilisation(const ReadoutRate& rate, const ReadoutCost& cost) {
+    const int period = cost.schedule().period_slots();
     return utilisation(rate.period, rate.mean_slot_clocks * period, period,
-                       account.shape().rows + account.timing().dark_rows);
+                       cost.shape().rows + cost.timing().dark_rows);
 }
 
 /// The exposure code: a bit per pixel and slot.
-double code_bits_per_second(const ReadoutAccount& account, double slots_per_second) {
-    return static_cast<double>(account.shape().pixels()) * slots_per_second;
+double code_bits_per_second(const ReadoutCost& cost, double slots_per_second) {
+    return static_cast<double>(cost.shape().pixels()) * slots_per_second;
 }
 
 const char* name_of(OverrunPolicy policy) {
     return policy == OverrunPolicy::kDrop ? "drop" : "stretch";
 }
 
-double full_sample_pj(const ReadoutRate& rate, const ReadoutAccount& account) {
-    return rate.full_energy_pj / static_cast<double>(account.shape().sites());
+double full_sample_pj(const ReadoutRate& rate, const ReadoutCost& cost) {
+    return rate.full_energy_pj / static_cast<double>(cost.shape().sites());
 }
 
 double slot_sample_pj(const ReadoutRate& rate) {
@@ -60,8 +60,8 @@ double slot_sample_pj(const ReadoutRate& rate) {
 }
 
 /// On a chip that is not for sale, with the settling that it takes, a line each; else empty.
-std::string hypothetical_text(const ReadoutRate& rate, const ReadoutAccount& account) {
-    const ReadoutTiming& timing = account.timing();
+std::string hypothetical_text(const ReadoutRate& rate, const ReadoutCost& cost) {
+    const ReadoutTiming& timing = cost.timing();
     if (timing.hypothetical.empty()) return {};
     std::string text = fmt::format("hypothetical {}", timing.hypothetical);
     if (!timing.settle_clocks.empty())
@@ -72,23 +72,23 @@ std::string hypothetical_text(const ReadoutRate& rate, const ReadoutAccount& acc
     return text + '\n';
 }
 
-bool fits(const ReadoutRate& rate, const ReadoutAccount& account) {
-    return rate.slowest.clocks <= account.budget().clocks;
+bool fits(const ReadoutRate& rate, const ReadoutCost& cost) {
+    return rate.slowest.clocks <= cost.budget().clocks;
 }
 
 }  // namespace
 
-ordered_json account_json(const ReadoutAccount& account, double light_throughput) {
-    const ReadoutCounts& totals = account.totals();
-    const double span_s = seconds(account.timing(), static_cast<double>(account.clocks()));
-    const double slots_hz = static_cast<double>(account.slots()) / span_s;
-    const Utilisation use = utilisation(account);
-    return {{"overrun_policy", name_of(account.budget().policy)},
-            {"slot_clocks", account.budget().clocks},
-            {"clocks", account.clocks()},
+ordered_json readout_json(const ReadoutCost& cost, double light_throughput) {
+    const ReadoutCounts& totals = cost.totals();
+    const double span_s = seconds(cost.timing(), static_cast<double>(cost.clocks()));
+    const double slots_hz = static_cast<double>(cost.slots()) / span_s;
+    const Utilisation use = utilisation(cost);
+    return {{"overrun_policy", name_of(cost.budget().policy)},
+            {"slot_clocks", cost.budget().clocks},
+            {"clocks", cost.clocks()},
             {"seconds", span_s},
             {"sensor_slots_hz", slots_hz},
-            {"overrun_slots", account.overruns()},
+            {"overrun_slots", cost.overruns()},
             {"dropped_samples", totals.dropped_samples},
             {"readout_clocks", totals.readout_clocks},
             {"rows_read", totals.rows},
@@ -101,42 +101,41 @@ ordered_json account_json(const ReadoutAccount& account, double light_throughput
             {"energy_uj", totals.energy_pj * 1e-6},
             {"sample_energy_pj", totals.energy_pj / static_cast<double>(totals.samples)},
             {"light_throughput", light_throughput},
-            {"schedule_memory_bits", schedule_memory_bits(account.schedule())},
-            {"code_load_bits_per_second", code_bits_per_second(account, slots_hz)}};
+            {"schedule_memory_bits", schedule_memory_bits(cost.schedule())},
+            {"code_load_bits_per_second", code_bits_per_second(cost, slots_hz)}};
 }
 
-std::string account_text(const ReadoutAccount& account) {
-    const ReadoutCounts& totals = account.totals();
-    const double span_s = seconds(account.timing(), static_cast<double>(account.clocks()));
-    const Utilisation use = utilisation(account);
+std::string readout_text(const ReadoutCost& cost) {
+    const ReadoutCounts& totals = cost.totals();
+    const double span_s = seconds(cost.timing(), static_cast<double>(cost.clocks()));
+    const Utilisation use = utilisation(cost);
     std::string text = fmt::format(
         "readout      {:.5g} slots/s of the sensor, {:.1f} % of the rows read, ADCs {:.1f} %, link "
         "{:.1f} % busy,\n"
         "             {} bits over the link, {:.4g} uJ; schedule memory {} bits, code {:.4g} "
         "Mbit/s",
-        static_cast<double>(account.slots()) / span_s, 100 * use.rows, 100 * use.adc,
-        100 * use.link, totals.bits, totals.energy_pj * 1e-6,
-        schedule_memory_bits(account.schedule()),
-        1e-6 * code_bits_per_second(account, static_cast<double>(account.slots()) / span_s));
-    if (account.overruns() > 0)
+        static_cast<double>(cost.slots()) / span_s, 100 * use.rows, 100 * use.adc, 100 * use.link,
+        totals.bits, totals.energy_pj * 1e-6, schedule_memory_bits(cost.schedule()),
+        1e-6 * code_bits_per_second(cost, static_cast<double>(cost.slots()) / span_s));
+    if (cost.overruns() > 0)
         text += fmt::format(
-            "\noverruns     {} longer than {} clocks: {}", counted(account.overruns(), "slot"),
-            account.budget().clocks,
-            account.budget().policy == OverrunPolicy::kDrop
+            "\noverruns     {} longer than {} clocks: {}", counted(cost.overruns(), "slot"),
+            cost.budget().clocks,
+            cost.budget().policy == OverrunPolicy::kDrop
                 ? fmt::format("{} samples dropped", totals.dropped_samples)
                 : "they are stretched; \"--overrun drop\" keeps the rate and gives up rows");
     return text;
 }
 
-ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
-    const ReadoutTiming& timing = account.timing();
-    const Utilisation use = utilisation(rate, account);
-    const auto period = static_cast<double>(account.schedule().period_slots());
+ordered_json rate_json(const ReadoutRate& rate, const ReadoutCost& cost) {
+    const ReadoutTiming& timing = cost.timing();
+    const Utilisation use = utilisation(rate, cost);
+    const auto period = static_cast<double>(cost.schedule().period_slots());
     return {
         {"hypothetical",
          timing.hypothetical.empty() ? ordered_json(nullptr) : ordered_json(timing.hypothetical)},
-        {"rows", account.shape().rows},
-        {"cols", account.shape().cols},
+        {"rows", cost.shape().rows},
+        {"cols", cost.shape().cols},
         {"full_readout_hz", rate.full_hz},
         {"coded_readout_hz", rate.coded_hz},
         {"speedup", rate.speedup},
@@ -153,8 +152,8 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
         {"slowest_phase", rate.slowest_phase},
         {"mean_slot_clocks", rate.mean_slot_clocks},
         {"mean_coded_readout_hz", rate.mean_coded_hz},
-        {"slot_clocks", account.budget().clocks},
-        {"fits_slot", fits(rate, account)},
+        {"slot_clocks", cost.budget().clocks},
+        {"fits_slot", fits(rate, cost)},
         {"row_utilisation", use.rows},
         {"adc_utilisation", use.adc},
         {"link_utilisation", use.link},
@@ -163,16 +162,16 @@ ordered_json rate_json(const ReadoutRate& rate, const ReadoutAccount& account) {
         {"link_bits_per_second", static_cast<double>(rate.period.bits) / period * rate.coded_hz},
         {"full_energy_uj", rate.full_energy_pj * 1e-6},
         {"slot_energy_uj", rate.period.energy_pj / period * 1e-6},
-        {"full_sample_energy_pj", full_sample_pj(rate, account)},
+        {"full_sample_energy_pj", full_sample_pj(rate, cost)},
         {"slot_sample_energy_pj", slot_sample_pj(rate)},
-        {"schedule_memory_bits", schedule_memory_bits(account.schedule())},
+        {"schedule_memory_bits", schedule_memory_bits(cost.schedule())},
         {"code_load_clocks", timing.code_load_clocks},
-        {"code_load_bits_per_second", code_bits_per_second(account, rate.coded_hz)}};
+        {"code_load_bits_per_second", code_bits_per_second(cost, rate.coded_hz)}};
 }
 
-std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account) {
-    const Utilisation use = utilisation(rate, account);
-    const double period = account.schedule().period_slots();
+std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
+    const Utilisation use = utilisation(rate, cost);
+    const double period = cost.schedule().period_slots();
     return fmt::format(
         "{}window       {} x {} (width x height)\n"
         "full         {:.5g} readouts/s: {} clocks, {} a row\n"
@@ -184,14 +183,14 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutAccount& account) {
         "             (of assumed constants, without static power)\n"
         "code         {} bits of schedule memory, {:.4g} Mbit/s, {} clocks to load\n"
         "slot         {} clocks: the readout {}",
-        hypothetical_text(rate, account), account.shape().cols, account.shape().rows, rate.full_hz,
+        hypothetical_text(rate, cost), cost.shape().cols, cost.shape().rows, rate.full_hz,
         rate.full.total, rate.full.row, rate.coded_hz, rate.slowest.clocks, rate.mean_slot_clocks,
         rate.speedup, name_of(rate.slowest.limit), rate.balanced_speedup, 100 * use.rows,
-        100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, account),
+        100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
         rate.period.energy_pj / period * 1e-6, slot_sample_pj(rate),
-        schedule_memory_bits(account.schedule()),
-        1e-6 * code_bits_per_second(account, rate.coded_hz), account.timing().code_load_clocks,
-        account.budget().clocks, fits(rate, account) ? "fits" : "does not fit");
+        schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_second(cost, rate.coded_hz),
+        cost.timing().code_load_clocks, cost.budget().clocks,
+        fits(rate, cost) ? "fits" : "does not fit");
 }
 
 }  // namespace stipple

@@ -48,7 +48,7 @@ struct ReadoutCounts {
 };
 
 /// Cost of a slot.
-struct SlotAccount {
+struct SlotCost {
     ReadoutCounts counts;
     std::int64_t clocks = 0;  ///< of the slot: the budget, or longer by readout or code load
     int settle_clocks = 0;    ///< of its rows
@@ -58,21 +58,21 @@ struct SlotAccount {
 };
 
 /// Cost of the readout slot by slot, and its totals. Depends on the schedule, not on the light.
-class ReadoutAccount {
+class ReadoutCost {
   public:
     /// `shape`: the window that is read. `schedule` must outlive this.
     /// \throws InputError as `check_window`, or if with kDrop not even overhead and code load fit
     /// the budget.
-    ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
-                   SlotBudget budget);
+    ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
+                SlotBudget budget);
 
     /// Cost of `slot`. Steady slots of the same phase are equal and computed once.
-    [[nodiscard]] const SlotAccount& of(std::int64_t slot);
+    [[nodiscard]] const SlotCost& of(std::int64_t slot);
     /// Times of its rows from `begin` on, without dropped rows.
     [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
 
     /// Adds slot `slots()` to the totals and returns it.
-    const SlotAccount& add_next();
+    const SlotCost& add_next();
     [[nodiscard]] std::int64_t slots() const { return slots_; }
     [[nodiscard]] std::int64_t overruns() const { return overruns_; }
     [[nodiscard]] std::int64_t clocks() const { return clocks_; }
@@ -88,7 +88,7 @@ class ReadoutAccount {
     [[nodiscard]] std::int64_t first_steady_slot() const { return first_steady_slot_; }
 
   private:
-    [[nodiscard]] SlotAccount account(std::int64_t slot);
+    [[nodiscard]] SlotCost compute(std::int64_t slot);
     [[nodiscard]] std::size_t rows_that_fit(const SlotTimes& times) const;
     void count(const RowTimes& row, ReadoutCounts& counts) const;
 
@@ -98,8 +98,8 @@ class ReadoutAccount {
     SlotBudget budget_;
     RowLoads row_loads_;
     std::int64_t first_steady_slot_ = 0;
-    std::vector<SlotAccount> by_phase_;  ///< of steady slots; `clocks` 0: not yet known
-    SlotAccount early_;                  ///< of the last slot before those
+    std::vector<SlotCost> by_phase_;  ///< of steady slots; `clocks` 0: not yet known
+    SlotCost early_;                  ///< of the last slot before those
     std::vector<RowLoad> loads_;
 
     std::int64_t slots_ = 0;
