@@ -125,7 +125,7 @@ std::string check_serial(const std::string& serial) {
 }
 
 void check_mode(const Command& command, const ServedSourceChoice& source) {
-    if (source.mode == "coded")
+    if (source.mode == ServedMode::kCoded)
         command.refuse({"--format"}, "is of --mode frames; leave it out");
     else
         command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},

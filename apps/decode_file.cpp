@@ -141,7 +141,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);
     std::optional<ScheduleCheck> check;
-    if (!arguments.check_schedule.empty()) {
+    if (arguments.check_schedule != CheckSchedule::kNo) {
         StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, follower);
         check = checked_schedule(reader, arguments, run);
     }

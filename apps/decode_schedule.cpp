@@ -59,7 +59,7 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
                 arguments.stream, why);
             break;
         case Verdict::kShifted:
-            if (arguments.check_schedule != "fix")
+            if (arguments.check_schedule == CheckSchedule::kRefuseShift)
                 throw InputError(arguments.stream,
                                  fmt::format("the samples follow the schedule shifted by {} ({}); "
                                              "--check-schedule=fix decodes with this shift",

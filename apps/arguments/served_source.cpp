@@ -47,9 +47,9 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
         .required()
         .input();
     command
-        .add_option("--mode", source.mode,
+        .add_choice("--mode", source.mode,
+                    {{"frames", ServedMode::kFrames}, {"coded", ServedMode::kCoded}},
                     "frames: as they are; coded: the samples of a sensor (frames)")
-        .one_of({"frames", "coded"})
         .type_name("frames|coded");
     command
         .add_option("--fps", source.frames_per_s,
@@ -66,8 +66,9 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
 }
 
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
-    if (choice.mode == "coded" || !is_recording(choice.path)) say_warnings_of_footage(choice);
-    if (choice.mode == "coded")
+    const bool coded = choice.mode == ServedMode::kCoded;
+    if (coded || !is_recording(choice.path)) say_warnings_of_footage(choice);
+    if (coded)
         return std::make_unique<CodedFrames>(
             choice.path, origin_of(choice.path, choice.reading, [] { throw_if_stopped(); }),
             choice.sensor, choice.frames_per_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +12,15 @@
 
 namespace stipple {
 
+enum class ServedMode : std::uint8_t {
+    kFrames,  ///< the frames as they are
+    kCoded    ///< the samples of an emulated sensor
+};
+
 /// What `capture serve` shall serve.
 struct ServedSourceChoice {
     std::string path;
-    std::string mode = "frames";  ///< or "coded"
+    ServedMode mode = ServedMode::kFrames;
     std::optional<double> frames_per_s;
     std::string format;  ///< of footage in mode frames; empty: Mono8
     FootageOptions reading;
