@@ -97,11 +97,17 @@ class Config {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Finds `name` as a file, or as `<config folder>/<kind>/<name>.toml` (kind: "sensors",
-/// "schedules"). \throws InputError naming the one that was probably meant, or all there are.
-[[nodiscard]] std::filesystem::path find_config(std::string_view kind, std::string_view name);
+/// What a configuration file describes.
+enum class ConfigKind : std::uint8_t { kSensors, kSchedules };
 
-/// All names of that kind, sorted.
-[[nodiscard]] std::vector<std::string> config_names(std::string_view kind);
+/// The folder of a kind: "sensors", "schedules".
+[[nodiscard]] std::string_view folder_of(ConfigKind kind);
+
+/// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`.
+/// \throws InputError naming the one that was probably meant, or all there are.
+[[nodiscard]] std::filesystem::path find_config(ConfigKind kind, std::string_view name);
+
+/// All names of a kind, sorted.
+[[nodiscard]] std::vector<std::string> config_names(ConfigKind kind);
 
 }  // namespace stipple

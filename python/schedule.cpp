@@ -181,7 +181,8 @@ Raises ValueError for a key or value that the file may not have, OSError for a m
              py::arg("settings") = py::dict(), py::arg("size") = Tile(480, 640),
              py::arg("seed") = 1, py::arg("sensor") = py::none())
         .def_static(
-            "names", [] { return config_names("schedules"); }, "The schedules of config/schedules.")
+            "names", [] { return config_names(ConfigKind::kSchedules); },
+            "The schedules of config/schedules.")
         .def(
             "exposures",
             [](const ChosenSchedule& self) { return exposures_of(self.made.schedule); },

@@ -18,21 +18,22 @@ namespace stipple {
 namespace {
 
 /// \throws InputError for a file without keys, which would be taken for all the defaults.
-Config open_config(std::string_view kind, const std::string& name,
+Config open_config(ConfigKind kind, const std::string& name,
                    const std::vector<std::string>& settings) {
     const auto file = find_config(kind, name);
-    Config config(file, settings, kind == "sensors" ? "sensor" : "schedule");
+    Config config(file, settings, kind == ConfigKind::kSensors ? "sensor" : "schedule");
     if (config.file_is_empty())
-        throw InputError(file.string(), fmt::format("holds no keys; config/{} has examples", kind));
+        throw InputError(file.string(),
+                         fmt::format("holds no keys; config/{} has examples", folder_of(kind)));
     return config;
 }
 
 Config sensor_config(const SensorChoice& choice) {
-    return open_config("sensors", choice.sensor, choice.settings);
+    return open_config(ConfigKind::kSensors, choice.sensor, choice.settings);
 }
 
 Config schedule_config(const SensorChoice& choice) {
-    return open_config("schedules", choice.schedule, choice.schedule_settings);
+    return open_config(ConfigKind::kSchedules, choice.schedule, choice.schedule_settings);
 }
 
 /// The schedule of a stream whose keys are longer is in its header only.
@@ -86,8 +87,8 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
 
 std::string no_timing_text() {
     std::vector<std::string> timed;
-    for (const std::string& name : config_names("sensors")) {
-        Config config(find_config("sensors", name), {});
+    for (const std::string& name : config_names(ConfigKind::kSensors)) {
+        Config config(find_config(ConfigKind::kSensors, name), {});
         if (read_timing(config, 1)) timed.push_back(name);
     }
     return fmt::format("has no section [timing]; these sensors have one: {}", joined(timed));
