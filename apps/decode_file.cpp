@@ -18,7 +18,6 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
-#include "apps/report/stream_text.h"
 #include "apps/standard_error.h"
 #include "apps/stream_follower.h"
 #include "core/config.h"
@@ -29,6 +28,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/frame_writer.h"
+#include "stream/stream_figures.h"
 
 namespace stipple {
 namespace {

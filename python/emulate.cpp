@@ -9,18 +9,17 @@
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "python/stream.h"
-#include "readout/program/sequencer_program.h"
+#include "readout/emulation_figures.h"
 #include "readout/provenance.h"
-#include "readout/stream_recorder.h"
+#include "readout/timing/readout_figures.h"
 
 namespace stipple::python {
 namespace {
-
-using namespace pybind11::literals;
 
 /// A sensor with its schedule for some footage.
 SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
@@ -33,42 +32,12 @@ SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const p
     return set_up(choice, schedule, footage.shape(), footage.filter());
 }
 
-/// What the readout cost: the key `readout` of "emulate" in docs/cli.md.
-py::dict readout_dict(const ReadoutCost& cost, double light_throughput) {
-    const ReadoutCounts& totals = cost.totals();
-    const auto clocks = static_cast<double>(cost.clocks());
-    const auto slots = static_cast<double>(cost.slots());
-    const double seconds = clocks / static_cast<double>(cost.timing().clock_hz);
-    const int rows = cost.shape().rows + cost.timing().dark_rows;
-    const bool drops = cost.budget().policy == OverrunPolicy::kDrop;
-    return py::dict(
-        "overrun_policy"_a = drops ? "drop" : "stretch", "slot_clocks"_a = cost.budget().clocks,
-        "clocks"_a = cost.clocks(), "seconds"_a = seconds, "sensor_slots_hz"_a = slots / seconds,
-        "overrun_slots"_a = cost.overruns(), "dropped_samples"_a = totals.dropped_samples,
-        "readout_clocks"_a = totals.readout_clocks, "rows_read"_a = totals.rows,
-        "conversions"_a = totals.conversions, "transferred_samples"_a = totals.transferred,
-        "link_bits"_a = totals.bits,
-        "row_utilisation"_a = static_cast<double>(totals.rows) / (slots * rows),
-        "adc_utilisation"_a = static_cast<double>(totals.convert_clocks) / clocks,
-        "link_utilisation"_a = static_cast<double>(totals.link_clocks) / clocks,
-        "energy_uj"_a = totals.energy_pj * 1e-6,
-        "sample_energy_pj"_a = totals.energy_pj / static_cast<double>(totals.samples),
-        "light_throughput"_a = light_throughput,
-        "schedule_memory_bits"_a = schedule_memory_bits(cost.schedule()),
-        "code_load_bits_per_second"_a =
-            static_cast<double>(cost.shape().pixels()) * (slots / seconds));
-}
-
 /// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
 py::dict figures_of(const StreamRecorder& recorder) {
-    py::dict figures("slots"_a = recorder.stats().slots, "samples"_a = recorder.samples(),
-                     "payload_bits"_a = recorder.payload_bits(),
-                     "compression_ratio"_a = recorder.compression_ratio(),
-                     "light_throughput"_a = recorder.light_throughput(),
-                     "light_read"_a = recorder.light_read(),
-                     "saturated_fraction"_a = recorder.saturated_fraction());
+    py::dict figures = dict_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
     if (const ReadoutCost* cost = recorder.readout_cost())
-        figures["readout"] = readout_dict(*cost, recorder.light_throughput());
+        figures["readout"] = dict_of(
+            [&](const auto& add) { visit_cost_figures(*cost, recorder.light_throughput(), add); });
     return figures;
 }
 

@@ -76,7 +76,4 @@ class StreamFile {
 /// Header and counts of a stream that was read: the keys of `info` in docs/cli.md.
 [[nodiscard]] pybind11::dict header_dict(const StreamHeader& header);
 
-/// What a damaged stream has lost, in words; empty if nothing.
-[[nodiscard]] std::string damage_text(const StreamReport& report);
-
 }  // namespace stipple::python

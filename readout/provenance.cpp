@@ -155,7 +155,7 @@ std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage
     toml::table text{{"emulator", fmt::format("stipple {}", version())},
                      {"footage", footage_table(footage)},
                      {"options", options_table(setup)},
-                     {"overrun", setup.overrun == OverrunPolicy::kDrop ? "drop" : "stretch"},
+                     {"overrun", name_of(setup.overrun)},
                      {"schedule", schedule_table(setup.schedule)},
                      {"sensor", sensor_table(setup)}};
     // TOML integers are signed, seeds are not.

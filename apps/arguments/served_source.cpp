@@ -8,6 +8,7 @@
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
+#include "capture/recording/recording_footage.h"
 #include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"

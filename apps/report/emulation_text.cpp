@@ -4,23 +4,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
 #include "apps/report/readout_text.h"
+#include "readout/emulation_figures.h"
 
 namespace stipple {
 
 nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                       std::optional<double> slots_per_s) {
     const ReadoutStats& stats = recorder.stats();
-    nlohmann::ordered_json json{{"slots", stats.slots},
-                                {"samples", recorder.samples()},
-                                {"payload_bits", recorder.payload_bits()},
-                                {"compression_ratio", recorder.compression_ratio()},
-                                {"light_throughput", recorder.light_throughput()},
-                                {"light_read", recorder.light_read()},
-                                {"saturated_fraction", recorder.saturated_fraction()},
-                                {"slots_per_second", nullptr},
-                                {"samples_per_second", nullptr}};
+    auto json = json_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
+    json["slots_per_second"] = nullptr;
+    json["samples_per_second"] = nullptr;
     if (slots_per_s) {
         json["slots_per_second"] = *slots_per_s;
         json["samples_per_second"] =

@@ -18,6 +18,9 @@ enum class OverrunPolicy : std::uint8_t {
     kDrop      ///< rows that do not fit are reset without readout
 };
 
+/// As an option of the command line: "stretch", "drop".
+[[nodiscard]] std::string_view name_of(OverrunPolicy policy);
+
 /// The part of a readout that takes most of its time.
 enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };
 
