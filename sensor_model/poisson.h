@@ -5,7 +5,7 @@
 
 namespace stipple {
 
-/// Larger means are reduced to this.
+/// Max mean of a draw, in counts; larger means are reduced to it.
 inline constexpr float kMaxPoissonMean = 1e9F;
 
 /// Poisson draw with the given mean, the quantile of one random word: the smallest k with
