@@ -24,12 +24,12 @@ namespace {
 /// A sensor with its schedule for some footage.
 SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
                        std::uint64_t seed, const std::string& overrun) {
-    SensorChoice choice = sensor_of(sensor).choice;
-    choice.seed = seed;
+    ChosenSensor chosen = sensor_of(sensor);
+    chosen.choice.seed = seed;
     if (overrun != "stretch" && overrun != "drop")
         throw InputError("overrun", "\"" + overrun + "\" is none of stretch, drop");
-    choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
-    return set_up(choice, schedule, footage.shape(), footage.filter());
+    chosen.choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+    return set_up(chosen, schedule, footage.shape(), footage.filter());
 }
 
 /// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.

@@ -62,11 +62,8 @@ void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
 
 /// Why the sensor cannot do it, or None.
 std::optional<std::string> problem_of(const ChosenSchedule& schedule, const py::object& sensor) {
-    SensorChoice choice = sensor_of(sensor).choice;
-    choice.seed = schedule.choice.seed;
-    choice.schedule = schedule.choice.schedule;
-    choice.schedule_settings = schedule.choice.schedule_settings;
-    return schedule_problem(set_up_sensor(choice, schedule.shape));
+    return schedule_problem(
+        set_up_sensor(sensor_of(sensor).description, schedule.choice, schedule.shape));
 }
 
 /// The text of a schedule file of these exposures: an array as `exposures_of` makes.
@@ -138,9 +135,9 @@ py::array exposures_of(const ExposureSchedule& schedule) {
     return py::array_t<ExposureRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
 }
 
-SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, FrameShape footage,
+SensorSetup set_up(const ChosenSensor& sensor, const py::object& schedule, FrameShape footage,
                    ColourFilter mosaic) {
-    SensorChoice choice = sensor;
+    SensorChoice choice = sensor.choice;
     const bool is_made = py::isinstance<ChosenSchedule>(schedule);
     if (is_made) {
         const auto& made = schedule.cast<const ChosenSchedule&>();
@@ -149,7 +146,7 @@ SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, Frame
     } else {
         choice.schedule = name_of(schedule);
     }
-    SensorSetup setup = set_up_sensor(choice, footage, mosaic);
+    SensorSetup setup = set_up_sensor(sensor.description, choice, footage, mosaic);
     if (is_made) {
         const auto& made = schedule.cast<const ChosenSchedule&>();
         if (made.made.schedule != setup.schedule.schedule)

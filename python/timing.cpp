@@ -26,15 +26,14 @@ const ReadoutTiming& timing_of(const ChosenSensor& sensor) {
 
 py::dict timing(const py::object& chosen_sensor, const py::object& schedule, const Size& size,
                 std::uint64_t seed) {
-    const ChosenSensor sensor = sensor_of(chosen_sensor);
+    ChosenSensor sensor = sensor_of(chosen_sensor);
     const ReadoutTiming& clocks = timing_of(sensor);
-    SensorChoice choice = sensor.choice;
-    choice.seed = seed;
+    sensor.choice.seed = seed;
     FrameShape shape = size ? checked_shape(size->first, size->second, 1, "size")
                             : FrameShape{.rows = clocks.rows, .cols = clocks.cols};
     if (!size && py::isinstance<ChosenSchedule>(schedule))
         shape = schedule.cast<const ChosenSchedule&>().shape;
-    const SensorSetup setup = set_up(choice, schedule, shape, ColourFilter::kNone);
+    const SensorSetup setup = set_up(sensor, schedule, shape, ColourFilter::kNone);
     const SlotBudget budget{slot_clocks(clocks, setup.params.slot_us), OverrunPolicy::kStretch};
     ReadoutCost cost(clocks, setup.schedule.schedule, shape, budget);
     const ReadoutRate rate = rate_of(clocks, setup.schedule.schedule, shape);

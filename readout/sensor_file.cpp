@@ -120,7 +120,11 @@ SensorParams set_up_params(const SensorChoice& choice) {
 }
 
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, ColourFilter mosaic) {
-    const SensorDescription sensor = read_sensor_file(choice);
+    return set_up_sensor(read_sensor_file(choice), choice, footage, mosaic);
+}
+
+SensorSetup set_up_sensor(const SensorDescription& sensor, const SensorChoice& choice,
+                          FrameShape footage, ColourFilter mosaic) {
     const FrameShape shape = array_of(sensor.params, footage, mosaic);
     if (sensor.timing) check_window(*sensor.timing, shape);
     if (!sensor.timing && choice.overrun == OverrunPolicy::kDrop)

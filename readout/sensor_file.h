@@ -68,6 +68,12 @@ struct SensorSetup {
 [[nodiscard]] SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage,
                                         ColourFilter mosaic = ColourFilter::kNone);
 
+/// The same for a sensor that was read before: `choice` names its schedule, seed and overrun
+/// policy.
+[[nodiscard]] SensorSetup set_up_sensor(const SensorDescription& sensor, const SensorChoice& choice,
+                                        FrameShape footage,
+                                        ColourFilter mosaic = ColourFilter::kNone);
+
 /// Warning that a sensor without colour filter array treats this mosaic as mono; else empty.
 [[nodiscard]] std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic);
 
