@@ -17,7 +17,7 @@ enum class ServedMode : std::uint8_t {
     kCoded    ///< the samples of an emulated sensor
 };
 
-/// What `capture serve` shall serve.
+/// The source of `capture serve`.
 struct ServedSourceChoice {
     std::string path;
     ServedMode mode = ServedMode::kFrames;
@@ -31,7 +31,7 @@ struct ServedSourceChoice {
 /// sensor.
 void add_served_source(Command& command, ServedSourceChoice& source);
 
-/// \throws InputError naming what cannot be used.
+/// Opens the source. \throws InputError naming the file or option that cannot be used.
 [[nodiscard]] std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice);
 
 }  // namespace stipple
