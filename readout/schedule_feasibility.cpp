@@ -11,15 +11,16 @@
 namespace stipple {
 namespace {
 
-/// The first slot of the period in which more than `most` exposures of a pixel are under way.
+/// The first slot of the period in which more than `max_exposures` exposures of a pixel are under
+/// way.
 std::optional<std::size_t> crowded_slot(std::span<const Exposure> exposures, int period_slots,
-                                        int most) {
+                                        int max_exposures) {
     std::vector<int> under_way(static_cast<std::size_t>(period_slots), 0);
     for (const Exposure& e : exposures)
         for (std::size_t i = 0; i < static_cast<std::size_t>(e.span_slots()); ++i)
             ++under_way[(e.first_slot + i) % under_way.size()];
     for (std::size_t slot = 0; slot < under_way.size(); ++slot)
-        if (under_way[slot] > most) return slot;
+        if (under_way[slot] > max_exposures) return slot;
     return std::nullopt;
 }
 

@@ -56,7 +56,7 @@ class Parser {
     enum Field { kRows, kCols, kPeriod, kBits, kFields };
     struct FieldRule {
         std::string_view key;
-        int most;
+        int max;
     };
     static constexpr std::array<FieldRule, kFields> kRules = {{{"tile_rows", kMaxTileSide},
                                                                {"tile_cols", kMaxTileSide},
@@ -96,8 +96,8 @@ class Parser {
         int result = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result);
         if (error != std::errc() || end != text.data() + text.size() || result < 1 ||
-            result > rule.most)
-            fail(fmt::format("{} = {}: needs an integer from 1 to {}", rule.key, text, rule.most));
+            result > rule.max)
+            fail(fmt::format("{} = {}: needs an integer from 1 to {}", rule.key, text, rule.max));
         return result;
     }
 

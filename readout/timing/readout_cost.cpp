@@ -60,9 +60,9 @@ ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
     const bool in_turns = timing.row_timing == RowTiming::kSequential;
     const auto [adc, link] = in_turns ? shares_in_turns(times) : shares_overlapped(timing, times);
     const std::int64_t overhead = times.end - times.begin - adc - link;
-    const std::int64_t most = std::max({adc, link, overhead});
-    if (most == link) return ReadoutLimit::kLink;
-    return most == adc ? ReadoutLimit::kAdc : ReadoutLimit::kRowOverhead;
+    const std::int64_t longest = std::max({adc, link, overhead});
+    if (longest == link) return ReadoutLimit::kLink;
+    return longest == adc ? ReadoutLimit::kAdc : ReadoutLimit::kRowOverhead;
 }
 
 }  // namespace
