@@ -99,7 +99,7 @@ class Config {
     std::unique_ptr<Impl> impl_;
 };
 
-/// What a configuration file describes.
+/// Kinds of configuration files.
 enum class ConfigKind : std::uint8_t { kSensors, kSchedules };
 
 /// The folder of a kind: "sensors", "schedules".

@@ -31,7 +31,7 @@ struct NamedSchedule {
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
                                           const ColumnAddressing& addressing);
 
-/// What `kind` may be.
+/// The values of the key `kind`.
 [[nodiscard]] std::vector<std::string_view> schedule_kinds();
 
 /// The keys of schedules of a kind. Precondition: one of `schedule_kinds`.
