@@ -21,7 +21,7 @@
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"

@@ -18,7 +18,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/session_report.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"

@@ -10,7 +10,7 @@
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_footage.h"
 #include "core/error.h"

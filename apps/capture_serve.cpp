@@ -9,8 +9,7 @@
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
-#include "apps/report/session_report.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/serve/gige_server.h"
 #include "core/version.h"
@@ -126,7 +125,7 @@ std::string check_serial(const std::string& serial) {
 }
 
 void check_mode(const Command& command, const ServedSourceChoice& source) {
-    if (source.mode == "coded")
+    if (source.mode == ServedMode::kCoded)
         command.refuse({"--format"}, "is of --mode frames; leave it out");
     else
         command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},

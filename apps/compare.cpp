@@ -13,7 +13,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/quality_json.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"

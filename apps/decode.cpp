@@ -58,8 +58,9 @@ void add_decode(Command& app, Action& action) {
                     "with --follow: end where nothing more has come for so long (10)")
         .check(number_check(0, 1e6))
         .type_name("SECONDS");
+    const auto check_schedule = std::make_shared<std::string>();
     command
-        .add_flag("--check-schedule", options->check_schedule,
+        .add_flag("--check-schedule", *check_schedule,
                   "first see whether the samples follow the schedule, or which shift of it; "
                   "=fix goes on with that shift")
         .type_name("[=fix]")
@@ -72,7 +73,10 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    set_action(command, action, options, decode_file, [command, options] {
+    set_action(command, action, options, decode_file, [command, options, check_schedule] {
+        if (!check_schedule->empty())
+            options->check_schedule =
+                *check_schedule == "fix" ? CheckSchedule::kFixShift : CheckSchedule::kRefuseShift;
         if (!options->follow)
             command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
     });

@@ -4,10 +4,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "apps/decode_schedule.h"
 #include "apps/interrupt.h"
@@ -15,10 +17,8 @@
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/session_report.h"
 #include "apps/report/stage_outputs.h"
-#include "apps/report/standard_error.h"
-#include "apps/report/stream_text.h"
+#include "apps/standard_error.h"
 #include "apps/stream_follower.h"
 #include "core/config.h"
 #include "core/error.h"
@@ -28,6 +28,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/frame_writer.h"
+#include "stream/stream_figures.h"
 
 namespace stipple {
 namespace {
@@ -85,23 +86,28 @@ DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, F
         });
 }
 
-/// What made the frames end: a value of the JSON key `ended_by`.
-std::string_view end_of(const DecodeReport& report, const DecodeArguments& arguments,
-                        const StreamFollower& follower) {
-    if (report.slots == arguments.until) return "until";
-    if (stop_signal() != 0) return "signal";
-    return follower.timed_out() ? "timeout" : "stream";
+/// What made the frames end.
+enum class DecodeEnd : std::uint8_t { kStream, kUntil, kTimeout, kSignal };
+
+/// By DecodeEnd: values of the JSON key `ended_by`.
+constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "timeout", "signal"};
+
+DecodeEnd end_of(const DecodeReport& report, const DecodeArguments& arguments,
+                 const StreamFollower& follower) {
+    if (report.slots == arguments.until) return DecodeEnd::kUntil;
+    if (stop_signal() != 0) return DecodeEnd::kSignal;
+    return follower.timed_out() ? DecodeEnd::kTimeout : DecodeEnd::kStream;
 }
 
 /// Ends that the user may not expect.
-void warn(std::string_view end, const DecodeReport& report, const DecodeArguments& arguments,
+void warn(DecodeEnd end, const DecodeReport& report, const DecodeArguments& arguments,
           const StreamFollower& follower) {
-    if (end == "timeout")
+    if (end == DecodeEnd::kTimeout)
         say_error(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
             "if it ended here, after {}",
             arguments.stream, follower.timeout_s(), counted(report.slots, "slot"));
-    else if (end == "stream" && arguments.until > 0)
+    else if (end == DecodeEnd::kStream && arguments.until > 0)
         say_error("{}: ends after {}, before --until {}", arguments.stream,
                   counted(report.slots, "slot"), arguments.until);
 }
@@ -112,11 +118,11 @@ double saturated_fraction(const DecodeReport& report) {
 }
 
 nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
-                                  std::string_view end) {
+                                  DecodeEnd end) {
     return {{"method", method},
             {"seconds", report.seconds},
             {"slots", report.slots},
-            {"ended_by", end},
+            {"ended_by", kEndNames[static_cast<std::size_t>(end)]},
             {"saturated_fraction", saturated_fraction(report)},
             {"voxels", report.voxels},
             {"voxels_per_second", static_cast<double>(report.voxels) / report.seconds},
@@ -142,7 +148,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamFollower follower(arguments.stream, arguments.timeout_s);
     JsonFile json(run);
     std::optional<ScheduleCheck> check;
-    if (!arguments.check_schedule.empty()) {
+    if (arguments.check_schedule != CheckSchedule::kNo) {
         StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, follower);
         check = checked_schedule(reader, arguments, run);
     }
@@ -161,7 +167,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();
-    const std::string_view end = end_of(report, arguments, follower);
+    const DecodeEnd end = end_of(report, arguments, follower);
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
@@ -177,10 +183,11 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamReport found = reader.report();
     if (found.samples == 0)
         say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));
-    if (end == "stream" && !found.complete && undamaged(found))
+    if (end == DecodeEnd::kStream && !found.complete && undamaged(found))
         say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
                   arguments.stream);
-    if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
+    if (end == DecodeEnd::kSignal)
+        found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
         throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +
                                                "\n  the output is made of what is left");

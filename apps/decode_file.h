@@ -8,7 +8,14 @@
 
 namespace stipple {
 
-/// What `stipple decode` was asked for.
+/// Whether the samples are compared with the schedule of the header before decoding.
+enum class CheckSchedule : std::uint8_t {
+    kNo,
+    kRefuseShift,  ///< samples that follow the schedule with a shift are an error
+    kFixShift      ///< they are decoded with this shift
+};
+
+/// The arguments of `stipple decode`.
 struct DecodeArguments {
     std::string stream;
     std::string output;
@@ -18,10 +25,10 @@ struct DecodeArguments {
     std::string stages;  ///< folder; empty: none
     bool strict = false;
     bool fill_gaps = false;
-    std::int64_t until = 0;      ///< frames wanted; 0: all
-    bool follow = false;         ///< the stream is still being written
-    double timeout_s = 10;       ///< with `follow`: without growth
-    std::string check_schedule;  ///< empty: no; "true"; "fix"
+    std::int64_t until = 0;  ///< frames wanted; 0: all
+    bool follow = false;     ///< the stream is still being written
+    double timeout_s = 10;   ///< with `follow`: without growth
+    CheckSchedule check_schedule = CheckSchedule::kNo;
 };
 
 /// Decodes a stream to video and says how it went. \throws InputError, DeviceError, Interrupted.

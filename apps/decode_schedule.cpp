@@ -8,7 +8,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -59,7 +59,7 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
                 arguments.stream, why);
             break;
         case Verdict::kShifted:
-            if (arguments.check_schedule != "fix")
+            if (arguments.check_schedule == CheckSchedule::kRefuseShift)
                 throw InputError(arguments.stream,
                                  fmt::format("the samples follow the schedule shifted by {} ({}); "
                                              "--check-schedule=fix decodes with this shift",

@@ -15,7 +15,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/rate_warning.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
@@ -75,7 +75,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (truth) truth->finish();
     recorder.finish();
     if (waveform)
-        waveform->write(*recorder.account(), setup.params.name,
+        waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
     if (frame.empty() && footage.recording() != nullptr) {

@@ -14,6 +14,7 @@
 #include "core/memory_limit.h"
 #include "readout/provenance.h"
 #include "readout/timing/stretched_slots.h"
+#include "stream/stream_figures.h"
 
 namespace stipple {
 namespace {

@@ -52,7 +52,7 @@ std::string title_of(const std::string& comment) {
     return title;
 }
 
-std::vector<Entry> configurations(const std::string& kind) {
+std::vector<Entry> configurations(ConfigKind kind) {
     std::vector<Entry> entries;
     for (const std::string& name : config_names(kind))
         entries.push_back({name, title_of(first_comment(find_config(kind, name)))});
@@ -68,7 +68,7 @@ std::vector<Entry> entries_of(const std::string& kind) {
         for (const NamedDecodeMethod& method : decode_methods())
             entries.push_back({std::string(method.name), std::string(method.text)});
     else
-        entries = configurations(kind);
+        entries = configurations(kind == "sensors" ? ConfigKind::kSensors : ConfigKind::kSchedules);
     return entries;
 }
 

@@ -6,7 +6,7 @@
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
@@ -26,14 +26,13 @@ void check(const CheckOptions& options, const RunOptions& run) {
                                              .schedule_settings = choice.settings,
                                              .seed = choice.seed},
                                             choice.shape);
-    const auto& [name, source, schedule] = setup.schedule;
+    const std::string& name = setup.schedule.name;
     const SensorParams& sensor = setup.params;
     JsonFile json(run);
-    auto problem = store_problem(schedule, sensor.charge_stores);
+    const auto problem = schedule_problem(setup);
     std::optional<std::string> remark;
-    if (setup.timing && !problem)
-        problem = timing_problem(schedule, *setup.timing, setup.shape, sensor.slot_us);
-    if (setup.timing) remark = group_remark(schedule, setup.timing->addressing, setup.shape);
+    if (setup.timing)
+        remark = group_remark(setup.schedule.schedule, setup.timing->addressing, setup.shape);
     json.write({{"schedule", name},
                 {"sensor", sensor.name},
                 {"legal", !problem.has_value()},

@@ -19,12 +19,12 @@ struct MakeOptions {
 };
 
 void make(const MakeOptions& options, const RunOptions& run) {
-    const auto [name, source, schedule] = set_up_schedule(options.schedule);
+    const NamedSchedule named = set_up_schedule(options.schedule);
     JsonFile json(run);
-    write_text_file(options.output, run.force, code_text(schedule, name));
-    const ScheduleFigures figures = schedule_figures(schedule, options.schedule.shape);
-    json.write(figures_json(name, figures));
-    run.say(fmt::format("{}: {}", options.output, figures_text(name, figures)));
+    write_text_file(options.output, run.force, code_text(named.schedule, named.name));
+    const ScheduleFigures figures = schedule_figures(named.schedule, options.schedule.shape);
+    json.write(figures_json(named.name, figures));
+    run.say(fmt::format("{}: {}", options.output, figures_text(named.name, figures)));
 }
 
 }  // namespace

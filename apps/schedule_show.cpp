@@ -22,18 +22,19 @@ struct ShowOptions {
 };
 
 void show(const ShowOptions& options, const RunOptions& run) {
-    const auto [name, source, schedule] = set_up_schedule(options.schedule);
+    const NamedSchedule named = set_up_schedule(options.schedule);
+    const ExposureSchedule& schedule = named.schedule;
     const int slots =
         options.slots > 0 ? options.slots : std::clamp(2 * schedule.period_slots(), 24, 64);
     const auto pixels = sample_pixels(schedule, options.schedule.shape, options.pixels);
     JsonFile json(run);
     if (!options.output.empty())
-        draw_schedule(options.output, run.force, {name, schedule, pixels, slots});
+        draw_schedule(options.output, run.force, {named.name, schedule, pixels, slots});
     const ScheduleFigures figures = schedule_figures(schedule, options.schedule.shape);
-    json.write(figures_json(name, figures));
+    json.write(figures_json(named.name, figures));
     const std::string diagram =
         options.output.empty() ? diagram_text(schedule, pixels, slots) : options.output + ": ";
-    run.say(diagram + figures_text(name, figures));
+    run.say(diagram + figures_text(named.name, figures));
 }
 
 }  // namespace

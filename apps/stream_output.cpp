@@ -7,7 +7,8 @@ namespace stipple {
 StreamRecorder open_stream_output(const std::filesystem::path& file, const RunOptions& run,
                                   const SensorSetup& setup, const FootageOrigin& origin) {
     say_leftover(file);
-    return StreamRecorder(file, run.force, setup, provenance_of(setup, origin));
+    return StreamRecorder(file, setup,
+                          {.force = run.force, .provenance = provenance_of(setup, origin)});
 }
 
 }  // namespace stipple

@@ -8,8 +8,9 @@
 
 namespace stipple {
 
-/// The recorder of a new stream `file`. Says on standard error what a run that was killed has left
-/// of it. `setup` must outlive the recorder. \throws InputError, DeviceError as StreamRecorder.
+/// The recorder of a new stream `file`, with the provenance of `setup` and `origin`. Reports
+/// leftovers of a killed run on standard error. `setup` must outlive the recorder. \throws
+/// InputError, DeviceError as StreamRecorder.
 [[nodiscard]] StreamRecorder open_stream_output(const std::filesystem::path& file,
                                                 const RunOptions& run, const SensorSetup& setup,
                                                 const FootageOrigin& origin);

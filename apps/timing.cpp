@@ -7,8 +7,8 @@
 #include "apps/arguments/checks.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
-#include "apps/report/account_text.h"
 #include "apps/report/json_file.h"
+#include "apps/report/readout_text.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "readout/sensor_file.h"
@@ -39,18 +39,18 @@ void time_readout(const TimingOptions& options, const RunOptions& run) {
     auto waveform = waveform_file(options.waveform, run.force, true);
     const NamedSchedule named = set_up_schedule(options.sensor, shape, timing.addressing);
     const SlotBudget budget{slot_clocks(timing, sensor.params.slot_us), OverrunPolicy::kStretch};
-    ReadoutAccount account(timing, named.schedule, shape, budget);
+    ReadoutCost cost(timing, named.schedule, shape, budget);
     const ReadoutRate rate = rate_of(timing, named.schedule, shape);
     if (waveform)
-        waveform->write(account, sensor.params.name,
-                        {account.first_steady_slot(),
+        waveform->write(cost, sensor.params.name,
+                        {cost.first_steady_slot(),
                          std::min(options.waveform.slots, named.schedule.period_slots())},
                         [] { return stop_signal() == 0; });
     nlohmann::ordered_json figures{{"sensor", sensor.params.name}, {"schedule", named.name}};
-    figures.update(rate_json(rate, account));
+    figures.update(rate_json(rate, cost));
     json.write(figures);
     run.say(fmt::format("sensor       {}, schedule {}\n{}", sensor.params.name, named.name,
-                        rate_text(rate, account)));
+                        rate_text(rate, cost)));
 }
 
 }  // namespace

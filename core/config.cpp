@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <compare>
 #include <list>
 #include <map>
 #include <optional>
@@ -18,18 +19,24 @@
 namespace stipple {
 namespace {
 
-/// A value and where it was given.
+/// Where a value was given. The order is that in which values apply.
+struct Place {
+    enum class Source : std::uint8_t { kFile, kOverride };
+    Source source = Source::kFile;
+    std::size_t number = 0;  ///< line of the file, or number of the override
+
+    auto operator<=>(const Place&) const = default;
+};
+
 struct Entry {
     const toml::node* value = nullptr;
-    std::string where;  ///< "file:line" or "--set"
+    Place place;
     bool known = false;
-    std::size_t order = 0;  ///< grows as entries were given
 };
-constexpr std::size_t kAfterFile = std::size_t{1} << 40U;  ///< no file has so many lines
 using Entries = std::map<std::string, Entry, std::less<>>;
 
-/// Of a key: each value has its name, which begins with those of all sections around it.
-constexpr std::size_t kLongestName = 256;
+/// Characters of a key with its sections. Each value stores all of them.
+constexpr std::size_t kMaxKeyLength = 256;
 
 /// Adds all values of `table` under their dotted names. Empty tables count as values, so that a
 /// misspelt section is noticed.
@@ -37,19 +44,19 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
              Entries& entries) {
     for (const auto& [key, value] : table) {
         const std::string name = fmt::format("{}{}", prefix, key.str());
-        if (name.size() > kLongestName)
+        if (name.size() > kMaxKeyLength)
             throw InputError(fmt::format("{}:{}", file, key.source().begin.line),
                              fmt::format("a key is longer than {} characters, with those of its "
                                          "sections",
-                                         kLongestName));
+                                         kMaxKeyLength));
         const auto* inner = value.as_table();
         if (inner != nullptr && !inner->empty()) {
             flatten(*inner, fmt::format("{}.", name), file, entries);
             continue;
         }
-        const std::string where = fmt::format("{}:{}", file, key.source().begin.line);
-        if (!entries.try_emplace(name, Entry{&value, where, false, key.source().begin.line}).second)
-            throw InputError(fmt::format("{}: {}", where, name), "is given twice");
+        const Place place{Place::Source::kFile, key.source().begin.line};
+        if (!entries.try_emplace(name, Entry{&value, place}).second)
+            throw InputError(fmt::format("{}:{}: {}", file, place.number, name), "is given twice");
     }
 }
 
@@ -142,7 +149,7 @@ void Config::Impl::set(const std::string& assignment) {
         throw InputError(fmt::format("--set {}{}", section, assignment), "write key=value");
     const std::string key = assignment.substr(0, equals);
     tables.push_back(parse_value(std::string_view(assignment).substr(equals + 1)));
-    entries[key] = Entry{tables.back().get("value"), "--set", false, kAfterFile + tables.size()};
+    entries[key] = Entry{tables.back().get("value"), {Place::Source::kOverride, tables.size()}};
 }
 
 const toml::node* Config::Impl::find(const ConfigKey& key, std::string fallback,
@@ -160,8 +167,9 @@ std::string Config::Impl::where(std::string_view key) const {
     const auto found = entries.find(key);
     if (found == entries.end())
         return file.empty() ? std::string(key) : fmt::format("{}: {}", file, key);
-    if (found->second.where == "--set") return fmt::format("--set {}{}", section, key);
-    return fmt::format("{}: {}", found->second.where, key);
+    const Place place = found->second.place;
+    if (place.source == Place::Source::kOverride) return fmt::format("--set {}{}", section, key);
+    return fmt::format("{}:{}: {}", file, place.number, key);
 }
 
 Config::Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -294,7 +302,7 @@ bool Config::contains(std::string_view key) const {
 }
 
 std::vector<std::pair<std::string, std::string>> Config::entries() const {
-    std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> found;
+    std::vector<std::pair<Place, std::pair<std::string, std::string>>> found;
     for (const auto& [key, entry] : impl_->entries) {
         const auto* text = entry.value->as_string();
         if (text == nullptr && !entry.value->is_number() && !entry.value->is_boolean())
@@ -305,12 +313,12 @@ std::vector<std::pair<std::string, std::string>> Config::entries() const {
             out << text->get();
         else
             entry.value->visit([&](const auto& value) { out << value; });
-        found.emplace_back(entry.order, std::pair(key, out.str()));
+        found.emplace_back(entry.place, std::pair(key, out.str()));
     }
     std::sort(found.begin(), found.end());
     std::vector<std::pair<std::string, std::string>> entries;
     entries.reserve(found.size());
-    for (auto& [order, entry] : found) entries.push_back(std::move(entry));
+    for (auto& [place, entry] : found) entries.push_back(std::move(entry));
     return entries;
 }
 

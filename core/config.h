@@ -11,25 +11,25 @@
 
 namespace stipple {
 
-/// Closed interval of accepted numbers; of integers within 2^53.
+/// Closed interval of the accepted values of a number; of an integer within +-2^53.
 struct KeyRange {
     double min = 0;
     double max = 0;
 };
 
-/// A key as its reader describes it. Strings and choices must last as long as the call.
+/// Description of a key by the code that reads it. Strings and choices must outlive the call.
 struct ConfigKey {
-    std::string_view name;  ///< dotted
-    KeyRange range = {};    ///< of a number, of each number of a list
-    std::string_view unit = {};
-    std::string_view text = {};                      ///< what it is, one line
-    std::span<const std::string_view> choices = {};  ///< of a name
+    std::string_view name;                           ///< with sections: "timing.clock_hz"
+    KeyRange range = {};                             ///< of a number, or of each in a list
+    std::string_view unit = {};                      ///< empty: none
+    std::string_view text = {};                      ///< definition, one line
+    std::span<const std::string_view> choices = {};  ///< accepted texts; empty: any
 };
 
-/// A key that was asked for, as `key=value` takes it.
+/// A key that was read, for `stipple list keys`.
 struct KnownKey {
     std::string name;
-    std::string fallback;  ///< empty: it has none
+    std::string fallback;  ///< default as text; empty: none
     std::string range;     ///< "min..max" of numbers and lists of numbers, "a, b" of choices
     std::string unit;
     std::string text;
@@ -37,13 +37,14 @@ struct KnownKey {
     bool operator==(const KnownKey&) const = default;
 };
 
-/// Settings from a TOML file with `key=value` overrides laid over it. A module asks for each key
-/// it knows by its dotted name; what nobody asked for is an error, so a misspelt key never passes.
+/// Values of a TOML file and of "key=value" overrides, which replace those of the file. A reader
+/// asks for each key that it knows; `reject_unknown_keys` then reports all others, so a misspelt
+/// key is always an error.
 class Config {
   public:
-    /// Reads `file` and applies `overrides` ("read_noise_e=5", "adc.bit_depth=10"; values in TOML
-    /// syntax, a bare word is a string). Messages name an override as the command line has it, with
-    /// the `section` before it ("sensor").
+    /// Reads `file` and applies `overrides` in their order ("read_noise_e=5", "adc.bit_depth=10").
+    /// A value has TOML syntax; a bare word is a string. Messages call an override "--set
+    /// SECTION.KEY", with `section` such as "sensor".
     /// \throws InputError naming file, line and column, or the override.
     Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
            std::string_view section = {});
@@ -53,8 +54,9 @@ class Config {
     Config(Config&&) noexcept;
     Config& operator=(Config&&) noexcept;
 
-    /// The value of `key`, or `fallback` if absent. \throws InputError naming file, line and key
-    /// if the type is wrong or the value lies outside its range.
+    /// The value of `key`, or `fallback` if absent, which may lie outside the range and is returned
+    /// as it is. \throws InputError naming file, line and key if the type is wrong or the value
+    /// lies outside its range.
     [[nodiscard]] double number(const ConfigKey& key, double fallback);
     [[nodiscard]] std::int64_t integer(const ConfigKey& key, std::int64_t fallback);
     [[nodiscard]] bool boolean(const ConfigKey& key, bool fallback);
@@ -68,27 +70,28 @@ class Config {
                                               const std::vector<double>& fallback);
     /// A list of texts; empty if absent.
     [[nodiscard]] std::vector<std::string> texts(const ConfigKey& key);
-    /// Whether the key is given; asking does not make it known.
+    /// True if the key has a value. Does not make it known.
     [[nodiscard]] bool contains(std::string_view key) const;
 
-    /// Whether the file has no keys.
+    /// True if the file has no keys.
     [[nodiscard]] bool file_is_empty() const;
 
-    /// All that was given, as text, in the order in which it was: the file, then the overrides.
-    /// For settings whose names only a device knows. \throws InputError for a list or a date.
+    /// All keys with their values as text, in the order of the file, then of the overrides. For
+    /// settings whose names only a device knows. \throws InputError for a list or a date.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> entries() const;
 
-    /// What was given in `section` (empty: everything), without its name: lines of TOML, by key.
+    /// The values of `section` (empty: all), as lines "key = value" of TOML, sorted by key, without
+    /// the name of the section.
     [[nodiscard]] std::string as_toml(std::string_view section) const;
 
-    /// \throws InputError for a key that was given but never asked for, with the nearest known
+    /// \throws InputError for a key with a value that no reader asked for, with the nearest known
     /// key as a suggestion.
     void reject_unknown_keys() const;
 
-    /// What has been asked for, by key.
+    /// The keys that readers asked for, sorted by name.
     [[nodiscard]] std::vector<KnownKey> known_keys() const;
 
-    /// "file:line: key" (or "--set key") for messages.
+    /// Place of a key for messages: "file:line: key", or "--set section.key".
     [[nodiscard]] std::string where(std::string_view key) const;
 
   private:
@@ -96,11 +99,17 @@ class Config {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Finds `name` as a file, or as `<config folder>/<kind>/<name>.toml` (kind: "sensors",
-/// "schedules"). \throws InputError naming the one that was probably meant, or all there are.
-[[nodiscard]] std::filesystem::path find_config(std::string_view kind, std::string_view name);
+/// Kinds of configuration files.
+enum class ConfigKind : std::uint8_t { kSensors, kSchedules };
 
-/// All names of that kind, sorted.
-[[nodiscard]] std::vector<std::string> config_names(std::string_view kind);
+/// The folder of a kind: "sensors", "schedules".
+[[nodiscard]] std::string_view folder_of(ConfigKind kind);
+
+/// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`.
+/// \throws InputError naming the one that was probably meant, or all there are.
+[[nodiscard]] std::filesystem::path find_config(ConfigKind kind, std::string_view name);
+
+/// All names of a kind, sorted.
+[[nodiscard]] std::vector<std::string> config_names(ConfigKind kind);
 
 }  // namespace stipple

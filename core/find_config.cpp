@@ -29,32 +29,36 @@ std::vector<fs::path> config_folders() {
 
 }  // namespace
 
-std::vector<std::string> config_names(std::string_view kind) {
+std::string_view folder_of(ConfigKind kind) {
+    return kind == ConfigKind::kSensors ? "sensors" : "schedules";
+}
+
+std::vector<std::string> config_names(ConfigKind kind) {
     std::set<std::string> names;
     for (const fs::path& folder : config_folders()) {
         std::error_code error;
-        for (const auto& entry : fs::directory_iterator(folder / kind, error))
+        for (const auto& entry : fs::directory_iterator(folder / folder_of(kind), error))
             if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
     }
     return {names.begin(), names.end()};
 }
 
-fs::path find_config(std::string_view kind, std::string_view name) {
+fs::path find_config(ConfigKind kind, std::string_view name) {
     std::error_code error;
     fs::path path(name);
     if (fs::is_regular_file(path, error)) return path;
     if (name.find('/') != std::string_view::npos || path.extension() == ".toml")
         throw InputError(name, "there is no such file");
     for (const fs::path& folder : config_folders()) {
-        fs::path file = folder / kind / fmt::format("{}.toml", name);
+        fs::path file = folder / folder_of(kind) / fmt::format("{}.toml", name);
         if (fs::is_regular_file(file, error)) return file;
     }
     const auto names = config_names(kind);
-    throw InputError(fmt::format("\"{}\"", name),
-                     names.empty()
-                         ? fmt::format("there is no {}/ in any configuration folder", kind)
-                         : fmt::format("is neither a file nor one of the {}; {}", kind,
-                                       suggestion(name, names)));
+    throw InputError(
+        fmt::format("\"{}\"", name),
+        names.empty() ? fmt::format("there is no {}/ in any configuration folder", folder_of(kind))
+                      : fmt::format("is neither a file nor one of the {}; {}", folder_of(kind),
+                                    suggestion(name, names)));
 }
 
 }  // namespace stipple

@@ -10,10 +10,9 @@
 
 namespace stipple {
 
-/// Light on every site of the array in each slot: the input of the sensor and the output of the
-/// decoder. Unit: 1.0 = the sensor's
-/// `photons_per_unit` (r in Eq. 1 of the paper) photons per site and slot; linear, >= 0.
-/// Planar, contiguous, order (slot, plane, row, col).
+/// Photon flux at every site in each slot: the linear light that is the input of the sensor and the
+/// output of the decoder. Unit: 1.0 = `photons_per_unit` (r of Eq. 1) photons per site and slot;
+/// >= 0. Contiguous, order (slot, plane, row, col).
 class FluxVideo {
   public:
     FluxVideo() = default;

@@ -4,7 +4,8 @@
 
 namespace stipple {
 
-/// Receives the completed fraction of the work from time to time; false stops.
-using ProgressCallback = std::function<bool(double fraction)>;
+/// Receives the completed work from time to time, in the thread of the caller: slots in `decode`, a
+/// fraction 0..1 elsewhere. Returns false to stop at once.
+using ProgressCallback = std::function<bool(double done)>;
 
 }  // namespace stipple

@@ -232,7 +232,7 @@ std::optional<FluxVideo> decode_block(Measurements measurements, const Calibrati
 }
 
 DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
-                    const DecodeMonitor& monitor) {
+                    const ProgressCallback& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
     PacketBuffer buffer(reader, options);
@@ -245,11 +245,11 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
         check_proportion(header, options, slots.core_end, buffer.counts().samples());
         check_block(header, options, slots);
         buffer.drop_below(slots.begin);
-        const auto progress = [&](double fraction) {
-            return monitor(static_cast<double>(slots.core_begin) +
-                           fraction * static_cast<double>(slots.core_end - slots.core_begin));
+        const auto block_progress = [&](double fraction) {
+            return progress(static_cast<double>(slots.core_begin) +
+                            fraction * static_cast<double>(slots.core_end - slots.core_begin));
         };
-        const Block video = decode_slots(header, buffer.packets(), options, slots, progress);
+        const Block video = decode_slots(header, buffer.packets(), options, slots, block_progress);
         if (!video) break;
         for (int slot = 0; slot < video->slots() && more; ++slot) {
             more = sink(report.slots, video->frame(slot));
@@ -265,8 +265,8 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
 }
 
 DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink,
-                    const DecodeMonitor& monitor) {
-    return decode(reader, DecodeOptions{.method = method}, sink, monitor);
+                    const ProgressCallback& progress) {
+    return decode(reader, DecodeOptions{.method = method}, sink, progress);
 }
 
 }  // namespace stipple

@@ -20,10 +20,6 @@ struct Measurements;
 /// FluxVideo. Returns false to stop decoding.
 using FrameSink = std::function<bool(std::int64_t slot, std::span<const float> frame)>;
 
-/// Receives the completed work in slots from time to time, in the thread that called `decode`.
-/// Returns false to stop at once, without the present block, which may take a minute.
-using DecodeMonitor = std::function<bool(double slots)>;
-
 struct DecodeReport {
     std::int64_t slots = 0;               ///< frames delivered
     std::uint64_t voxels = 0;             ///< slots x planes x rows x cols
@@ -36,19 +32,20 @@ struct DecodeReport {
 /// not grow with the length of the stream. The same bits for any thread count. Missing and damaged
 /// samples count as unobserved; `reader.report()` lists them. A mosaic of colours is decoded to
 /// three planes as one problem, in which the colours that a pixel does not measure are unobserved:
-/// frames have the `decoded_shape` of the header.
-/// \throws InputError as StreamReader::next; if the method cannot decode the schedule; if too many
-/// slots are without samples (max_missing_slots; more than 128 MB of frames and 128 values per
-/// sample, or of a file of less than 1 MB more than 256 MB) and the options do not have
-/// `fill_gaps`; and as check_memory if a block needs too much.
+/// frames have the `decoded_shape` of the header. `progress` receives slots; if it stops, the
+/// present block, which may take a minute, is not delivered. \throws InputError as
+/// StreamReader::next; if the method cannot decode the schedule; if too many slots are without
+/// samples (max_missing_slots; more than 128 MB of frames and 128 values per sample, or of a file
+/// of less than 1 MB more than 256 MB) and the options do not have `fill_gaps`; and as check_memory
+/// if a block needs too much.
 DecodeReport decode(
     StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
-    const DecodeMonitor& monitor = [](double) { return true; });
+    const ProgressCallback& progress = [](double) { return true; });
 
 /// Uses the defaults of a method.
 DecodeReport decode(
     StreamReader& reader, DecodeMethod method, const FrameSink& sink,
-    const DecodeMonitor& monitor = [](double) { return true; });
+    const ProgressCallback& progress = [](double) { return true; });
 
 /// Decodes one block as `decode` does; the result may be slightly negative. Returns nothing if
 /// `progress` has stopped it.

@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
     const auto sensor =
         stipple::set_up_sensor({.sensor = "lux1310", .schedule = "random"}, footage.shape());
 
-    stipple::StreamRecorder recorder("coded.stipple", true, sensor, "");
+    stipple::StreamRecorder recorder("coded.stipple", sensor, {.force = true});
     std::vector<float> frame(footage.shape().sites());
     while (footage.read(frame)) recorder.expose(frame);
     recorder.finish();

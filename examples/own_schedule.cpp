@@ -1,4 +1,5 @@
 // A schedule of one's own on the scene `pan`: own_schedule OUT.stipple
+#include <stipple/readout/provenance.h>
 #include <stipple/readout/stream_recorder.h>
 #include <stipple/scenes/scene.h>
 
@@ -23,7 +24,9 @@ int main(int argc, char** argv) try {
     auto sensor = stipple::set_up_sensor({.sensor = "ideal"}, scene.options().shape);
     sensor.schedule = fast_and_slow();
 
-    stipple::StreamRecorder recorder(argv[1], true, sensor, "");
+    stipple::StreamRecorder recorder(
+        argv[1], sensor,
+        {.force = true, .provenance = stipple::provenance_of(sensor, {.name = "pan"})});
     std::vector<float> frame(scene.options().shape.sites());
     for (int slot = 0; slot < 16; ++slot) {
         scene.render(slot, frame);

@@ -16,6 +16,7 @@
 #include "python/footage.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "stream/stream_figures.h"
 
 namespace stipple::python {
 namespace {

@@ -9,65 +9,35 @@
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "readout/emulation_figures.h"
 #include "readout/provenance.h"
-#include "readout/stream_recorder.h"
+#include "readout/timing/readout_figures.h"
 
 namespace stipple::python {
 namespace {
 
-using namespace pybind11::literals;
-
 /// A sensor with its schedule for some footage.
 SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
                        std::uint64_t seed, const std::string& overrun) {
-    SensorChoice choice = sensor_of(sensor).choice;
-    choice.seed = seed;
+    ChosenSensor chosen = sensor_of(sensor);
+    chosen.choice.seed = seed;
     if (overrun != "stretch" && overrun != "drop")
         throw InputError("overrun", "\"" + overrun + "\" is none of stretch, drop");
-    choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
-    return set_up(choice, schedule, footage.shape(), footage.filter());
-}
-
-/// What the readout cost: the key `readout` of "emulate" in docs/cli.md.
-py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
-    const ReadoutCounts& totals = account.totals();
-    const auto clocks = static_cast<double>(account.clocks());
-    const auto slots = static_cast<double>(account.slots());
-    const double seconds = clocks / static_cast<double>(account.timing().clock_hz);
-    const int rows = account.shape().rows + account.timing().dark_rows;
-    const bool drops = account.budget().policy == OverrunPolicy::kDrop;
-    return py::dict(
-        "overrun_policy"_a = drops ? "drop" : "stretch", "slot_clocks"_a = account.budget().clocks,
-        "clocks"_a = account.clocks(), "seconds"_a = seconds, "sensor_slots_hz"_a = slots / seconds,
-        "overrun_slots"_a = account.overruns(), "dropped_samples"_a = totals.dropped_samples,
-        "readout_clocks"_a = totals.readout_clocks, "rows_read"_a = totals.rows,
-        "conversions"_a = totals.conversions, "transferred_samples"_a = totals.transferred,
-        "link_bits"_a = totals.bits,
-        "row_utilisation"_a = static_cast<double>(totals.rows) / (slots * rows),
-        "adc_utilisation"_a = static_cast<double>(totals.convert_clocks) / clocks,
-        "link_utilisation"_a = static_cast<double>(totals.link_clocks) / clocks,
-        "energy_uj"_a = totals.energy_pj * 1e-6,
-        "sample_energy_pj"_a = totals.energy_pj / static_cast<double>(totals.samples),
-        "light_throughput"_a = light_throughput,
-        "schedule_memory_bits"_a = schedule_memory_bits(account.schedule()),
-        "code_load_bits_per_second"_a =
-            static_cast<double>(account.shape().pixels()) * (slots / seconds));
+    chosen.choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+    return set_up(chosen, schedule, footage.shape(), footage.filter());
 }
 
 /// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
 py::dict figures_of(const StreamRecorder& recorder) {
-    py::dict figures("slots"_a = recorder.stats().slots, "samples"_a = recorder.samples(),
-                     "payload_bits"_a = recorder.payload_bits(),
-                     "compression_ratio"_a = recorder.compression_ratio(),
-                     "light_throughput"_a = recorder.light_throughput(),
-                     "light_read"_a = recorder.light_read(),
-                     "saturated_fraction"_a = recorder.saturated_fraction());
-    if (const ReadoutAccount* account = recorder.account())
-        figures["readout"] = readout_dict(*account, recorder.light_throughput());
+    py::dict figures = dict_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        figures["readout"] = dict_of(
+            [&](const auto& add) { visit_cost_figures(*cost, recorder.light_throughput(), add); });
     return figures;
 }
 
@@ -75,8 +45,10 @@ py::dict figures_of(const StreamRecorder& recorder) {
 py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::object& tell,
                       const std::filesystem::path& file, bool force) {
     const std::string provenance = provenance_of(setup, footage.origin());
-    const auto recorder = creating(
-        file, [&] { return std::make_unique<StreamRecorder>(file, force, setup, provenance); });
+    const auto recorder = creating(file, [&] {
+        return std::make_unique<StreamRecorder>(
+            file, setup, StreamRecorderOptions{.force = force, .provenance = provenance});
+    });
     CallProgress progress(tell, footage.slots());
     {
         const py::gil_scoped_release released;

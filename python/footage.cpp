@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <fstream>
 #include <memory>
 #include <utility>
 
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "io/footage_files.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
+#include "readout/footage_origin.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -26,12 +25,6 @@ std::optional<fs::path> path_of(const py::object& video) {
 
 std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& options,
                                 std::vector<std::string>& warnings) {
-    const bool changed = options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear ||
-                         options.luminance || options.max_value;
-    if (changed && is_recording(path))
-        throw InputError(path.string(),
-                         "is a recording of a camera, whose numbers are linear: transfer, "
-                         "luminance and max_value are for other footage");
     const auto open_it = [&] {
         return std::make_unique<ReadAhead>(
             path, options, [&](const std::string& text) { warnings.push_back(text); });
@@ -40,28 +33,6 @@ std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& opti
     const bool is_file = path.string().find('%') == std::string::npos && !fs::is_directory(path);
     if (is_file) return reading(path, open_it);
     return open_it();
-}
-
-/// The regular files of footage, in the order in which they are read.
-std::vector<fs::path> files_of(const fs::path& footage) {
-    if (fs::is_directory(footage)) return images_in_folder(footage).files;
-    if (fs::is_regular_file(footage)) return {footage};
-    return fs::exists(footage) ? std::vector<fs::path>() : images_of_pattern(footage).files;
-}
-
-std::string sha256_of(const std::vector<fs::path>& files) {
-    const py::object hash = py::module_::import("hashlib").attr("sha256")();
-    std::vector<char> bytes(std::size_t{1} << 20U);
-    for (const fs::path& path : files) {
-        std::ifstream file(path, std::ios::binary);
-        while (file) {
-            file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-            hash.attr("update")(py::memoryview::from_memory(bytes.data(), file.gcount()));
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        }
-        if (!file.eof()) throw InputError(path.string(), "cannot be read");
-    }
-    return hash.attr("hexdigest")().cast<std::string>();
 }
 
 FootageOptions options_of(const std::optional<std::string>& transfer, bool luminance,
@@ -138,11 +109,9 @@ std::string Footage::name() const {
 
 FootageOrigin Footage::origin() const {
     if (path_.empty()) return {.name = "NumPy array", .reading = options_};
-    const fs::path path(path_);
-    const auto files = files_of(path);
-    return {.name = (path.has_filename() ? path : path.parent_path()).filename().string(),
-            .sha256 = files.empty() ? "" : sha256_of(files),
-            .reading = options_};
+    return origin_of(path_, options_, [] {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    });
 }
 
 void Footage::pass_warnings_on() {

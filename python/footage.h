@@ -65,7 +65,7 @@ class Footage {
     /// The next frame, order (plane, row, col), valid until the next call, or empty at the end.
     /// Without the GIL.
     std::span<const float> next();
-    /// What a stream says of where its light comes from. With the GIL: reads files whole.
+    /// The origin of the light, for the provenance of a stream. With the GIL: reads files whole.
     [[nodiscard]] FootageOrigin origin() const;
     /// Has Python warn of what the reader warns of. With the GIL.
     void pass_warnings_on();

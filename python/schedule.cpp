@@ -15,8 +15,8 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/sensor.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/schedules/code_schedule.h"
-#include "readout/schedules/schedule_check.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -62,16 +62,8 @@ void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
 
 /// Why the sensor cannot do it, or None.
 std::optional<std::string> problem_of(const ChosenSchedule& schedule, const py::object& sensor) {
-    SensorChoice choice = sensor_of(sensor).choice;
-    choice.seed = schedule.choice.seed;
-    choice.schedule = schedule.choice.schedule;
-    choice.schedule_settings = schedule.choice.schedule_settings;
-    const SensorSetup setup = set_up_sensor(choice, schedule.shape);
-    auto problem = store_problem(setup.schedule.schedule, setup.params.charge_stores);
-    if (setup.timing && !problem)
-        problem = timing_problem(setup.schedule.schedule, *setup.timing, setup.shape,
-                                 setup.params.slot_us);
-    return problem;
+    return schedule_problem(
+        set_up_sensor(sensor_of(sensor).description, schedule.choice, schedule.shape));
 }
 
 /// The text of a schedule file of these exposures: an array as `exposures_of` makes.
@@ -143,9 +135,9 @@ py::array exposures_of(const ExposureSchedule& schedule) {
     return py::array_t<ExposureRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
 }
 
-SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, FrameShape footage,
+SensorSetup set_up(const ChosenSensor& sensor, const py::object& schedule, FrameShape footage,
                    ColourFilter mosaic) {
-    SensorChoice choice = sensor;
+    SensorChoice choice = sensor.choice;
     const bool is_made = py::isinstance<ChosenSchedule>(schedule);
     if (is_made) {
         const auto& made = schedule.cast<const ChosenSchedule&>();
@@ -154,7 +146,7 @@ SensorSetup set_up(const SensorChoice& sensor, const py::object& schedule, Frame
     } else {
         choice.schedule = name_of(schedule);
     }
-    SensorSetup setup = set_up_sensor(choice, footage, mosaic);
+    SensorSetup setup = set_up_sensor(sensor.description, choice, footage, mosaic);
     if (is_made) {
         const auto& made = schedule.cast<const ChosenSchedule&>();
         if (made.made.schedule != setup.schedule.schedule)
@@ -186,7 +178,8 @@ Raises ValueError for a key or value that the file may not have, OSError for a m
              py::arg("settings") = py::dict(), py::arg("size") = Tile(480, 640),
              py::arg("seed") = 1, py::arg("sensor") = py::none())
         .def_static(
-            "names", [] { return config_names("schedules"); }, "The schedules of config/schedules.")
+            "names", [] { return config_names(ConfigKind::kSchedules); },
+            "The schedules of config/schedules.")
         .def(
             "exposures",
             [](const ChosenSchedule& self) { return exposures_of(self.made.schedule); },

@@ -6,6 +6,7 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "python/sensor.h"
 #include "readout/sensor_file.h"
 
 namespace stipple::python {
@@ -22,7 +23,7 @@ struct ChosenSchedule {
 
 /// The sensor with the schedule, a ChosenSchedule of Python or a name or path, for this footage.
 /// \throws InputError as set_up_sensor, or if the schedule was made for something else.
-[[nodiscard]] SensorSetup set_up(const SensorChoice& sensor, const pybind11::object& schedule,
+[[nodiscard]] SensorSetup set_up(const ChosenSensor& sensor, const pybind11::object& schedule,
                                  FrameShape footage, ColourFilter mosaic);
 
 }  // namespace stipple::python

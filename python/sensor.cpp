@@ -83,7 +83,8 @@ Raises ValueError for a key or value that the file may not have, OSError for a m
         .def(py::init(&choose_sensor), py::arg("sensor") = "paper",
              py::arg("settings") = py::dict())
         .def_static(
-            "names", [] { return config_names("sensors"); }, "The sensors of config/sensors.")
+            "names", [] { return config_names(ConfigKind::kSensors); },
+            "The sensors of config/sensors.")
         .def_property_readonly(
             "has_timing",
             [](const ChosenSensor& self) { return self.description.timing.has_value(); },

@@ -4,62 +4,25 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
-
-#include "core/colour_filter.h"
 #include "python/bindings.h"
+#include "python/figures_dict.h"
 #include "python/schedule.h"
-#include "readout/provenance.h"
+#include "stream/stream_figures.h"
 
 namespace stipple::python {
 namespace {
 
-using namespace pybind11::literals;
-
-py::dict calibration_dict(const Calibration& calibration) {
-    py::list responsivity, conversion_gain;
-    for (const CalibrationPixel& pixel : calibration.tile.pixels) {
-        responsivity.append(pixel.responsivity);
-        conversion_gain.append(pixel.conversion_gain);
-    }
-    return py::dict("bit_depth"_a = calibration.bit_depth,
-                    "rounding"_a = calibration.rounding == Rounding::kFloor ? "floor" : "nearest",
-                    "black_level_dn"_a = calibration.black_level_dn,
-                    "gain_e_per_dn"_a = calibration.gain_e_per_dn,
-                    "read_noise_e"_a = calibration.read_noise_e,
-                    "full_well_e"_a = calibration.full_well_e,
-                    "electrons_per_unit"_a = calibration.electrons_per_unit,
-                    "dark_e_per_slot"_a = calibration.dark_e_per_slot,
-                    "tile_rows"_a = calibration.tile.rows, "tile_cols"_a = calibration.tile.cols,
-                    "responsivity"_a = responsivity, "conversion_gain"_a = conversion_gain);
-}
-
-py::dict schedule_dict(const StreamHeader& header) {
-    const ExposureSchedule& schedule = header.schedule;
-    py::dict dict("name"_a = header.schedule_name, "tile_rows"_a = schedule.tile_rows(),
-                  "tile_cols"_a = schedule.tile_cols(), "period_slots"_a = schedule.period_slots(),
-                  "samples_per_pixel_slot"_a = schedule.samples_per_pixel_slot(),
-                  "light_throughput"_a = schedule.light_throughput(),
-                  "gapless"_a = schedule.gapless(), "interleaved"_a = schedule.interleaved());
-    if (header.schedule_source.kind == ScheduleSource::Kind::kRandom) {
-        dict["exposure_slots"] = header.schedule_source.exposure_slots;
-        dict["seed"] = header.schedule_source.seed;
-    }
-    return dict;
-}
-
 py::dict counts_of(const StreamFile& stream) {
     const StreamReport report = stream.read_through();
     py::list damage;
-    for (const StreamDamage& where : report.damage)
-        damage.append(
-            py::dict("offset"_a = where.offset, "bytes"_a = where.bytes, "cause"_a = where.cause));
-    return py::dict("version"_a = report.version, "slots"_a = report.slots,
-                    "packets"_a = report.packets, "samples"_a = report.samples,
-                    "payload_bits"_a = report.payload_bits,
-                    "missing_slots"_a = report.missing_slots, "complete"_a = report.complete,
-                    "tail_bytes"_a = report.tail_bytes, "damage"_a = damage,
-                    "unlisted_damage"_a = report.unlisted_damage);
+    for (const StreamDamage& place : report.damage)
+        damage.append(dict_of([&](const auto& add) { visit_damage_figures(place, add); }));
+    return dict_of([&](const auto& add) {
+        add("version", report.version);
+        visit_report_figures(report, add);
+        add("damage", damage);
+        add("unlisted_damage", report.unlisted_damage);
+    });
 }
 
 }  // namespace
@@ -67,34 +30,15 @@ py::dict counts_of(const StreamFile& stream) {
 void bind_sample_rows();
 
 py::dict header_dict(const StreamHeader& header) {
-    return py::dict("rows"_a = header.shape.rows, "cols"_a = header.shape.cols,
-                    "planes"_a = header.shape.planes, "cfa"_a = std::string(name_of(header.cfa)),
-                    "slot_us"_a = header.slot_us,
-                    "calibration"_a = calibration_dict(header.calibration),
-                    "schedule"_a = schedule_dict(header), "provenance"_a = header.provenance);
-}
-
-std::string damage_text(const StreamReport& report) {
-    if (report.damage.empty() && report.missing_slots == 0 && report.tail_bytes == 0) return {};
-    if (report.damage.empty() && report.missing_slots == 0)
-        return fmt::format(
-            "the stream is cut off: {} slots are whole, then it ends within a packet, of which "
-            "there "
-            "are {} bytes",
-            report.slots, report.tail_bytes);
-    std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
-                                   report.missing_slots, report.slots);
-    constexpr std::size_t kMaxPlaces = 10;
-    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
-    for (const StreamDamage& where : std::span(report.damage).first(listed))
-        text += fmt::format("\n  byte {}: {}, {} bytes skipped", where.offset, where.cause,
-                            where.bytes);
-    const std::uint64_t places = report.damage.size() + report.unlisted_damage;
-    if (places > listed) text += fmt::format("\n  and {} more", places - listed);
-    if (report.tail_bytes > 0)
-        text += fmt::format("\n  the file ends within a packet, its last {} bytes are unused",
-                            report.tail_bytes);
-    return text;
+    return dict_of([&](const auto& add) {
+        visit_header_figures(header, add);
+        add("calibration", dict_of([&](const auto& add_to) {
+                visit_calibration_figures(header.calibration, add_to);
+            }));
+        add("schedule",
+            dict_of([&](const auto& add_to) { visit_schedule_figures(header, add_to); }));
+        add("provenance", header.provenance);
+    });
 }
 
 void bind_stream(py::module_& module) {

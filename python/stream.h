@@ -51,7 +51,7 @@ class StreamFile {
     /// Of its emulation, a dict; None if it was opened.
     [[nodiscard]] const pybind11::object& figures() const { return figures_; }
 
-    /// What it holds and what is damaged. Gives the GIL up meanwhile.
+    /// Counts and damage of the whole stream. Releases the GIL meanwhile.
     [[nodiscard]] StreamReport read_through() const;
     /// Slots that it holds. Reads it through, once, where no index says so.
     [[nodiscard]] std::int64_t slots();
@@ -75,8 +75,5 @@ class StreamFile {
 
 /// Header and counts of a stream that was read: the keys of `info` in docs/cli.md.
 [[nodiscard]] pybind11::dict header_dict(const StreamHeader& header);
-
-/// What a damaged stream has lost, in words; empty if nothing.
-[[nodiscard]] std::string damage_text(const StreamReport& report);
 
 }  // namespace stipple::python

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "readout/column_adc.h"
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/sequencer.h"
 #include "sensor_model/physical_pixels.h"
 #include "sensor_model/pixel_array.h"

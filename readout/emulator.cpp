@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
@@ -24,7 +24,7 @@ Emulator::Emulator(const SensorSetup& setup)
       sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
     if (!setup.timing) return;
     const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
-    account_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
+    readout_cost_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
 }
 
 std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
@@ -35,7 +35,7 @@ std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
         frame = mosaic_;
     }
     sensor_.expose(frame, packets_[0]);
-    return account_ ? what_fits(account_->add_next()) : std::span(packets_).first(1);
+    return readout_cost_ ? what_fits(readout_cost_->add_next()) : std::span(packets_).first(1);
 }
 
 double Emulator::light_read() const {
@@ -45,7 +45,7 @@ double Emulator::light_read() const {
            (static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.pixels()));
 }
 
-std::span<const SamplePacket> Emulator::what_fits(const SlotAccount& slot) {
+std::span<const SamplePacket> Emulator::what_fits(const SlotCost& slot) {
     SamplePacket& whole = packets_[0];
     if (slot.end_row == whole.rows) {
         whole.flags = slot.overrun ? SamplePacket::kOverrun : 0;

@@ -9,7 +9,7 @@
 
 #include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
@@ -38,16 +38,18 @@ class Emulator {
     /// before slot 0.
     [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutAccount* account() { return account_ ? &*account_ : nullptr; }
-    [[nodiscard]] const ReadoutAccount* account() const { return account_ ? &*account_ : nullptr; }
+    [[nodiscard]] ReadoutCost* readout_cost() { return readout_cost_ ? &*readout_cost_ : nullptr; }
+    [[nodiscard]] const ReadoutCost* readout_cost() const {
+        return readout_cost_ ? &*readout_cost_ : nullptr;
+    }
 
   private:
-    [[nodiscard]] std::span<const SamplePacket> what_fits(const SlotAccount& slot);
+    [[nodiscard]] std::span<const SamplePacket> what_fits(const SlotCost& slot);
 
     const SensorSetup& setup_;
     CalibrationTile filters_;
     CodedSensor sensor_;
-    std::optional<ReadoutAccount> account_;
+    std::optional<ReadoutCost> readout_cost_;
     std::array<SamplePacket, 2> packets_;
     double dropped_light_ = 0;   ///< as `light_due`
     std::vector<float> mosaic_;  ///< of light in colour behind colour filters

@@ -9,14 +9,14 @@
 
 namespace stipple {
 
-/// So many images of so much light.
+/// Images of uniform light.
 struct FlatFieldExposure {
-    double photons = 0;  ///< mean number per pixel; 0: dark
-    int images = 0;
+    double photons = 0;  ///< mean photons per pixel and image; 0: dark
+    int images = 0;      ///< their number
 };
 
-/// What EMVA 1288 is evaluated from: a dark pair, 50 bright pairs in equal steps up to 1.15 of
-/// saturation, 100 images at half of saturation, 100 dark ones.
+/// The series of an evaluation by EMVA 1288: a dark pair, 50 bright pairs in equal steps up to 1.15
+/// of saturation, 100 images at half of saturation, 100 dark ones.
 [[nodiscard]] std::vector<FlatFieldExposure> flat_field_exposures(const SensorParams& params);
 
 /// An emulated sensor of 320 x 240 pixels in front of a field that is lit uniformly: one slot an
@@ -25,8 +25,8 @@ class FlatField {
   public:
     static constexpr FrameShape kShape{.rows = 240, .cols = 320, .planes = 1};
 
-    /// A colour filter array is left off. \throws InputError if the sensor has maps of unequal
-    /// pixels.
+    /// A colour filter array of `params` is removed. \throws InputError if the sensor has maps of
+    /// unequal pixels.
     FlatField(SensorParams params, std::uint64_t seed);
     ~FlatField();
     FlatField(const FlatField&) = delete;

@@ -4,8 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <type_traits>
@@ -18,17 +18,22 @@
 namespace stipple {
 namespace {
 
-/// Longer lists of keys are those of schedules that are written out, which the stream holds anyway.
-constexpr std::size_t kMaxScheduleKeys = 16384;
-
 toml::array toml_array(const std::vector<double>& values) {
     toml::array array;
     for (const double value : values) array.push_back(value);
     return array;
 }
 
-/// All parameters of the sensor's mode, as in a file of config/sensors.
-toml::table sensor_table(const SensorParams& params) {
+/// Key of a sensor or schedule without a file.
+constexpr std::string_view kMadeInCode = "made_in_code";
+
+toml::table keys_of(const std::optional<ConfigOrigin>& origin) {
+    return origin ? toml::parse(origin->keys) : toml::table();
+}
+
+/// All parameters of the sensor's mode, as in a file of config/sensors, and the keys of its timing.
+toml::table sensor_table(const SensorSetup& setup) {
+    const SensorParams& params = setup.params;
     toml::table sensor;
     const auto add = [&](const ConfigKey& key, const auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
@@ -43,12 +48,11 @@ toml::table sensor_table(const SensorParams& params) {
     };
     visit_sensor_keys(params, add);
     if (params.mode == SensorMode::kPhysical) visit_physical_keys(params.physical, add);
+    const toml::table keys = keys_of(setup.origin);
+    if (const toml::table* timing = keys["timing"].as_table(); timing != nullptr && setup.timing)
+        sensor.insert("timing", *timing);
+    if (!setup.origin) sensor.insert(kMadeInCode, true);
     return sensor;
-}
-
-/// The name of a sensor or schedule without its folders.
-std::string file_name(const std::string& name) {
-    return std::filesystem::path(name).filename().string();
 }
 
 const char* name_of(Transfer transfer) {
@@ -69,21 +73,26 @@ toml::table footage_table(const FootageOrigin& footage) {
     return table;
 }
 
-/// The command line, without what another table has.
-toml::table options_table(const SensorChoice& choice) {
+/// The options of `emulate` that name the files of sensor and schedule, and change their keys.
+toml::table options_table(const SensorSetup& setup) {
+    toml::table options;
     toml::array settings;
-    for (const std::string& setting : choice.settings) settings.push_back("sensor." + setting);
-    for (const std::string& setting : choice.schedule_settings)
-        settings.push_back("schedule." + setting);
-    return toml::table{{"sensor", file_name(choice.sensor)},
-                       {"schedule", file_name(choice.schedule)},
-                       {"set", settings}};
+    const auto add = [&](const std::string& option, const std::optional<ConfigOrigin>& origin) {
+        if (!origin) return;
+        options.insert(option, origin->name);
+        for (const std::string& setting : origin->settings)
+            settings.push_back(fmt::format("{}.{}", option, setting));
+    };
+    add("sensor", setup.origin);
+    add("schedule", setup.schedule.origin);
+    options.insert("set", settings);
+    return options;
 }
 
-toml::table schedule_table(const SensorSetup& setup) {
-    const std::string keys = schedule_keys(setup.choice);
-    toml::table table = keys.size() > kMaxScheduleKeys ? toml::table() : toml::parse(keys);
-    table.insert_or_assign("name", setup.schedule.name);
+toml::table schedule_table(const NamedSchedule& schedule) {
+    toml::table table = keys_of(schedule.origin);
+    table.insert_or_assign("name", schedule.name);
+    if (!schedule.origin) table.insert(kMadeInCode, true);
     return table;
 }
 
@@ -114,8 +123,8 @@ std::string options_of(const toml::table& provenance) {
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
     if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
-    if (const auto most = footage["max_value"].value<double>())
-        add("--max-value", fmt::format("{}", *most));
+    if (const auto max_value = footage["max_value"].value<double>())
+        add("--max-value", fmt::format("{}", *max_value));
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
     if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
         add("--schedule", it);
@@ -143,14 +152,12 @@ toml::table table_of(const std::string& provenance) {
 }  // namespace
 
 std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage) {
-    toml::table sensor = sensor_table(setup.params);
-    if (setup.timing) sensor.insert("timing", toml::parse(timing_keys(setup.choice)));
     toml::table text{{"emulator", fmt::format("stipple {}", version())},
                      {"footage", footage_table(footage)},
-                     {"options", options_table(setup.choice)},
-                     {"overrun", setup.overrun == OverrunPolicy::kDrop ? "drop" : "stretch"},
-                     {"schedule", schedule_table(setup)},
-                     {"sensor", sensor}};
+                     {"options", options_table(setup)},
+                     {"overrun", name_of(setup.overrun)},
+                     {"schedule", schedule_table(setup.schedule)},
+                     {"sensor", sensor_table(setup)}};
     // TOML integers are signed, seeds are not.
     if (setup.seed <= std::numeric_limits<std::int64_t>::max())
         text.insert("seed", static_cast<std::int64_t>(setup.seed));
@@ -166,9 +173,10 @@ std::string command_of(const std::string& provenance) {
     const toml::table table = table_of(provenance);
     const auto footage = table["footage"];
     std::string name = text_of(footage["name"]);
+    const auto options = table["options"];
     // `emulate` has no options for a camera, its pixel format and its black level.
     if (name.empty() || !footage["sha256"] || footage["pixel_format"] ||
-        footage["black_level_dn"] || !table["options"])
+        footage["black_level_dn"] || !options["sensor"] || !options["schedule"])
         return {};
     if (name.starts_with('-')) name.insert(0, "./");
     std::string command =

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// Source of the light and reading options, as the provenance of a stream names them.
+/// The source of the light and the options of its reader, for the provenance of a stream.
 struct FootageOrigin {
     std::string name = {};          ///< without folders
     std::string sha256 = {};        ///< of its files, concatenated; empty without files
@@ -22,9 +22,9 @@ struct FootageOrigin {
 /// bytes of the stream. Without times and folders, so that the same run gives the same bytes.
 [[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage);
 
-/// The command that makes the same stream again in the folder of its footage; empty if `provenance`
-/// does not hold one. Quoted for a shell and without control characters, because the text is not
-/// trusted.
+/// The command that makes the same stream again in the folder of its footage. Empty if there is
+/// none: of light without files, and of a sensor or schedule made in code. Quoted for a shell and
+/// without control characters, because `provenance` is not trusted.
 [[nodiscard]] std::string command_of(const std::string& provenance);
 
 /// The keys of the section [timing] in `provenance`, as overrides of a Config; empty if there are

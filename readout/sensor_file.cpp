@@ -18,21 +18,30 @@ namespace stipple {
 namespace {
 
 /// \throws InputError for a file without keys, which would be taken for all the defaults.
-Config open_config(std::string_view kind, const std::string& name,
+Config open_config(ConfigKind kind, const std::string& name,
                    const std::vector<std::string>& settings) {
     const auto file = find_config(kind, name);
-    Config config(file, settings, kind == "sensors" ? "sensor" : "schedule");
+    Config config(file, settings, kind == ConfigKind::kSensors ? "sensor" : "schedule");
     if (config.file_is_empty())
-        throw InputError(file.string(), fmt::format("holds no keys; config/{} has examples", kind));
+        throw InputError(file.string(),
+                         fmt::format("holds no keys; config/{} has examples", folder_of(kind)));
     return config;
 }
 
 Config sensor_config(const SensorChoice& choice) {
-    return open_config("sensors", choice.sensor, choice.settings);
+    return open_config(ConfigKind::kSensors, choice.sensor, choice.settings);
 }
 
 Config schedule_config(const SensorChoice& choice) {
-    return open_config("schedules", choice.schedule, choice.schedule_settings);
+    return open_config(ConfigKind::kSchedules, choice.schedule, choice.schedule_settings);
+}
+
+/// The schedule of a stream whose keys are longer is in its header only.
+constexpr std::size_t kMaxScheduleKeys = 16384;
+
+/// The name of a sensor or schedule without its folders.
+std::string file_name(const std::string& name) {
+    return std::filesystem::path(name).filename().string();
 }
 
 /// True for a compiled schedule (docs/sequencer_program.md).
@@ -50,8 +59,10 @@ NamedSchedule read_program(const SensorChoice& choice) {
     const auto bytes = read_file(choice.schedule);
     const NamedProgram named =
         parse_program({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice.schedule);
-    return {
-        .name = named.name, .source = {}, .schedule = schedule_of(named.program, choice.schedule)};
+    return {.name = named.name,
+            .source = {},
+            .schedule = schedule_of(named.program, choice.schedule),
+            .origin = ConfigOrigin{.name = file_name(choice.schedule)}};
 }
 
 /// The array that footage of this shape falls on.
@@ -74,18 +85,10 @@ FrameShape array_of(const SensorParams& params, FrameShape footage, ColourFilter
 
 }  // namespace
 
-std::string timing_keys(const SensorChoice& choice) {
-    return sensor_config(choice).as_toml("timing");
-}
-
-std::string schedule_keys(const SensorChoice& choice) {
-    return is_program(choice.schedule) ? "" : schedule_config(choice).as_toml("");
-}
-
 std::string no_timing_text() {
     std::vector<std::string> timed;
-    for (const std::string& name : config_names("sensors")) {
-        Config config(find_config("sensors", name), {});
+    for (const std::string& name : config_names(ConfigKind::kSensors)) {
+        Config config(find_config(ConfigKind::kSensors, name), {});
         if (read_timing(config, 1)) timed.push_back(name);
     }
     return fmt::format("has no section [timing]; these sensors have one: {}", joined(timed));
@@ -97,14 +100,18 @@ NamedSchedule set_up_schedule(const SensorChoice& choice, FrameShape shape,
     Config config = schedule_config(choice);
     NamedSchedule schedule = read_schedule(config, shape, choice.seed, addressing);
     config.reject_unknown_keys();
+    std::string keys = config.as_toml("");
+    if (keys.size() > kMaxScheduleKeys) keys.clear();
+    schedule.origin = {file_name(choice.schedule), choice.schedule_settings, std::move(keys)};
     return schedule;
 }
 
 SensorDescription read_sensor_file(const SensorChoice& choice) {
     Config config = sensor_config(choice);
-    SensorDescription sensor{.params = read_sensor(config), .timing = {}};
+    SensorDescription sensor{.params = read_sensor(config)};
     sensor.timing = read_timing(config, sensor.params.bit_depth);
     config.reject_unknown_keys();
+    sensor.origin = {file_name(choice.sensor), choice.settings, config.as_toml("")};
     return sensor;
 }
 
@@ -113,7 +120,11 @@ SensorParams set_up_params(const SensorChoice& choice) {
 }
 
 SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, ColourFilter mosaic) {
-    const SensorDescription sensor = read_sensor_file(choice);
+    return set_up_sensor(read_sensor_file(choice), choice, footage, mosaic);
+}
+
+SensorSetup set_up_sensor(const SensorDescription& sensor, const SensorChoice& choice,
+                          FrameShape footage, ColourFilter mosaic) {
     const FrameShape shape = array_of(sensor.params, footage, mosaic);
     if (sensor.timing) check_window(*sensor.timing, shape);
     if (!sensor.timing && choice.overrun == OverrunPolicy::kDrop)
@@ -128,7 +139,7 @@ SensorSetup set_up_sensor(const SensorChoice& choice, FrameShape footage, Colour
             .seed = choice.seed,
             .timing = sensor.timing,
             .overrun = choice.overrun,
-            .choice = choice};
+            .origin = sensor.origin};
 }
 
 std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
@@ -136,10 +147,8 @@ std::string mosaic_warning(const SensorSetup& setup, ColourFilter mosaic) {
         return {};
     return fmt::format(
         "the frames are a mosaic of colours ({}), but sensor \"{}\" has no colour filter array: "
-        "they "
-        "are taken for grey, and decoding smooths over their pattern. A sensor of mode "
-        "\"physical\" "
-        "with cfa={}, such as \"ideal\", gives colour",
+        "they are taken for grey, and decoding smooths over their pattern. A sensor of mode "
+        "\"physical\" with cfa={}, such as \"ideal\", gives colour",
         name_of(mosaic), setup.params.name, name_of(mosaic));
 }
 

@@ -2,15 +2,15 @@
 
 #include <utility>
 
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 
 namespace stipple {
 
-StreamRecorder::StreamRecorder(const std::filesystem::path& file, bool force,
-                               const SensorSetup& setup, std::string provenance)
-    : output_(file, force),
+StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
+                               StreamRecorderOptions options)
+    : output_(file, options.force),
       emulator_(setup),
-      writer_(output_.partial(), stream_header_of(setup, std::move(provenance)),
+      writer_(output_.partial(), stream_header_of(setup, std::move(options.provenance)),
               output_.final_path().string()) {}
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
@@ -31,7 +31,7 @@ bool StreamRecorder::keep() {
 }
 
 std::uint64_t StreamRecorder::samples() const {
-    return stats().samples - (account() ? account()->totals().dropped_samples : 0);
+    return stats().samples - (readout_cost() ? readout_cost()->totals().dropped_samples : 0);
 }
 
 std::uint64_t StreamRecorder::payload_bits() const {

@@ -10,14 +10,19 @@
 
 namespace stipple {
 
+struct StreamRecorderOptions {
+    bool force = false;           ///< replace the file if it exists
+    std::string provenance = {};  ///< text of the header, as `provenance_of` writes it; empty: none
+};
+
 /// An emulated sensor that writes its samples to a stream file. The file gets its final name in
 /// `finish` or `keep`.
 class StreamRecorder {
   public:
-    /// `setup` must outlive the recorder; `provenance` as in stream_header_of. \throws InputError,
-    /// DeviceError as PendingOutput and StreamWriter.
-    StreamRecorder(const std::filesystem::path& file, bool force, const SensorSetup& setup,
-                   std::string provenance);
+    /// `setup` must outlive the recorder. \throws InputError, DeviceError as PendingOutput and
+    /// StreamWriter.
+    StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
+                   StreamRecorderOptions options = {});
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples, without those of dropped rows.
@@ -45,8 +50,8 @@ class StreamRecorder {
     /// Fraction of the light since slot 0 that the samples hold, as in Emulator.
     [[nodiscard]] double light_read() const { return emulator_.light_read(); }
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutAccount* account() { return emulator_.account(); }
-    [[nodiscard]] const ReadoutAccount* account() const { return emulator_.account(); }
+    [[nodiscard]] ReadoutCost* readout_cost() { return emulator_.readout_cost(); }
+    [[nodiscard]] const ReadoutCost* readout_cost() const { return emulator_.readout_cost(); }
 
   private:
     PendingOutput output_;

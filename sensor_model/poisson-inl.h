@@ -132,7 +132,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson_middle(D d, V mean, VW word, V
     return recheck(d, mean, word, count, doubtful);
 }
 
-/// Counts of means in [kShortFrom, kLargestPoissonMean].
+/// Counts of means in [kShortFrom, kMaxPoissonMean].
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson_large(D d, V mean, V w) {
     using namespace poisson_table;
@@ -154,7 +154,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> poisson(D d, V mean, VW word) {
     const auto small = hn::Lt(mean, hn::Set(d, kSumBelow));
     if (hn::AllTrue(d, small)) return poisson_by_sum(d, mean, word);
     const auto large = hn::Ge(mean, short_from);
-    const V bounded = hn::Min(mean, hn::Set(d, kLargestPoissonMean));
+    const V bounded = hn::Min(mean, hn::Set(d, kMaxPoissonMean));
     const V w = normal(d, word);
     if (hn::AllTrue(d, large)) return poisson_large(d, bounded, w);
 

@@ -5,8 +5,8 @@
 
 namespace stipple {
 
-/// Larger means are reduced to this.
-inline constexpr float kLargestPoissonMean = 1e9F;
+/// Max mean of a draw, in counts; larger means are reduced to it.
+inline constexpr float kMaxPoissonMean = 1e9F;
 
 /// Poisson draw with the given mean, the quantile of one random word: the smallest k with
 /// P(X <= k) >= u. Word bit 0 and the rest give u as in `normal_one`. A slightly brighter scene

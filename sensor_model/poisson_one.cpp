@@ -85,7 +85,7 @@ std::uint32_t poisson_by_sum(float mean, std::uint32_t word) noexcept {
 std::uint32_t poisson_one(float mean, std::uint32_t word) noexcept {
     if (mean < kSumBelow) return poisson_by_sum(mean, word);
     if (mean < kShortFrom) return poisson_middle(mean, word);
-    return poisson_large(std::min(mean, kLargestPoissonMean), word);
+    return poisson_large(std::min(mean, kMaxPoissonMean), word);
 }
 
 }  // namespace stipple

@@ -8,17 +8,17 @@
 
 namespace stipple {
 
-// All keys of a sensor file but those of its section [timing]. The reader, the checks of ranges and
-// the provenance of a stream follow from these lists: `visit(key, member)` for each key, the
-// members of a const object const.
+// The keys of a sensor file without its section [timing]. The reader, the checks of ranges and the
+// provenance of a stream use these lists: they call `visit(key, member)` for each key. Members of a
+// const object are const.
 
 inline constexpr std::array<std::string_view, 2> kSensorModeNames{"paper", "physical"};
 
-/// Most values of `row_noise_e`, and most rows and columns of the tile of the maps.
+/// Max number of values of `row_noise_e`, and max rows and columns of the tile of the maps.
 inline constexpr int kMaxTaps = 64;
 inline constexpr int kMaxMapSide = 64;
 
-/// Of both modes.
+/// The keys of both modes.
 template <typename Params, typename Visit>
 void visit_sensor_keys(Params& params, const Visit& visit) {
     visit({"name", {}, "", "name in messages and in the provenance of streams"}, params.name);
@@ -43,7 +43,7 @@ void visit_sensor_keys(Params& params, const Visit& visit) {
           params.mode);
 }
 
-/// Of mode "physical" only.
+/// The keys of mode "physical" only.
 template <typename Terms, typename Visit>
 void visit_physical_keys(Terms& terms, const Visit& visit) {
     visit({"quantum_efficiency", {1e-3, 1}, "electrons/photon", "quantum efficiency"},
@@ -91,8 +91,8 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
           terms.gain_map);
 }
 
-/// Black level that physical mode takes where none is given: four standard deviations of what
-/// a dark sample reads, in whole DN, rounded up; 0 without noise.
+/// Default black level of physical mode, in DN: four standard deviations of a dark sample, rounded
+/// up to a whole DN; 0 without noise.
 [[nodiscard]] double default_black_level_dn(const SensorParams& params);
 
 }  // namespace stipple

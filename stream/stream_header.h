@@ -12,59 +12,61 @@
 
 namespace stipple {
 
-/// What is peculiar to a pixel of a calibration tile, relative to the whole sensor's numbers.
+/// Calibration of a pixel relative to that of the sensor.
 struct CalibrationPixel {
-    double responsivity = 1;     ///< of `electrons_per_unit`: a neutral-density mosaic
-    double conversion_gain = 1;  ///< DN per electron, relative to 1 / `gain_e_per_dn`: dual gain
+    double responsivity = 1;     ///< factor of `electrons_per_unit`: neutral-density filters
+    double conversion_gain = 1;  ///< factor of 1 / `gain_e_per_dn`: pixels of dual gain
 
     bool operator==(const CalibrationPixel&) const = default;
 };
 
-/// A tile that is repeated over the array from pixel (0, 0); by default there is none.
+/// Calibration of single pixels: a tile that repeats over the array from pixel (0, 0). Empty if all
+/// pixels are equal.
 struct CalibrationTile {
     int rows = 0;
     int cols = 0;
-    std::vector<CalibrationPixel> pixels;  ///< by row and column
+    std::vector<CalibrationPixel> pixels;  ///< order (row, col); rows x cols of them
 
     bool operator==(const CalibrationTile&) const = default;
 };
 
-/// The parameters that convert DN to electrons, and their noise. Terms of EMVA 1288. The ranges are
-/// in docs/stream_format.md.
+/// Parameters that convert DN to electrons and to light, with the noise of a sample, in the terms
+/// of EMVA 1288. docs/stream_format.md has the formula and the ranges.
 struct Calibration {
     int bit_depth = 8;  ///< 1..16
     Rounding rounding = Rounding::kNearest;
-    double black_level_dn = 0;  ///< mean DN without charge
-    double gain_e_per_dn = 2000.0 / 255;
-    double read_noise_e = 10;  ///< standard deviation
-    double full_well_e = 20000;
-    double electrons_per_unit = 1000;  ///< electrons that flux 1.0 collects in one slot
-    double dark_e_per_slot = 0;        ///< electrons that an open slot without light collects
+    double black_level_dn = 0;            ///< mean DN without charge
+    double gain_e_per_dn = 2000.0 / 255;  ///< electrons per DN: the inverse of K of EMVA 1288
+    double read_noise_e = 10;             ///< standard deviation of a readout, in electrons
+    double full_well_e = 20000;           ///< max electrons of a pixel
+    double electrons_per_unit = 1000;     ///< electrons that flux 1.0 gives in one slot
+    double dark_e_per_slot = 0;           ///< dark signal of an open slot, in electrons
     CalibrationTile tile = {};
 
     bool operator==(const Calibration&) const = default;
 };
 
-/// The most that a stream holds (docs/stream_format.md): exposures of a tile and of the array of a
-/// random schedule, bytes of a schedule's name.
+/// Limits of the format (docs/stream_format.md): exposures of a tile, exposures of the array of a
+/// random schedule, bytes of the name of a schedule.
 inline constexpr std::size_t kMaxTileExposures = std::size_t{1} << 24U;
 inline constexpr std::size_t kMaxRandomExposures = std::size_t{1} << 25U;
 inline constexpr std::size_t kMaxNameBytes = 64;
 
-/// The schedule as it is stored: its own list of exposures, or the generator `random_schedule`
-/// with a seed (for tiles as large as the array, where a list would weigh more than the samples).
+/// Form in which a header stores its schedule: the list of exposures, or the arguments of
+/// `random_schedule`, whose tile is the array, so that the list would be larger than the samples.
 struct ScheduleSource {
     enum class Kind : std::uint8_t { kExplicit = 0, kRandom = 1 };
     Kind kind = Kind::kExplicit;
-    std::vector<int> exposure_slots;  ///< kRandom only
+    std::vector<int> exposure_slots;  ///< kRandom only: lengths of the exposures, 1..64 slots
     std::uint64_t seed = 0;           ///< kRandom only
     bool operator==(const ScheduleSource&) const = default;
 };
 
-/// The header of a stream.
+/// Header of a sample stream (docs/stream_format.md): everything that its decoder knows of the
+/// sensor.
 struct StreamHeader {
-    FrameShape shape;
-    double slot_us = 5000;
+    FrameShape shape;       ///< of the array
+    double slot_us = 5000;  ///< length of a slot
     Calibration calibration;
     ExposureSchedule schedule;
     ScheduleSource schedule_source;

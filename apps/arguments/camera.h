@@ -11,11 +11,11 @@
 
 namespace stipple {
 
-/// Which camera, and how it is set up.
+/// The address and the settings of a camera.
 struct CameraArguments {
     std::string address;
     std::string config;                 ///< file with `Feature = value` lines; empty: none
-    std::vector<std::string> settings;  ///< "Feature=value", laid over the file's
+    std::vector<std::string> settings;  ///< "Feature=value", replaces that of the file
     CameraBuffers buffers;
 };
 
@@ -25,16 +25,16 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 
-/// Opens the camera for its images. \throws InputError, DeviceError as open_camera; InputError if
-/// what it sends is a coded stream, whose payloads only look like images.
+/// Opens a camera of images. \throws InputError, DeviceError as open_camera; InputError if the
+/// camera sends a coded stream, whose payloads have the form of images.
 [[nodiscard]] std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
                                                         const CameraSettings& settings);
 
-/// Whether the address is that of a recording or footage.
+/// True if the address is that of a recording or footage.
 [[nodiscard]] bool is_replay(const CameraArguments& arguments);
 
-/// What a session may take for a fault: a replay has an end, and pauses where the recording has
-/// them.
+/// `options` without the reactions to faults of a camera if the address is a replay: a replay ends,
+/// and pauses like its recording.
 [[nodiscard]] SessionOptions session_options(const CameraArguments& arguments,
                                              SessionOptions options);
 
@@ -44,7 +44,7 @@ void add_incomplete_argument(Command& command, IncompletePolicy& policy);
 /// `--stall` and `--no-reconnect`.
 void add_session_arguments(Command& command, SessionOptions& options);
 
-/// \throws UsageError for those that do nothing with a replay.
+/// \throws UsageError for an option of these that has no effect on a replay.
 void check_session_arguments(const Command& command, const CameraArguments& camera);
 
 /// `--frames` and `--seconds`.

@@ -20,22 +20,22 @@ std::optional<Number> number_of(const std::string& text, bool* too_large = nullp
 }
 
 template <typename Number>
-ValueCheck range_check(std::string kind, Number least, Number most) {
+ValueCheck range_check(std::string kind, Number min, Number max) {
     return [=](const std::string& text) -> std::string {
         bool too_large = false;
         const auto value = number_of<Number>(text, &too_large);
-        if (value && *value >= least && *value <= most) return {};
-        if (too_large) return fmt::format("\"{}\" is too large; {} is the most", text, most);
-        if (most == std::numeric_limits<Number>::max())
-            return fmt::format("\"{}\" is not {} of {} or more", text, kind, least);
-        return fmt::format("\"{}\" is not {} from {} to {}", text, kind, least, most);
+        if (value && *value >= min && *value <= max) return {};
+        if (too_large) return fmt::format("\"{}\" is too large; {} is the most", text, max);
+        if (max == std::numeric_limits<Number>::max())
+            return fmt::format("\"{}\" is not {} of {} or more", text, kind, min);
+        return fmt::format("\"{}\" is not {} from {} to {}", text, kind, min, max);
     };
 }
 
 }  // namespace
 
-ValueCheck number_check(double least, double most) {
-    return range_check("a number", least, most);
+ValueCheck number_check(double min, double max) {
+    return range_check("a number", min, max);
 }
 
 ValueCheck positive_check() {
@@ -46,11 +46,11 @@ ValueCheck positive_check() {
     };
 }
 
-ValueCheck whole_check(std::uint64_t least, std::uint64_t most) {
-    return range_check("a whole number", least, most);
+ValueCheck whole_check(std::uint64_t min, std::uint64_t max) {
+    return range_check("a whole number", min, max);
 }
 
-void parse_size(const std::string& option, const std::string& text, int least, int most,
+void parse_size(const std::string& option, const std::string& text, int min, int max,
                 FrameShape& shape) {
     const char* const end = text.data() + text.size();
     const auto cols = std::from_chars(text.data(), end, shape.cols);
@@ -59,9 +59,8 @@ void parse_size(const std::string& option, const std::string& text, int least, i
     if (cols.ec != std::errc() || rows.ec != std::errc() || rows.ptr != end)
         throw UsageError(option, "\"" + text + "\" is not a size like 640x480");
     for (const int side : {shape.cols, shape.rows})
-        if (side < least || side > most)
-            throw UsageError(option,
-                             fmt::format("{}: sides are {} to {} pixels", text, least, most));
+        if (side < min || side > max)
+            throw UsageError(option, fmt::format("{}: sides are {} to {} pixels", text, min, max));
 }
 
 }  // namespace stipple

@@ -13,18 +13,17 @@ namespace stipple {
 // Checks of numbers. Unlike CLI11's own they refuse NaN and whole numbers that do not fit, and say
 // an open range in words.
 
-/// Finite, and least..most.
-[[nodiscard]] ValueCheck number_check(double least,
-                                      double most = std::numeric_limits<double>::max());
+/// Finite, and min..max.
+[[nodiscard]] ValueCheck number_check(double min, double max = std::numeric_limits<double>::max());
 /// Finite and above 0.
 [[nodiscard]] ValueCheck positive_check();
-/// Without a fraction, and least..most.
-[[nodiscard]] ValueCheck whole_check(
-    std::uint64_t least, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+/// Without a fraction, and min..max.
+[[nodiscard]] ValueCheck whole_check(std::uint64_t min,
+                                     std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
 /// Takes "640x480", width and height, into `shape`. \throws UsageError naming `option` if
-/// it is no such text or a side is outside least..most pixels.
-void parse_size(const std::string& option, const std::string& text, int least, int most,
+/// it is no such text or a side is outside min..max pixels.
+void parse_size(const std::string& option, const std::string& text, int min, int max,
                 FrameShape& shape);
 
 /// The names of things that have one, for CommandOption::one_of.

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "apps/arguments/usage_problem.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "capture/recording/replay_camera.h"
 #include "core/suggestion.h"
 #include "io/footage_files.h"

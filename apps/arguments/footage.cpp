@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/arguments/checks.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 #include "scenes/scene.h"
 
@@ -38,16 +38,7 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
         .type_name("V");
 }
 
-void check_recording_options(const std::string& recording, const FootageOptions& options) {
-    if (options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear || options.luminance ||
-        options.max_value || options.raw)
-        throw InputError(recording,
-                         "is a recording of a camera, whose numbers are linear: --transfer, --raw, "
-                         "--luminance and --max-value are for other footage");
-}
-
 ReadAhead read_footage(const std::string& source, const FootageOptions& options) {
-    if (is_recording(source)) check_recording_options(source, options);
     return ReadAhead(source, options, say_warning);
 }
 

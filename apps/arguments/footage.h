@@ -18,11 +18,8 @@ void add_footage_arguments(Command& command, FootageOptions& options,
 void add_max_value(Command& command, std::optional<double>& max_value);
 
 /// Footage or a recording. What its reader warns of goes to standard error. \throws InputError as
-/// ReadAhead and check_recording_options.
+/// ReadAhead.
 [[nodiscard]] ReadAhead read_footage(const std::string& source, const FootageOptions& options);
-
-/// \throws InputError for a recording if any of these options was given: its numbers are linear.
-void check_recording_options(const std::string& recording, const FootageOptions& options);
 
 /// `--frames`, `--size` and `--seed` of an embedded scene. `options` must outlive the parsing.
 void add_scene_arguments(Command& command, SceneOptions& options);

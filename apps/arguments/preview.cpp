@@ -7,8 +7,8 @@
 namespace stipple {
 
 void add_preview_arguments(Command& command, PreviewArguments& arguments) {
-    constexpr int kLeast = 8;
-    constexpr int kMost = 65536;
+    constexpr int kMinSide = 8;
+    constexpr int kMaxSide = 65536;
     command
         .add_option("--preview", arguments.file,
                     "image of what the decoder makes of the newest slots, replaced again and "
@@ -24,7 +24,7 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
         .add_parsed(
             "--preview-size",
             [&arguments](const std::string& text) {
-                parse_size("--preview-size", text, kLeast, kMost, arguments.size.emplace());
+                parse_size("--preview-size", text, kMinSide, kMaxSide, arguments.size.emplace());
             },
             "so much of the middle of the frame (all, or what is decoded in some seconds)")
         .type_name("WxH");

@@ -6,7 +6,7 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 #include "core/memory_limit.h"
 #include "stream/plain_text.h"
 

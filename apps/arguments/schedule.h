@@ -11,7 +11,7 @@
 
 namespace stipple {
 
-/// A schedule as the commands `stipple schedule ...` are told it.
+/// The arguments of `stipple schedule ...` that name a schedule and the array it is made for.
 struct ScheduleChoice {
     std::string schedule;                    ///< name, file, or compiled file (.mem, .hex)
     std::vector<std::string> settings = {};  ///< "key=value" of the schedule
@@ -22,10 +22,10 @@ struct ScheduleChoice {
 /// NAME|FILE, --size and --seed.
 void add_schedule_choice(Command& command, ScheduleChoice& choice);
 
-/// What `--set schedule.KEY=VALUE` changes.
+/// The section of `--set schedule.KEY=VALUE`.
 [[nodiscard]] SettingsSection schedule_section(ScheduleChoice& choice);
 
-/// \throws InputError naming file, line and key of what cannot be used.
+/// Reads the schedule and makes it for the array. \throws InputError naming file, line and key.
 [[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);
 
 }  // namespace stipple

@@ -7,7 +7,7 @@
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/settings.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {
@@ -18,7 +18,7 @@ void add_sensor_arguments(Command& command, SensorChoice& sensor);
 /// `--overrun stretch|drop`.
 void add_overrun(Command& command, OverrunPolicy& policy);
 
-/// What `--set sensor.KEY=VALUE` and `--set schedule.KEY=VALUE` change.
+/// The sections of `--set sensor.KEY=VALUE` and `--set schedule.KEY=VALUE`.
 [[nodiscard]] std::vector<SettingsSection> sensor_sections(SensorChoice& sensor);
 
 /// `--vcd` and `--vcd-slots`.
@@ -28,8 +28,8 @@ struct WaveformOptions {
 };
 void add_waveform_arguments(Command& command, WaveformOptions& options);
 
-/// The waveform file that is asked for, if any. \throws InputError as WaveformFile, or if the
-/// sensor has no timing to show.
+/// The waveform file of the options; none if its name is empty. \throws InputError as WaveformFile,
+/// or if the sensor has no timing.
 [[nodiscard]] std::optional<WaveformFile> waveform_file(const WaveformOptions& options, bool force,
                                                         bool has_timing);
 

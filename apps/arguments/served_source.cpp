@@ -7,7 +7,8 @@
 #include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/report/session_report.h"
+#include "apps/standard_error.h"
+#include "capture/recording/recording_footage.h"
 #include "capture/serve/coded_frames.h"
 #include "capture/serve/footage_frames.h"
 #include "capture/serve/recording_frames.h"
@@ -47,9 +48,9 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
         .required()
         .input();
     command
-        .add_option("--mode", source.mode,
+        .add_choice("--mode", source.mode,
+                    {{"frames", ServedMode::kFrames}, {"coded", ServedMode::kCoded}},
                     "frames: as they are; coded: the samples of a sensor (frames)")
-        .one_of({"frames", "coded"})
         .type_name("frames|coded");
     command
         .add_option("--fps", source.frames_per_s,
@@ -66,8 +67,9 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
 }
 
 std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice) {
-    if (choice.mode == "coded" || !is_recording(choice.path)) say_warnings_of_footage(choice);
-    if (choice.mode == "coded")
+    const bool coded = choice.mode == ServedMode::kCoded;
+    if (coded || !is_recording(choice.path)) say_warnings_of_footage(choice);
+    if (coded)
         return std::make_unique<CodedFrames>(
             choice.path, origin_of(choice.path, choice.reading, [] { throw_if_stopped(); }),
             choice.sensor, choice.frames_per_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +12,15 @@
 
 namespace stipple {
 
-/// What `capture serve` shall serve.
+enum class ServedMode : std::uint8_t {
+    kFrames,  ///< the frames as they are
+    kCoded    ///< the samples of an emulated sensor
+};
+
+/// The source of `capture serve`.
 struct ServedSourceChoice {
     std::string path;
-    std::string mode = "frames";  ///< or "coded"
+    ServedMode mode = ServedMode::kFrames;
     std::optional<double> frames_per_s;
     std::string format;  ///< of footage in mode frames; empty: Mono8
     FootageOptions reading;
@@ -25,7 +31,7 @@ struct ServedSourceChoice {
 /// sensor.
 void add_served_source(Command& command, ServedSourceChoice& source);
 
-/// \throws InputError naming what cannot be used.
+/// Opens the source. \throws InputError naming the file or option that cannot be used.
 [[nodiscard]] std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice);
 
 }  // namespace stipple

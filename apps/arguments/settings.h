@@ -7,13 +7,13 @@
 
 namespace stipple {
 
-/// What `--set SECTION.KEY=VALUE` changes: "KEY=VALUE" is added to `settings`.
+/// A section of `--set SECTION.KEY=VALUE`: "KEY=VALUE" is appended to `settings`.
 struct SettingsSection {
     std::string name;                    ///< "sensor"
     std::vector<std::string>* settings;  ///< outlives the parsing
 };
 
-/// `--set`, which may be given several times, for these sections. Parsing refuses others.
+/// `--set`, repeatable, for these sections. Parsing refuses other sections.
 CommandOption add_settings(Command& command, std::vector<SettingsSection> sections,
                            const std::string& text);
 

@@ -4,30 +4,26 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/report/account_text.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
+#include "apps/report/readout_text.h"
+#include "readout/emulation_figures.h"
 
 namespace stipple {
 
 nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                       std::optional<double> slots_per_s) {
     const ReadoutStats& stats = recorder.stats();
-    nlohmann::ordered_json json{{"slots", stats.slots},
-                                {"samples", recorder.samples()},
-                                {"payload_bits", recorder.payload_bits()},
-                                {"compression_ratio", recorder.compression_ratio()},
-                                {"light_throughput", recorder.light_throughput()},
-                                {"light_read", recorder.light_read()},
-                                {"saturated_fraction", recorder.saturated_fraction()},
-                                {"slots_per_second", nullptr},
-                                {"samples_per_second", nullptr}};
+    auto json = json_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
+    json["slots_per_second"] = nullptr;
+    json["samples_per_second"] = nullptr;
     if (slots_per_s) {
         json["slots_per_second"] = *slots_per_s;
         json["samples_per_second"] =
             *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
     }
-    if (const ReadoutAccount* account = recorder.account())
-        json["readout"] = account_json(*account, recorder.light_throughput());
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        json["readout"] = readout_json(*cost, recorder.light_throughput());
     return json;
 }
 
@@ -47,8 +43,8 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         any ? per_sample : ": no exposure ended within the footage",
         100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
         slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
-    if (const ReadoutAccount* account = recorder.account())
-        text.append(1, '\n').append(account_text(*account));
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        text.append(1, '\n').append(readout_text(*cost));
     return text;
 }
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "apps/report/number_text.h"
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 
 namespace stipple {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 constexpr std::chrono::milliseconds kBarEvery{100};
 constexpr std::chrono::seconds kLineEvery{5};
 constexpr std::size_t kShortestBar = 8;
-constexpr std::size_t kLongestBar = 24;
+constexpr std::size_t kMaxBarCols = 24;
 
 /// Whether standard error is a terminal on which a line can be written over.
 bool can_show_bar() {
@@ -92,7 +92,7 @@ std::string Progress::line(std::size_t columns) const {
     if (length > columns) return (noted.size() <= columns ? noted : counter).substr(0, columns);
     const std::size_t room = columns - length;
     if (!terminal_ || !known || room < kShortestBar + 3) return task_ + ' ' + text;
-    return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kLongestBar)), text);
+    return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kMaxBarCols)), text);
 }
 
 std::string Progress::note_behind() const {

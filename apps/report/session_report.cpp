@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 
 namespace stipple {
 
@@ -46,10 +46,6 @@ void say_event(const SessionEvent& event) {
     if (const auto* const recovery = std::get_if<Recovery>(&event))
         say_error("the camera is back after {:.1f} s", recovery->gone_s);
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
-}
-
-void say_warning(const std::string& warning) {
-    if (!warning.empty()) say_error(warning);
 }
 
 void say_warnings(const CameraDescription& camera) {

@@ -24,9 +24,6 @@ namespace stipple {
 /// replay.
 void say_event(const SessionEvent& event);
 
-/// Prints a warning on standard error, unless it is empty.
-void say_warning(const std::string& warning);
-
 /// Warns of what may cost frames.
 void say_warnings(const CameraDescription& camera);
 

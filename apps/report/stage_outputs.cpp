@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "apps/report/chart.h"
-#include "apps/report/standard_error.h"
 #include "apps/report/text_file.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
 

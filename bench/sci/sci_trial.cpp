@@ -24,7 +24,7 @@ namespace {
 SensorParams ideal_sensor(const SciSensor& sensor) {
     // All frames of a measurement at light 1.0 are just below full scale.
     const double full_scale_e = 1.001 * kSciFrames * sensor.electrons_per_unit;
-    Config config(find_config("sensors", "ideal"),
+    Config config(find_config(ConfigKind::kSensors, "ideal"),
                   {fmt::format("photons_per_unit={:.17g}", sensor.electrons_per_unit),
                    fmt::format("full_scale_e={:.17g}", full_scale_e),
                    fmt::format("full_well_e={:.17g}", full_scale_e)});
@@ -37,7 +37,7 @@ void write_stream(const FluxVideo& video, const ExposureSchedule& schedule,
                             .schedule = {.name = "masks", .source = {}, .schedule = schedule},
                             .shape = video.shape(),
                             .footage = video.shape()};
-    StreamRecorder recorder(file, true, setup, "");
+    StreamRecorder recorder(file, setup, {.force = true});
     for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
     recorder.finish();
 }

@@ -14,6 +14,7 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
     if (!is_recording(source))
         return std::variant<FootageReader, RecordingFootage>(std::in_place_type<FootageReader>,
                                                              source, options);
+    check_recording_options(source, options);
     return std::variant<FootageReader, RecordingFootage>(std::in_place_type<RecordingFootage>,
                                                          source);
 }

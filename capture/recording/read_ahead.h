@@ -17,9 +17,8 @@ namespace stipple {
 /// worked on.
 class ReadAhead {
   public:
-    /// Hands what the reader warns of to `warn`. The light of a recording is linear; it takes no
-    /// options. \throws InputError as FootageReader and RecordingFootage, and as check_memory if
-    /// frames are too large.
+    /// Passes the warnings of the reader to `warn`. \throws InputError as FootageReader,
+    /// RecordingFootage and check_recording_options, and as check_memory if frames are too large.
     ReadAhead(const std::filesystem::path& source, const FootageOptions& options,
               std::function<void(const std::string&)> warn);
     ~ReadAhead() = default;

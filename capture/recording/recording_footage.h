@@ -9,8 +9,13 @@
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
 #include "capture/recording/recording_reader.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
+
+/// The numbers of a recording are linear light and have their format, so options of footage would
+/// do nothing. \throws InputError if one differs from its default.
+void check_recording_options(const std::filesystem::path& recording, const FootageOptions& options);
 
 struct RecordingFootageOptions {
     /// True: the previous frame stands in for missing frames, so that each slot keeps its time.

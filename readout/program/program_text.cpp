@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "core/error.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 constexpr std::string_view kTitle = "stipple sequencer program, version 1";
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 constexpr std::size_t kMaxPixelSlots = std::size_t{1} << 28U;
-constexpr std::size_t kLongestName = 64;  ///< bytes in a stream header
 
 std::size_t index(int value) {
     return static_cast<std::size_t>(value);
@@ -56,7 +56,7 @@ class Parser {
     enum Field { kRows, kCols, kPeriod, kBits, kFields };
     struct FieldRule {
         std::string_view key;
-        int most;
+        int max;
     };
     static constexpr std::array<FieldRule, kFields> kRules = {{{"tile_rows", kMaxTileSide},
                                                                {"tile_cols", kMaxTileSide},
@@ -84,7 +84,8 @@ class Parser {
         const std::string_view key = trimmed(comment.substr(0, equals));
         const std::string_view text = trimmed(comment.substr(equals + 1));
         if (key == "name") {
-            if (text.size() > kLongestName) fail("the name has more than 64 bytes");
+            if (text.size() > kMaxNameBytes)
+                fail(fmt::format("the name has more than {} bytes", kMaxNameBytes));
             name_ = text;
         }
         for (std::size_t i = 0; i < kFields; ++i)
@@ -95,8 +96,8 @@ class Parser {
         int result = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result);
         if (error != std::errc() || end != text.data() + text.size() || result < 1 ||
-            result > rule.most)
-            fail(fmt::format("{} = {}: needs an integer from 1 to {}", rule.key, text, rule.most));
+            result > rule.max)
+            fail(fmt::format("{} = {}: needs an integer from 1 to {}", rule.key, text, rule.max));
         return result;
     }
 

@@ -122,6 +122,11 @@ int program_bits_per_pixel(const ExposureSchedule& schedule) {
     return schedule.gapless() ? 1 : 2;
 }
 
+std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule) {
+    return index(program_bits_per_pixel(schedule)) * index(schedule.tile_rows()) *
+           index(schedule.tile_cols()) * index(schedule.period_slots());
+}
+
 SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
     if (schedule.charge_stores() > 2)
         throw InputError("sequencer program",

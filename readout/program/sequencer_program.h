@@ -32,6 +32,10 @@ struct SequencerProgram {
 /// `SequencerProgram::bits_per_pixel` of a schedule.
 [[nodiscard]] int program_bits_per_pixel(const ExposureSchedule& schedule);
 
+/// Memory of the sequencer for one period of the schedule, in bits: per slot and pixel of the tile
+/// one bit, two with gaps, three with two charge stores.
+[[nodiscard]] std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule);
+
 /// The program of a schedule. It covers the period once, or twice if an exposure changes its charge
 /// store from one period to the next. \throws InputError if the schedule needs more than two charge
 /// stores.

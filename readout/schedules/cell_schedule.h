@@ -21,15 +21,15 @@ struct Cell {
 /// slots or 2^24 exposures.
 [[nodiscard]] ExposureSchedule cell_schedule(const Cell& cell);
 
-/// A rolling shutter: `rows_per_slot` rows begin an exposure of `exposure_slots` in each slot, the
-/// next ones a slot later, and all again every `period_slots`. Rows of the tile: those that begin
-/// within a period, but no more than `array_rows`. \throws InputError if an argument is not
-/// positive, the exposure is longer than 64 or the period, or the period than 65535.
+/// A rolling shutter: in each slot the next `rows_per_slot` rows begin an exposure.
 struct RollingShutter {
-    int exposure_slots = 1;
-    int period_slots = 1;
-    int rows_per_slot = 1;
+    int exposure_slots = 1;  ///< 1..64, at most the period
+    int period_slots = 1;    ///< from one exposure of a row to the next, 1..65535
+    int rows_per_slot = 1;   ///< 1 or more
 };
+
+/// The tile has the rows that begin within a period, but no more than `array_rows`.
+/// \throws InputError if a number is out of range.
 [[nodiscard]] ExposureSchedule rolling_schedule(const RollingShutter& shutter, int array_rows);
 
 }  // namespace stipple

@@ -7,7 +7,8 @@
 
 namespace stipple {
 
-/// Whose random numbers: each generator of schedules has its own. 0 is `random_schedule`.
+/// Plane of the random counter (`random_address`) for each generator of schedules, so that each has
+/// its own sequence. `random_schedule` uses plane 0.
 enum class DrawPlane : std::uint32_t {
     kTiled = 1,
     kScattered = 2,
@@ -15,13 +16,15 @@ enum class DrawPlane : std::uint32_t {
     kHardwareTiled = 4
 };
 
-/// Random numbers one after the other, for the making of schedules.
+/// A sequence of random integers for a generator of schedules: word 0 of the Philox blocks
+/// (philox.h) of counters 0, 1, ... with key `seed`. The same on any machine.
 class Draws {
   public:
     Draws(std::uint64_t seed, DrawPlane plane)
         : seed_(seed), plane_(static_cast<std::uint32_t>(plane)) {}
 
-    /// An integer in [0, range).
+    /// The next integer, uniform in [0, range): floor(word range / 2^32), so probabilities differ
+    /// by at most 2^-32. Precondition: 1 <= range <= 2^32.
     std::uint32_t below(std::size_t range) {
         const auto address = random_address(static_cast<std::uint32_t>(count_),
                                             static_cast<std::uint32_t>(count_ >> 32U),

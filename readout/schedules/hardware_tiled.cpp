@@ -34,8 +34,8 @@ void check_lengths(std::span<const int> lengths) {
 
 /// Groups along a side of `pixels`, 0 if it is to be chosen.
 int whole_groups(const char* key, int pixels, int group, const char* group_key) {
-    if (pixels < 0 || pixels > kLongestHardwareSide)
-        fail(fmt::format("{} {} is outside 0..{}", key, pixels, kLongestHardwareSide));
+    if (pixels < 0 || pixels > kMaxHardwareSide)
+        fail(fmt::format("{} {} is outside 0..{}", key, pixels, kMaxHardwareSide));
     if (pixels % group != 0)
         fail(fmt::format("{} {} is no multiple of {} {}", key, pixels, group_key, group));
     return pixels / group;
@@ -54,13 +54,13 @@ void check_size(const GroupGrid& grid, int rows, int cols, std::size_t lengths) 
     const std::int64_t pixel_rows = std::int64_t{rows} * grid.group_rows;
     const std::int64_t pixel_cols = std::int64_t{cols} * grid.group_cols;
     const std::int64_t exposures = pixel_rows * pixel_cols * static_cast<std::int64_t>(lengths);
-    if (pixel_rows > kLongestHardwareSide || pixel_cols > kLongestHardwareSide ||
+    if (pixel_rows > kMaxHardwareSide || pixel_cols > kMaxHardwareSide ||
         exposures > static_cast<std::int64_t>(kMaxHardwareExposures))
         fail(fmt::format(
             "a tile of {} x {} pixels (tile_rows x tile_cols) with {} exposures; at "
             "most {} along a side and {} exposures can be designed: make groups or "
             "the tile smaller",
-            pixel_rows, pixel_cols, exposures, kLongestHardwareSide, kMaxHardwareExposures));
+            pixel_rows, pixel_cols, exposures, kMaxHardwareSide, kMaxHardwareExposures));
 }
 
 /// The sizes are in groups, 0: to be chosen.

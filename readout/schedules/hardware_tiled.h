@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/exposure_schedule.h"
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
 
 namespace stipple {
 
@@ -32,7 +32,7 @@ inline constexpr int kMaxHardwareLengths = 16;
 inline constexpr int kMaxHardwarePeriod = 512;
 /// Max exposures in such a tile, and max pixels along its sides.
 inline constexpr std::size_t kMaxHardwareExposures = std::size_t{1} << 22U;
-inline constexpr int kLongestHardwareSide = 16384;
+inline constexpr int kMaxHardwareSide = 16384;
 
 /// A tile in which every group of pixels (kSkipChannel: every pixel) repeats a permutation of
 /// `exposure_slots` without gaps. The number of due groups is balanced over slots, rows and

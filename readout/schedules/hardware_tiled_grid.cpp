@@ -21,9 +21,9 @@ double falling(double x) {
     return power;
 }
 
-void check(const char* key, int value, int most) {
-    if (value < 1 || value > most)
-        throw InputError("hardware_tiled", fmt::format("{} {} is outside 1..{}", key, value, most));
+void check(const char* key, int value, int max) {
+    if (value < 1 || value > max)
+        throw InputError("hardware_tiled", fmt::format("{} {} is outside 1..{}", key, value, max));
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ std::vector<Neighbour> neighbours_of(const GroupGrid& grid, int max_rows, int ma
     const double aspect = std::sqrt(std::sqrt(1.0 * grid.group_cols / grid.group_rows));
     const double sigma_rows = kSigma * aspect;
     const double sigma_cols = kSigma / aspect;
-    const auto reach = [](double sigma, int most) {
-        return std::min(most, static_cast<int>(3 * sigma) + 1);
+    const auto reach = [](double sigma, int max) {
+        return std::min(max, static_cast<int>(3 * sigma) + 1);
     };
     const int rows = reach(sigma_rows, max_rows);
     const int cols = reach(sigma_cols, max_cols);

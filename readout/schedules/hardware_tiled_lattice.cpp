@@ -30,7 +30,7 @@ GroupCode code_at(const Lattice& lattice, int order, int row, int col, int perio
     return {static_cast<std::uint16_t>(order), static_cast<std::uint16_t>(slot % period)};
 }
 
-/// Every lattice with per_period 0, the least potential first, equal ones in random order.
+/// Every lattice with per_period 0, the min potential first, equal ones in random order.
 std::vector<Lattice> list_lattices(const GroupGrid& grid, const CodeSet& codes, int order,
                                    Draws& draws) {
     const int period = codes.period();
@@ -66,23 +66,23 @@ class EvenLattice {
     /// The first of `lattices` that is even, or else the most even one.
     Lattice choose(const std::vector<Lattice>& lattices) {
         Lattice best = lattices.front();
-        int least = -1;
+        int min_load = -1;
         for (Lattice lattice : lattices) {
             auto& [load, per_period] = best_of_[static_cast<std::size_t>(lattice.per_col)];
             if (load != 0) continue;  // another per_row changes no load
             std::tie(load, per_period) = best_for(lattice);
             lattice.per_period = per_period;
-            if (least < 0 || load < least) {
-                least = load;
+            if (min_load < 0 || load < min_load) {
+                min_load = load;
                 best = lattice;
             }
-            if (least <= load_.even() + load_.even() / kSpare || counted_ > kMaxCounted) break;
+            if (min_load <= load_.even() + load_.even() / kSpare || counted_ > kMaxCounted) break;
         }
         return best;
     }
 
   private:
-    /// The least load with one of the values of per_period, and the value.
+    /// The min load with one of the values of per_period, and the value.
     std::pair<int, int> best_for(Lattice lattice) {
         std::pair<int, int> best{-1, 0};
         for (lattice.per_period = 0; lattice.per_period <= max_per_period_; ++lattice.per_period) {

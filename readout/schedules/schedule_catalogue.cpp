@@ -9,13 +9,13 @@
 #include "core/error.h"
 #include "core/key_reader.h"
 #include "core/memory_limit.h"
+#include "readout/column_addressing.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/full_schedule.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/random_codes.h"
 #include "readout/schedules/tiled_schedule.h"
-#include "readout/timing/column_addressing.h"
 
 namespace stipple {
 namespace {
@@ -197,7 +197,7 @@ NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
     const KeyReader read(config);
     HardwareTile tile{.addressing = made.addressing, .array_cols = made.shape.cols};
     read_addressing(read, tile.addressing);
-    read_tile_size(config, {0, kLongestHardwareSide}, tile.tile_rows, tile.tile_cols);
+    read_tile_size(config, {0, kMaxHardwareSide}, tile.tile_rows, tile.tile_cols);
     read({"arrangement", {}, "", "arrangement of the codes in the tile", kArrangements},
          tile.arrangement);
     const std::vector<int> lengths = read_exposure_slots(config);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/config.h"
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "readout/config_origin.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -19,6 +21,7 @@ struct NamedSchedule {
     std::string name;
     ScheduleSource source;
     ExposureSchedule schedule;
+    std::optional<ConfigOrigin> origin = {};  ///< its file; none: made in code
 };
 
 /// The schedule that a file of config/schedules describes (key `kind`, docs/schedules.md), made for
@@ -28,7 +31,7 @@ struct NamedSchedule {
 [[nodiscard]] NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed,
                                           const ColumnAddressing& addressing);
 
-/// What `kind` may be.
+/// The values of the key `kind`.
 [[nodiscard]] std::vector<std::string_view> schedule_kinds();
 
 /// The keys of schedules of a kind. Precondition: one of `schedule_kinds`.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "readout/timing/readout_account.h"
+#include "readout/program/sequencer_program.h"
 
 namespace stipple {
 namespace {

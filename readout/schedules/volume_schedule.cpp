@@ -72,12 +72,12 @@ int checked_period(const NpyVolume& lengths, int period_slots, std::string_view 
         std::int64_t sum = 0;
         for (int layer = 0; layer < lengths.layers; ++layer) {
             sum += length_at(lengths, layer, pixel, where);
-            const int most = period_slots > 0 ? period_slots : kMaxPeriodSlots;
-            if (sum > most)
+            const int max_slots = period_slots > 0 ? period_slots : kMaxPeriodSlots;
+            if (sum > max_slots)
                 throw InputError(where,
                                  fmt::format("pixel ({}, {}) exposure {}: ends after {} slots;"
                                              " the period is {}",
-                                             pixel.row, pixel.col, layer, sum, most));
+                                             pixel.row, pixel.col, layer, sum, max_slots));
         }
         longest = std::max(longest, sum);
     });

@@ -16,7 +16,7 @@ double per_second(const ReadoutTiming& timing, double clocks) {
 double full_energy_pj(ReadoutTiming timing, FrameShape shape) {
     timing.code_bit_pj = 0;
     const ExposureSchedule every_slot = full_schedule(1, 1);
-    return ReadoutAccount(timing, every_slot, shape, {}).of(0).counts.energy_pj;
+    return ReadoutCost(timing, every_slot, shape, {}).of(0).counts.energy_pj;
 }
 
 }  // namespace
@@ -26,12 +26,12 @@ ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedul
     ReadoutRate rate;
     rate.full = full_readout(timing, shape);
     rate.full_energy_pj = full_energy_pj(timing, shape);
-    ReadoutAccount account(timing, schedule, shape, {});
-    const std::int64_t first = account.first_steady_slot();
+    ReadoutCost cost(timing, schedule, shape, {});
+    const std::int64_t first = cost.first_steady_slot();
     const int period = schedule.period_slots();
     double clocks = 0;
     for (std::int64_t slot = first; slot < first + period; ++slot) {
-        const SlotAccount& it = account.of(slot);
+        const SlotCost& it = cost.of(slot);
         rate.period += it.counts;
         clocks += static_cast<double>(it.clocks);
         if (it.clocks <= rate.slowest.clocks) continue;
@@ -45,7 +45,7 @@ ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedul
     rate.even =
         balanced_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
     const double balanced_clocks =
-        std::max(rate.even.total, static_cast<double>(account.timing().code_load_clocks));
+        std::max(rate.even.total, static_cast<double>(cost.timing().code_load_clocks));
     rate.full_hz = per_second(timing, static_cast<double>(rate.full.total));
     rate.coded_hz = per_second(timing, static_cast<double>(rate.slowest.clocks));
     rate.mean_coded_hz = per_second(timing, rate.mean_slot_clocks);

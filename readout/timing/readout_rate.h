@@ -5,7 +5,7 @@
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
 #include "readout/timing/full_readout.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
@@ -14,7 +14,7 @@ namespace stipple {
 struct ReadoutRate {
     UniformReadout full;
     BalancedReadout even;  ///< the bound: balanced load
-    SlotAccount slowest;   ///< slot of the steady period
+    SlotCost slowest;      ///< slot of the steady period
     std::int64_t slowest_phase = 0;
     double mean_slot_clocks = 0;
     ReadoutCounts period;         ///< of all slots of a steady period

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/config.h"
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
 
 namespace stipple {
 

@@ -3,7 +3,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "readout/provenance.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 namespace {
@@ -20,11 +20,11 @@ ExposureSchedule whole_schedule(const StreamHeader& header) {
 struct StretchedSlots::Readout {
     Readout(const ReadoutTiming& timing, const StreamHeader& header)
         : schedule(whole_schedule(header)),
-          account(timing, schedule, header.shape,
-                  {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch}) {}
+          cost(timing, schedule, header.shape,
+               {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch}) {}
 
     ExposureSchedule schedule;
-    ReadoutAccount account;
+    ReadoutCost cost;
 };
 
 StretchedSlots::StretchedSlots(const StreamHeader& header, std::uint64_t max_bytes)
@@ -50,9 +50,9 @@ void StretchedSlots::add(const SamplePacket& packet) {
     if ((packet.flags & SamplePacket::kOverrun) == 0 || packet.first_row != 0) return;
     if (slots_++ == 0) set_up();
     if (!readout_) return;
-    ReadoutAccount& account = readout_->account;
-    total_us_ += static_cast<double>(account.of(packet.slot).clocks) /
-                 static_cast<double>(account.timing().clock_hz) * 1e6;
+    ReadoutCost& cost = readout_->cost;
+    total_us_ += static_cast<double>(cost.of(packet.slot).clocks) /
+                 static_cast<double>(cost.timing().clock_hz) * 1e6;
 }
 
 std::optional<double> StretchedSlots::mean_us() const {

@@ -146,7 +146,7 @@ std::string Waveform::take_until(std::int64_t cycle) {
     return text;
 }
 
-std::string Waveform::slot(ReadoutAccount& account, std::int64_t slot, std::int64_t begin) {
+std::string Waveform::slot(ReadoutCost& cost, std::int64_t slot, std::int64_t begin) {
     std::string before = take_until(begin);
     if (now_.front().empty()) {  // initial values
         now_.front().assign(1, '0');
@@ -158,12 +158,12 @@ std::string Waveform::slot(ReadoutAccount& account, std::int64_t slot, std::int6
     set(begin, kSlotStart, 1);
     set(begin + 1, kSlotStart, 0);
     set(begin, kSlot, slot);
-    set(begin, kOverrun, account.of(slot).overrun ? 1 : 0);
+    set(begin, kOverrun, cost.of(slot).overrun ? 1 : 0);
     set(begin, kCodeLoad, timing_.code_load_clocks > 0 ? 1 : 0);
     set(begin + timing_.code_load_clocks, kCodeLoad, 0);
-    const SlotTimes times = account.times(slot, begin);
+    const SlotTimes times = cost.times(slot, begin);
     for (const RowTimes& row : times.rows)
-        add_row(row, account.row_loads().channel_columns(slot, row.load.row));
+        add_row(row, cost.row_loads().channel_columns(slot, row.load.row));
     return before;
 }
 

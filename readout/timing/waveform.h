@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/slot_readout.h"
 
@@ -24,9 +24,9 @@ class Waveform {
 
     /// Declarations and initial values: the beginning of the file.
     [[nodiscard]] std::string head() const;
-    /// The changes of `slot`, which begins at clock `begin`, by `account`.
+    /// The changes of `slot`, which begins at clock `begin`, by `cost`.
     /// Precondition: slots are in order and `begin` is the end of the previous one.
-    [[nodiscard]] std::string slot(ReadoutAccount& account, std::int64_t slot, std::int64_t begin);
+    [[nodiscard]] std::string slot(ReadoutCost& cost, std::int64_t slot, std::int64_t begin);
     /// The end of the last slot, at clock `end`.
     [[nodiscard]] std::string tail(std::int64_t end);
 

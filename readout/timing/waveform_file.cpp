@@ -8,16 +8,16 @@
 
 namespace stipple {
 
-void WaveformFile::write(ReadoutAccount& account, const std::string& sensor, SlotRange range,
+void WaveformFile::write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
                          const std::function<bool()>& goes_on) {
     OutputFile file(output_.partial(), output_.final_path().string());
     const auto write = [&](const std::string& text) { file.write(std::as_bytes(std::span(text))); };
-    Waveform waveform(account.timing(), sensor);
+    Waveform waveform(cost.timing(), sensor);
     write(waveform.head());
     std::int64_t begin = 0;
     for (std::int64_t slot = range.first; slot < range.first + range.slots && goes_on(); ++slot) {
-        write(waveform.slot(account, slot, begin));
-        begin += account.of(slot).clocks;
+        write(waveform.slot(cost, slot, begin));
+        begin += cost.of(slot).clocks;
     }
     write(waveform.tail(begin));
     file.close();

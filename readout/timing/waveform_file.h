@@ -5,25 +5,27 @@
 #include <string>
 
 #include "io/pending_output.h"
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 
+/// Slots [first, first + slots).
 struct SlotRange {
     std::int64_t first = 0;
     std::int64_t slots = 0;
 };
 
-/// A VCD file of the readout. Made before the work, so that a name that cannot be used is refused
-/// at once.
+/// A VCD file of the readout (waveform.h). Its name is reserved by the constructor, before the
+/// work, so that an unusable name is an error at once.
 class WaveformFile {
   public:
     /// \throws InputError as PendingOutput.
     WaveformFile(const std::string& file, bool force) : output_(file, force) {}
 
-    /// Writes the slots of `range`, of which the first begins at time 0, while `goes_on`.
+    /// Writes the slots of `range`, of which the first begins at time 0, as long as `goes_on`
+    /// returns true. `sensor` is the name of the scope in the file.
     /// \throws DeviceError.
-    void write(ReadoutAccount& account, const std::string& sensor, SlotRange range,
+    void write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
                const std::function<bool()>& goes_on);
 
   private:

@@ -1,4 +1,4 @@
-"""How fast sensors read: `timing`, and the readout's account and waveform of `emulate`."""
+"""How fast sensors read: `timing`, and the readout's cost and waveform of `emulate`."""
 
 import re
 import shutil

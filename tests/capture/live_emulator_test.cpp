@@ -47,7 +47,8 @@ class LiveEmulatorTest : public ::testing::Test {
     TemporaryFolder folder_;
     FrameLight to_light_{scripted_layout(), 0};
     SensorSetup setup_ = set_up_sensor({.schedule = "full1x"}, to_light_.shape());
-    StreamRecorder recorder_{folder_ / "live.stipple", false, setup_, provenance_of(setup_, {})};
+    StreamRecorder recorder_{
+        folder_ / "live.stipple", setup_, {.provenance = provenance_of(setup_, {})}};
     std::vector<SamplePacket> shown_;
 };
 

@@ -1,8 +1,17 @@
-"""Modules include, and link, only what the table of docs/architecture.md allows."""
+"""Modules include, and link, only what the table of docs/architecture.md allows. Folders of a module that
+lie beside each other do not include each other in a circle."""
 
+import os
 import re
+from pathlib import Path
 
 from tree import MODULES, report
+
+# Folders that may include each other, each pair with its reason.
+MUTUAL = {
+    frozenset({"capture/aravis", "capture/doctor"}),  # the doctor opens cameras, which use its rules
+    frozenset({"capture/recording", "capture/serve"}),  # each reads what the other one writes
+}
 
 PAGE = "docs/architecture.md"
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -25,6 +34,7 @@ def check(tree):
             yield f"{PAGE}: the table of includes has no row for {module}"
     yield from wrong_includes(tree, table)
     yield from wrong_links(tree, table)
+    yield from circles(tree)
 
 
 def wrong_includes(tree, table):
@@ -55,6 +65,38 @@ def wrong_links(tree, table):
             for other in re.findall(r"\bstipple_(\w+)\b", line):
                 if other in MODULES and other not in table[module] | {module}:
                     yield f"{name}:{number}: {module} may not link {other} ({PAGE})"
+
+
+def circles(tree):
+    places = {}  # {(folder, folder that it includes): where}
+    for name in tree.of_modules(".h", ".cpp"):
+        for number, line in tree.lines(name):
+            include = INCLUDE.match(line)
+            pair = include and siblings(name, include.group(2))
+            if pair and frozenset(pair) not in MUTUAL:
+                places.setdefault(pair, f"{name}:{number}")
+    for (first, second), place in sorted(places.items()):
+        if first in reached_from(second, places):
+            yield f"{place}: {first} includes {second}, which leads back to it; move what both need"
+
+
+def siblings(name, target):
+    """The folders of a file and of its include where their paths part: ("apps/report",
+    "apps/arguments"). None if one lies in the other, or in another module."""
+    here, there = Path(name).parent.parts, Path(target).parent.parts
+    shared = len(os.path.commonprefix([here, there]))
+    if shared == 0 or shared in (len(here), len(there)):
+        return None
+    return "/".join(here[:shared + 1]), "/".join(there[:shared + 1])
+
+
+def reached_from(folder, edges):
+    """`folder` and the folders that it includes, directly or by others."""
+    found, new = set(), {folder}
+    while new:
+        found |= new
+        new = {second for first, second in edges if first in new} - found
+    return found
 
 
 if __name__ == "__main__":

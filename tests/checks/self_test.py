@@ -65,6 +65,14 @@ class ChecksTest(unittest.TestCase):
         table = TABLE.replace("| decoder | stream, core |\n", "")
         self.assertEqual(self.includes({includes.PAGE: table}), [includes.PAGE])
 
+    def test_folders_of_a_module_form_no_circle(self):
+        files = {"apps/a/a.cpp": '#include "apps/b/b.h"\n', "apps/b/b.h": '#include "apps/c/c.h"\n',
+                 "apps/c/c.h": '#include "apps/top.h"\n', "apps/top.h": '#include "apps/a/a.h"\n',
+                 "apps/a/a.h": ""}
+        self.assertEqual(self.includes(files), [])
+        files["apps/c/c.h"] += '#include "apps/a/a.h"\n'
+        self.assertEqual(self.includes(files), ["apps/a/a.cpp:1", "apps/b/b.h:1", "apps/c/c.h:2"])
+
     def test_third_party_types_stay_out_of_headers(self):
         foreign = "#pragma once\n#include <vector>\n#include <opencv2/core.hpp>\n"
         kernel = "#include <hwy/highway.h>\n"

@@ -159,7 +159,7 @@ TEST_F(ReconstructTest, StopsWhenTheSinkHasEnough) {
     EXPECT_EQ(report.slots, 61);
 }
 
-TEST_F(ReconstructTest, TellsTheMonitorHowFarItIsAndStopsInTheMidstOfABlock) {
+TEST_F(ReconstructTest, ReportsProgressAndStopsInTheMidstOfABlock) {
     const FrameShape shape{16, 16, 1};
     const auto file = write(disc(100, shape), random_schedule(16, 16, kPaperExposureSlots, 1));
     double last = 0;

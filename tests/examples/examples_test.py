@@ -82,7 +82,9 @@ class ExamplesTest(unittest.TestCase):
         """Slots 0 to 15 of a pair of pixels: 16 samples and 8 of 8 light slots each."""
         said = self.example("own_schedule", "own.stipple")
         self.assertIn(f"{48 * 32 * (16 + 8)} samples, light throughput 1", said)
-        self.assertIn("fast_and_slow", self.program("info", "own.stipple"))
+        information = self.program("info", "own.stipple")
+        self.assertIn("fast_and_slow", information)
+        self.assertIn("made_in_code = true", information)
 
     def test_pkg_config(self):
         places = [path.parent for path in self.prefix.rglob("stipple.pc")]

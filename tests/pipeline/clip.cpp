@@ -45,7 +45,7 @@ SensorSetup setup_of(const NamedSchedule& named, FrameShape footage, const Senso
 
 void write_stream(const FluxVideo& video, const SensorSetup& setup,
                   const std::filesystem::path& file) {
-    StreamRecorder recorder(file, true, setup, "");
+    StreamRecorder recorder(file, setup, {.force = true});
     for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
     recorder.finish();
 }
@@ -75,7 +75,7 @@ FluxVideo middle(const FluxVideo& video, int side, int slots) {
 }
 
 NamedSchedule schedule_of(const std::string& name, FrameShape shape) {
-    Config config(find_config("schedules", name), {});
+    Config config(find_config(ConfigKind::kSchedules, name), {});
     NamedSchedule schedule = read_schedule(config, shape, kSeed);
     config.reject_unknown_keys();
     return schedule;
@@ -93,7 +93,7 @@ void write_recording(const FluxVideo& video, const NamedSchedule& named, std::ui
 
 SensorParams sensor_of(const std::string& name, const std::vector<std::string>& settings,
                        double light) {
-    Config config(find_config("sensors", name), settings);
+    Config config(find_config(ConfigKind::kSensors, name), settings);
     SensorParams sensor = read_sensor(config);
     sensor.photons_per_unit *= light;
     validate(sensor);

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/flux_video.h"
 #include "readout/coded_sensor.h"
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 #include "readout/provenance.h"
 #include "sensor_model/colour_mosaic.h"
 #include "stream/stream_reader.h"
@@ -47,7 +50,7 @@ TEST(StreamRecorderTest, TheStreamHoldsWhatTheChipRead) {
     const TemporaryFolder folder;
     const auto video = ramp(kShape);
     const SensorSetup setup = set_up_sensor({.schedule = "tiled"}, kShape);
-    StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+    StreamRecorder recorder(folder / "a.stipple", setup);
     const auto packets = record(recorder, video);
     recorder.finish();
 
@@ -73,7 +76,7 @@ TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfThei
                                              .settings = {"slot_us=6"},
                                              .overrun = OverrunPolicy::kDrop},
                                             kShape);
-    StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+    StreamRecorder recorder(folder / "a.stipple", setup);
     const auto packets = record(recorder, video);
     recorder.finish();
 
@@ -88,7 +91,7 @@ TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfThei
     EXPECT_EQ(rows, kSlots * kShape.rows);
     EXPECT_GT(dropped_rows, 0);
     EXPECT_LT(dropped_rows, rows);
-    EXPECT_EQ(recorder.samples() + recorder.account()->totals().dropped_samples,
+    EXPECT_EQ(recorder.samples() + recorder.readout_cost()->totals().dropped_samples,
               recorder.stats().samples);
     EXPECT_EQ(read(folder / "a.stipple"), packets);
 }
@@ -99,12 +102,12 @@ TEST(StreamRecorderTest, ColourFallsOnTheFiltersOfTheArray) {
     const auto video = ramp(colour);
     const SensorChoice choice{.sensor = "ideal", .schedule = "tiled", .settings = {"cfa=rggb"}};
     const SensorSetup setup = set_up_sensor(choice, colour);
-    StreamRecorder recorder(folder / "colour.stipple", false, setup, "");
+    StreamRecorder recorder(folder / "colour.stipple", setup);
     FluxVideo mosaic(kSlots, kShape);
     for (int slot = 0; slot < kSlots; ++slot)
         take_mosaic(ColourFilter::kRggb, colour, video.frame(slot), mosaic.frame(slot));
     const SensorSetup grey = set_up_sensor(choice, kShape, ColourFilter::kRggb);
-    StreamRecorder of_mosaic(folder / "mosaic.stipple", false, grey, "");
+    StreamRecorder of_mosaic(folder / "mosaic.stipple", grey);
     EXPECT_EQ(record(recorder, video), record(of_mosaic, mosaic));
 }
 
@@ -112,7 +115,7 @@ TEST(StreamRecorderTest, ARunThatIsGivenUpLeavesNoFile) {
     const TemporaryFolder folder;
     const SensorSetup setup = set_up_sensor({}, kShape);
     {
-        StreamRecorder recorder(folder / "a.stipple", false, setup, "");
+        StreamRecorder recorder(folder / "a.stipple", setup);
         recorder.expose(ramp(kShape).frame(0));
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
@@ -125,6 +128,40 @@ TEST(StreamRecorderTest, TheHeaderSaysHowToMakeTheStreamAgain) {
     EXPECT_EQ(command_of(provenance_of(setup, origin)),
               "stipple emulate clip -o again.stipple --schedule tiled --set sensor.read_noise_e=5 "
               "--seed 7");
+}
+
+TEST(StreamRecorderTest, TheHeaderHasTheFilesAsTheyWereRead) {
+    const TemporaryFolder folder;
+    const auto sensor = folder / "chip.toml";
+    const auto schedule = folder / "plan.toml";
+    const auto write = [](const std::filesystem::path& file, const std::string& text) {
+        std::ofstream(file) << text;
+    };
+    write(sensor, "name = \"chip\"\nread_noise_e = 5\n");
+    write(schedule, "kind = \"full\"\nopen_slots = 3\nperiod_slots = 4\n");
+    const SensorChoice choice{.sensor = sensor.string(), .schedule = schedule.string()};
+    const SensorSetup setup = set_up_sensor(choice, kShape);
+    const std::string before = provenance_of(setup, {});
+    write(schedule, "kind = \"full\"\nopen_slots = 2\nperiod_slots = 4\n");
+    std::filesystem::remove(sensor);
+    EXPECT_EQ(provenance_of(setup, {}), before);
+    EXPECT_NE(before.find("open_slots = 3"), std::string::npos) << before;
+}
+
+TEST(StreamRecorderTest, TheHeaderSaysWhatWasMadeInCode) {
+    const FootageOrigin origin{.name = "clip", .sha256 = "00"};
+    SensorSetup setup = set_up_sensor({.schedule = "tiled"}, kShape);
+    EXPECT_EQ(provenance_of(setup, origin).find("made_in_code"), std::string::npos);
+    setup.schedule = {"mine", {}, ExposureSchedule(1, 1, 1, {0, 1}, {{0, open_without_gap(1)}})};
+    const std::string text = provenance_of(setup, origin);
+    EXPECT_NE(text.find("[schedule]\nmade_in_code = true\nname = 'mine'\n"), std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("tiled"), std::string::npos) << text;
+    EXPECT_EQ(command_of(text), "");
+
+    setup = set_up_sensor({}, kShape);
+    setup.origin.reset();
+    EXPECT_EQ(command_of(provenance_of(setup, origin)), "");
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(PoissonTest, NoLightGivesNoPhotons) {
 
 TEST(PoissonTest, MeansBeyondTheLargestAreTakenAsTheLargest) {
     for (const std::uint32_t word : {0U, 1U, 0x12345678U})
-        EXPECT_EQ(poisson_one(HUGE_VALF, word), poisson_one(kLargestPoissonMean, word));
+        EXPECT_EQ(poisson_one(HUGE_VALF, word), poisson_one(kMaxPoissonMean, word));
 }
 
 // Exact for summed draws; the expansion's roundings (float, 1e-6 of the words) may put two

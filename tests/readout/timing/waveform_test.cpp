@@ -47,18 +47,18 @@ void parse(const std::string& text, Visit visit) {
     visit(time, values);
 }
 
-std::string waveform_of(ReadoutAccount& account, std::int64_t slots) {
-    Waveform waveform(account.timing(), "a chip");
+std::string waveform_of(ReadoutCost& cost, std::int64_t slots) {
+    Waveform waveform(cost.timing(), "a chip");
     std::string text = waveform.head();
     std::int64_t begin = 0;
     for (std::int64_t slot = 0; slot < slots; ++slot) {
-        text += waveform.slot(account, slot, begin);
-        begin += account.of(slot).clocks;
+        text += waveform.slot(cost, slot, begin);
+        begin += cost.of(slot).clocks;
     }
     return text + waveform.tail(begin);
 }
 
-// The file is sampled between its changes: busy clocks add up to those of the account.
+// The file is sampled between its changes: busy clocks add up to those of the cost.
 TEST(WaveformTest, BusyTimesAreThoseOfTheAccount) {
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
         Draw draw(seed);
@@ -67,12 +67,12 @@ TEST(WaveformTest, BusyTimesAreThoseOfTheAccount) {
         const FrameShape shape{timing.rows, timing.cols, 1};
         const auto schedule = random_schedule(3, 4, std::vector{1, 2, 4}, seed);
         const SlotBudget budget{draw(0, 1) * 1000, OverrunPolicy::kStretch};
-        ReadoutAccount account(timing, schedule, shape, budget);
+        ReadoutCost cost(timing, schedule, shape, budget);
         constexpr std::int64_t kSlots = 9;
-        for (int slot = 0; slot < kSlots; ++slot) account.add_next();
+        for (int slot = 0; slot < kSlots; ++slot) cost.add_next();
         Values total;
         Values before;
-        parse(waveform_of(account, kSlots), [&](std::int64_t time, const Values& values) {
+        parse(waveform_of(cost, kSlots), [&](std::int64_t time, const Values& values) {
             // 1 MHz: a clock is 10^6 ps.
             const std::int64_t clocks = values.at("cycle") - before["cycle"];
             for (const auto& [name, value] : before)
@@ -80,7 +80,7 @@ TEST(WaveformTest, BusyTimesAreThoseOfTheAccount) {
             if (time % 1'000'000 != 0) ADD_FAILURE() << time;
             before = values;
         });
-        const ReadoutCounts& counts = account.totals();
+        const ReadoutCounts& counts = cost.totals();
         EXPECT_EQ(total["link_valid"], counts.link_clocks) << "seed " << seed;
         EXPECT_EQ(total["row_select"], counts.convert_clocks) << "seed " << seed;
         EXPECT_EQ(total["adc_busy"], counts.convert_clocks - counts.rows * timing.rot_clocks)
@@ -94,9 +94,9 @@ TEST(WaveformTest, BusyTimesAreThoseOfTheAccount) {
 TEST(WaveformTest, TimesAreTrueToHalfAPicosecond) {
     const auto timing = sensor_timing("lux1310");
     const auto every_slot = full_schedule(1, 1);
-    ReadoutAccount account(timing, every_slot, {4, 64, 1}, {});
+    ReadoutCost cost(timing, every_slot, {4, 64, 1}, {});
     int changes = 0;
-    parse(waveform_of(account, 2), [&](std::int64_t time, const Values& values) {
+    parse(waveform_of(cost, 2), [&](std::int64_t time, const Values& values) {
         const double exact = static_cast<double>(values.at("cycle")) * 1e12 / 90e6;
         EXPECT_NEAR(static_cast<double>(time), exact, 0.5001);
         ++changes;
@@ -107,9 +107,9 @@ TEST(WaveformTest, TimesAreTrueToHalfAPicosecond) {
 TEST(WaveformTest, EachRowShowsItsNumberAndItsChannels) {
     const auto timing = sensor_timing("lux1310");
     const auto every_slot = full_schedule(1, 1);
-    ReadoutAccount account(timing, every_slot, {3, 24, 1}, {});
+    ReadoutCost cost(timing, every_slot, {3, 24, 1}, {});
     std::vector<std::int64_t> rows;
-    parse(waveform_of(account, 1), [&](std::int64_t, const Values& values) {
+    parse(waveform_of(cost, 1), [&](std::int64_t, const Values& values) {
         if (values.at("link_valid") == 0) return;
         if (rows.empty() || rows.back() != values.at("link_row"))
             rows.push_back(values.at("link_row"));

@@ -1,4 +1,4 @@
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "apps/report/standard_error.h"
+#include "apps/standard_error.h"
 
 #include <unistd.h>
 

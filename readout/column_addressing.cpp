@@ -1,4 +1,4 @@
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
 
 #include <array>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "readout/program/sequencer_program.h"
 
 namespace stipple {
 namespace {
@@ -61,12 +60,16 @@ ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
     const bool in_turns = timing.row_timing == RowTiming::kSequential;
     const auto [adc, link] = in_turns ? shares_in_turns(times) : shares_overlapped(timing, times);
     const std::int64_t overhead = times.end - times.begin - adc - link;
-    const std::int64_t most = std::max({adc, link, overhead});
-    if (most == link) return ReadoutLimit::kLink;
-    return most == adc ? ReadoutLimit::kAdc : ReadoutLimit::kRowOverhead;
+    const std::int64_t longest = std::max({adc, link, overhead});
+    if (longest == link) return ReadoutLimit::kLink;
+    return longest == adc ? ReadoutLimit::kAdc : ReadoutLimit::kRowOverhead;
 }
 
 }  // namespace
+
+std::string_view name_of(OverrunPolicy policy) {
+    return policy == OverrunPolicy::kDrop ? "drop" : "stretch";
+}
 
 std::string_view name_of(ReadoutLimit limit) {
     constexpr std::array<std::string_view, 4> kNames{"adc", "link", "row_overhead", "code_load"};
@@ -87,8 +90,8 @@ ReadoutCounts& ReadoutCounts::operator+=(const ReadoutCounts& more) {
     return *this;
 }
 
-ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedule& schedule,
-                               FrameShape shape, SlotBudget budget)
+ReadoutCost::ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule,
+                         FrameShape shape, SlotBudget budget)
     : timing_(timing),
       schedule_(schedule),
       shape_(shape),
@@ -109,21 +112,21 @@ ReadoutAccount::ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedu
           "the overhead before the rows");
 }
 
-const SlotAccount& ReadoutAccount::of(std::int64_t slot) {
-    if (slot < first_steady_slot_) return early_ = account(slot);
-    SlotAccount& known = by_phase_[static_cast<std::size_t>(slot % schedule_.period_slots())];
-    if (known.clocks == 0) known = account(slot);
+const SlotCost& ReadoutCost::of(std::int64_t slot) {
+    if (slot < first_steady_slot_) return early_ = compute(slot);
+    SlotCost& known = by_phase_[static_cast<std::size_t>(slot % schedule_.period_slots())];
+    if (known.clocks == 0) known = compute(slot);
     return known;
 }
 
-std::size_t ReadoutAccount::rows_that_fit(const SlotTimes& times) const {
+std::size_t ReadoutCost::rows_that_fit(const SlotTimes& times) const {
     std::size_t fit = times.rows.size();
     if (budget_.clocks == 0 || budget_.policy != OverrunPolicy::kDrop) return fit;
     while (fit > 0 && times.rows[fit - 1].end_if_last - times.begin > budget_.clocks) --fit;
     return fit;
 }
 
-void ReadoutAccount::count(const RowTimes& row, ReadoutCounts& counts) const {
+void ReadoutCost::count(const RowTimes& row, ReadoutCounts& counts) const {
     const std::uint64_t planes = wide(shape_.planes);
     const std::uint64_t transferred = planes * wide(row.load.columns);
     const std::uint64_t bits = transferred * wide(timing_.bits_per_sample);
@@ -140,7 +143,7 @@ void ReadoutAccount::count(const RowTimes& row, ReadoutCounts& counts) const {
                         timing_.link_bit_pj * static_cast<double>(bits);
 }
 
-SlotTimes ReadoutAccount::times(std::int64_t slot, std::int64_t begin) {
+SlotTimes ReadoutCost::times(std::int64_t slot, std::int64_t begin) {
     row_loads_.list(slot, loads_);
     SlotTimes times = read_slot(timing_, shape_.cols, loads_, begin);
     const std::size_t fit = rows_that_fit(times);
@@ -151,28 +154,28 @@ SlotTimes ReadoutAccount::times(std::int64_t slot, std::int64_t begin) {
     return times;
 }
 
-SlotAccount ReadoutAccount::account(std::int64_t slot) {
+SlotCost ReadoutCost::compute(std::int64_t slot) {
     const SlotTimes times = this->times(slot, 0);  // fills loads_ with all rows that are due
-    SlotAccount account;
-    ReadoutCounts& counts = account.counts;
+    SlotCost cost;
+    ReadoutCounts& counts = cost.counts;
     for (const RowTimes& row : times.rows) count(row, counts);
     const std::size_t read = times.rows.size();
     for (const RowLoad& load : std::span(loads_).subspan(read))
         counts.dropped_samples += wide(shape_.planes) * wide(load.due);
-    account.end_row = read < loads_.size() ? std::max(loads_[read].row, 0) : shape_.rows;
-    account.settle_clocks = times.settle;
+    cost.end_row = read < loads_.size() ? std::max(loads_[read].row, 0) : shape_.rows;
+    cost.settle_clocks = times.settle;
     counts.readout_clocks = times.end;
     counts.energy_pj += timing_.code_bit_pj * static_cast<double>(shape_.pixels());
     const std::int64_t needed = std::max(times.end, timing_.code_load_clocks);
-    account.overrun = read < loads_.size() || (budget_.clocks > 0 && needed > budget_.clocks);
-    account.clocks = std::max({needed, budget_.clocks, std::int64_t{1}});
-    account.limit =
+    cost.overrun = read < loads_.size() || (budget_.clocks > 0 && needed > budget_.clocks);
+    cost.clocks = std::max({needed, budget_.clocks, std::int64_t{1}});
+    cost.limit =
         timing_.code_load_clocks > times.end ? ReadoutLimit::kCodeLoad : limit_of(timing_, times);
-    return account;
+    return cost;
 }
 
-const SlotAccount& ReadoutAccount::add_next() {
-    const SlotAccount& slot = of(slots_++);
+const SlotCost& ReadoutCost::add_next() {
+    const SlotCost& slot = of(slots_++);
     overruns_ += slot.overrun ? 1 : 0;
     clocks_ += slot.clocks;
     totals_ += slot.counts;
@@ -190,11 +193,6 @@ std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {
                                              "lower slot_us",
                                              slot_us, kMaxReadoutClocks, timing.clock_hz));
     return static_cast<std::int64_t>(clocks);
-}
-
-std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule) {
-    return wide(program_bits_per_pixel(schedule)) * wide(schedule.tile_rows()) *
-           wide(schedule.tile_cols()) * wide(schedule.period_slots());
 }
 
 }  // namespace stipple

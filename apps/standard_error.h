@@ -37,6 +37,11 @@ requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments..
     say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
+/// The same for a warning; nothing if it is empty.
+inline void say_warning(std::string_view warning) noexcept {
+    if (!warning.empty()) say_error(warning);
+}
+
 constexpr auto kAllBefore = [] { return "what was written before is"; };
 
 /// Says so much of what a run that failed has written to `output` is kept. Where there is no memory

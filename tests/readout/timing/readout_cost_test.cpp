@@ -1,4 +1,4 @@
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -64,15 +64,15 @@ ReadoutCounts counted_by_ticks(const Case& it, std::int64_t slot) {
     return counts;
 }
 
-TEST(ReadoutAccountTest, AgreesWithTheReferenceThatCountsClocks) {
+TEST(ReadoutCostTest, AgreesWithTheReferenceThatCountsClocks) {
     for (std::uint32_t seed = 0; seed < kSensors; ++seed) {
         const Case it(seed);
-        ReadoutAccount account(it.timing, it.schedule, it.shape, {});
+        ReadoutCost cost(it.timing, it.schedule, it.shape, {});
         std::int64_t clocks = 0;
         std::uint64_t samples = 0;
         for (int slot = 0; slot < kSlots; ++slot) {
             const ReadoutCounts expected = counted_by_ticks(it, slot);
-            const SlotAccount& given = account.add_next();
+            const SlotCost& given = cost.add_next();
             EXPECT_EQ(given.counts.samples, expected.samples);
             EXPECT_EQ(given.counts.samples,
                       count_due(it.schedule, slot, 0, it.shape.rows, it.shape.cols) *
@@ -93,13 +93,13 @@ TEST(ReadoutAccountTest, AgreesWithTheReferenceThatCountsClocks) {
             samples += expected.samples;
         }
         ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
-        EXPECT_EQ(account.clocks(), clocks);
-        EXPECT_EQ(account.totals().samples, samples);
-        EXPECT_EQ(account.slots(), kSlots);
+        EXPECT_EQ(cost.clocks(), clocks);
+        EXPECT_EQ(cost.totals().samples, samples);
+        EXPECT_EQ(cost.slots(), kSlots);
     }
 }
 
-TEST(ReadoutAccountTest, DroppedRowsAreTheFewestThatLetTheRestFit) {
+TEST(ReadoutCostTest, DroppedRowsAreTheFewestThatLetTheRestFit) {
     int with_drops = 0;
     for (std::uint32_t seed = 0; seed < kSensors; ++seed) {
         Case it(seed);
@@ -107,9 +107,9 @@ TEST(ReadoutAccountTest, DroppedRowsAreTheFewestThatLetTheRestFit) {
         const SlotBudget budget{
             it.timing.overhead_clocks + it.timing.code_load_clocks + it.draw(1, 60),
             OverrunPolicy::kDrop};
-        ReadoutAccount dropping(it.timing, it.schedule, it.shape, budget);
+        ReadoutCost dropping(it.timing, it.schedule, it.shape, budget);
         for (int slot = 0; slot < kSlots; ++slot) {
-            const SlotAccount& given = dropping.of(slot);
+            const SlotCost& given = dropping.of(slot);
             std::vector<RowLoad> loads;
             RowLoads(it.timing, it.schedule, it.shape).list(slot, loads);
             const auto all = read_slot_by_ticks(it.timing, it.shape.cols, loads, 0).rows;
@@ -131,42 +131,41 @@ TEST(ReadoutAccountTest, DroppedRowsAreTheFewestThatLetTheRestFit) {
     EXPECT_GT(with_drops, 100) << "the test means something";
 }
 
-TEST(ReadoutAccountTest, AStretchedSlotLastsAsLongAsItsReadout) {
+TEST(ReadoutCostTest, AStretchedSlotLastsAsLongAsItsReadout) {
     const auto timing = sensor_timing("lux1310");
     const auto every_slot = full_schedule(1, 1);
     for (const auto& [budget, overrun] : {std::pair{84142, true}, std::pair{84143, false}}) {
-        ReadoutAccount account(timing, every_slot, {1024, 1280, 1},
-                               {budget, OverrunPolicy::kStretch});
-        const SlotAccount& slot = account.add_next();
+        ReadoutCost cost(timing, every_slot, {1024, 1280, 1}, {budget, OverrunPolicy::kStretch});
+        const SlotCost& slot = cost.add_next();
         EXPECT_EQ(slot.overrun, overrun);
         EXPECT_EQ(slot.clocks, 84143);
         EXPECT_EQ(slot.end_row, 1024);
-        EXPECT_EQ(account.overruns(), overrun ? 1 : 0);
+        EXPECT_EQ(cost.overruns(), overrun ? 1 : 0);
     }
 }
 
-TEST(ReadoutAccountTest, TheCodeOfAWindowLoadsInTheShareOfItsRows) {
+TEST(ReadoutCostTest, TheCodeOfAWindowLoadsInTheShareOfItsRows) {
     const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
     const auto every_slot = full_schedule(1, 1);
     for (const auto& [rows, clocks] : {std::pair{1024, 100000}, {512, 50000}, {100, 9766}}) {
-        ReadoutAccount account(timing, every_slot, {rows, 16, 1}, {});
-        EXPECT_EQ(account.of(0).clocks, clocks) << "rounded up";
+        ReadoutCost cost(timing, every_slot, {rows, 16, 1}, {});
+        EXPECT_EQ(cost.of(0).clocks, clocks) << "rounded up";
     }
 }
 
-TEST(ReadoutAccountTest, ASlotLastsAtLeastAsLongAsTheLoadOfItsCode) {
+TEST(ReadoutCostTest, ASlotLastsAtLeastAsLongAsTheLoadOfItsCode) {
     const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
     const auto every_slot = full_schedule(1, 1);
-    ReadoutAccount account(timing, every_slot, {1024, 1280, 1}, {});
-    EXPECT_EQ(account.of(0).clocks, 100000);
-    EXPECT_EQ(account.of(0).limit, ReadoutLimit::kCodeLoad);
+    ReadoutCost cost(timing, every_slot, {1024, 1280, 1}, {});
+    EXPECT_EQ(cost.of(0).clocks, 100000);
+    EXPECT_EQ(cost.of(0).limit, ReadoutLimit::kCodeLoad);
 }
 
-TEST(ReadoutAccountTest, SaysWhatTheRowsWaitFor) {
+TEST(ReadoutCostTest, SaysWhatTheRowsWaitFor) {
     const auto limit = [](const char* sensor, std::vector<std::string> changes, int cols) {
         const auto timing = sensor_timing(sensor, changes);
         const auto every_slot = full_schedule(1, 1);
-        return ReadoutAccount(timing, every_slot, {200, cols, 1}, {}).of(0).limit;
+        return ReadoutCost(timing, every_slot, {200, cols, 1}, {}).of(0).limit;
     };
     EXPECT_EQ(limit("lux1310", {}, 1280), ReadoutLimit::kLink);
     EXPECT_EQ(limit("lux1310", {"timing.settle_clocks=[200]"}, 1280), ReadoutLimit::kAdc);
@@ -176,12 +175,12 @@ TEST(ReadoutAccountTest, SaysWhatTheRowsWaitFor) {
     EXPECT_EQ(limit("cmv4000", {}, 2048), ReadoutLimit::kRowOverhead);
 }
 
-TEST(ReadoutAccountTest, WhatDroppingRowsCannotHelpIsRefused) {
+TEST(ReadoutCostTest, WhatDroppingRowsCannotHelpIsRefused) {
     const auto timing = sensor_timing("imx273");
     const auto every_slot = full_schedule(1, 1);
     const auto problem = [&](std::int64_t clocks) {
         return message_of<InputError>([&] {
-            ReadoutAccount(timing, every_slot, {1080, 320, 1}, {clocks, OverrunPolicy::kDrop});
+            ReadoutCost(timing, every_slot, {1080, 320, 1}, {clocks, OverrunPolicy::kDrop});
             return 0;
         });
     };
@@ -192,7 +191,7 @@ TEST(ReadoutAccountTest, WhatDroppingRowsCannotHelpIsRefused) {
     EXPECT_EQ(slot_clocks(timing, 1000), 74250);
 }
 
-TEST(ReadoutAccountTest, ScheduleMemoryIsThatOfTheCompiledProgram) {
+TEST(ReadoutCostTest, ScheduleMemoryIsThatOfTheCompiledProgram) {
     const auto tiled = tiled_schedule(4, 6, std::vector{1, 2, 4, 8}, 1);
     for (const ExposureSchedule& schedule : {tiled, full_schedule(1, 4), full_schedule(4, 4)})
         EXPECT_EQ(schedule_memory_bits(schedule), compile_schedule(schedule).bits());

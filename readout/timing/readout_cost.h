@@ -18,6 +18,9 @@ enum class OverrunPolicy : std::uint8_t {
     kDrop      ///< rows that do not fit are reset without readout
 };
 
+/// As an option of the command line: "stretch", "drop".
+[[nodiscard]] std::string_view name_of(OverrunPolicy policy);
+
 /// The part of a readout that takes most of its time.
 enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };
 
@@ -48,7 +51,7 @@ struct ReadoutCounts {
 };
 
 /// Cost of a slot.
-struct SlotAccount {
+struct SlotCost {
     ReadoutCounts counts;
     std::int64_t clocks = 0;  ///< of the slot: the budget, or longer by readout or code load
     int settle_clocks = 0;    ///< of its rows
@@ -58,21 +61,21 @@ struct SlotAccount {
 };
 
 /// Cost of the readout slot by slot, and its totals. Depends on the schedule, not on the light.
-class ReadoutAccount {
+class ReadoutCost {
   public:
     /// `shape`: the window that is read. `schedule` must outlive this.
     /// \throws InputError as `check_window`, or if with kDrop not even overhead and code load fit
     /// the budget.
-    ReadoutAccount(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
-                   SlotBudget budget);
+    ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
+                SlotBudget budget);
 
     /// Cost of `slot`. Steady slots of the same phase are equal and computed once.
-    [[nodiscard]] const SlotAccount& of(std::int64_t slot);
+    [[nodiscard]] const SlotCost& of(std::int64_t slot);
     /// Times of its rows from `begin` on, without dropped rows.
     [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
 
     /// Adds slot `slots()` to the totals and returns it.
-    const SlotAccount& add_next();
+    const SlotCost& add_next();
     [[nodiscard]] std::int64_t slots() const { return slots_; }
     [[nodiscard]] std::int64_t overruns() const { return overruns_; }
     [[nodiscard]] std::int64_t clocks() const { return clocks_; }
@@ -88,7 +91,7 @@ class ReadoutAccount {
     [[nodiscard]] std::int64_t first_steady_slot() const { return first_steady_slot_; }
 
   private:
-    [[nodiscard]] SlotAccount account(std::int64_t slot);
+    [[nodiscard]] SlotCost compute(std::int64_t slot);
     [[nodiscard]] std::size_t rows_that_fit(const SlotTimes& times) const;
     void count(const RowTimes& row, ReadoutCounts& counts) const;
 
@@ -98,8 +101,8 @@ class ReadoutAccount {
     SlotBudget budget_;
     RowLoads row_loads_;
     std::int64_t first_steady_slot_ = 0;
-    std::vector<SlotAccount> by_phase_;  ///< of steady slots; `clocks` 0: not yet known
-    SlotAccount early_;                  ///< of the last slot before those
+    std::vector<SlotCost> by_phase_;  ///< of steady slots; `clocks` 0: not yet known
+    SlotCost early_;                  ///< of the last slot before those
     std::vector<RowLoad> loads_;
 
     std::int64_t slots_ = 0;
@@ -111,9 +114,5 @@ class ReadoutAccount {
 /// Whole clocks in a slot of `slot_us`.
 /// \throws InputError if there is none or more than `kMaxReadoutClocks`.
 [[nodiscard]] std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us);
-
-/// Memory of the sequencer for the schedule (docs/sequencer_program.md), in bits: per slot of the
-/// period and pixel of the tile one bit, two with gaps, three with two charge stores.
-[[nodiscard]] std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule);
 
 }  // namespace stipple

@@ -5,7 +5,8 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/timing/column_addressing.h"
+#include "readout/column_addressing.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
@@ -17,10 +18,14 @@ namespace stipple {
 
 /// Message if a sensor cannot read an array of `shape` by this schedule within slots of `slot_us`:
 /// names the slowest slot of the period and its limit. Nothing if it can, or if nothing is read.
-/// \throws InputError as ReadoutAccount.
+/// \throws InputError as ReadoutCost.
 [[nodiscard]] std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                                         const ReadoutTiming& timing,
                                                         FrameShape shape, double slot_us);
+
+/// The first of these problems of a sensor with its schedule; without a timing only
+/// `store_problem`.
+[[nodiscard]] std::optional<std::string> schedule_problem(const SensorSetup& setup);
 
 /// Remark that names the first pixel whose exposures differ from those of its group. This is
 /// allowed, but the group is transferred whole whenever one of its pixels is due. Nothing if the

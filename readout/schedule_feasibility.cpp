@@ -1,4 +1,4 @@
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 
 #include <fmt/format.h>
 
@@ -6,20 +6,21 @@
 #include <numeric>
 #include <vector>
 
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 namespace {
 
-/// The first slot of the period in which more than `most` exposures of a pixel are under way.
+/// The first slot of the period in which more than `max_exposures` exposures of a pixel are under
+/// way.
 std::optional<std::size_t> crowded_slot(std::span<const Exposure> exposures, int period_slots,
-                                        int most) {
+                                        int max_exposures) {
     std::vector<int> under_way(static_cast<std::size_t>(period_slots), 0);
     for (const Exposure& e : exposures)
         for (std::size_t i = 0; i < static_cast<std::size_t>(e.span_slots()); ++i)
             ++under_way[(e.first_slot + i) % under_way.size()];
     for (std::size_t slot = 0; slot < under_way.size(); ++slot)
-        if (under_way[slot] > most) return slot;
+        if (under_way[slot] > max_exposures) return slot;
     return std::nullopt;
 }
 
@@ -44,18 +45,26 @@ std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                           const ReadoutTiming& timing, FrameShape shape,
                                           double slot_us) {
     const std::int64_t budget = slot_clocks(timing, slot_us);
-    ReadoutAccount account(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
-    const std::int64_t first = account.first_steady_slot();
+    ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
+    const std::int64_t first = cost.first_steady_slot();
     std::int64_t slowest = first;
     for (std::int64_t slot = first; slot < first + schedule.period_slots(); ++slot)
-        if (account.of(slot).clocks > account.of(slowest).clocks) slowest = slot;
-    const SlotAccount& worst = account.of(slowest);
+        if (cost.of(slot).clocks > cost.of(slowest).clocks) slowest = slot;
+    const SlotCost& worst = cost.of(slowest);
     if (!worst.overrun) return std::nullopt;
     const double clocks_per_us = static_cast<double>(timing.clock_hz) / 1e6;
     return fmt::format(
         "slot {}: reading {} samples takes {:.6g} us, the slot {:.6g} us; what takes longest is {}",
         slowest % schedule.period_slots(), worst.counts.samples,
         static_cast<double>(worst.clocks) / clocks_per_us, slot_us, name_of(worst.limit));
+}
+
+std::optional<std::string> schedule_problem(const SensorSetup& setup) {
+    const ExposureSchedule& schedule = setup.schedule.schedule;
+    auto problem = store_problem(schedule, setup.params.charge_stores);
+    if (setup.timing && !problem)
+        problem = timing_problem(schedule, *setup.timing, setup.shape, setup.params.slot_us);
+    return problem;
 }
 
 std::optional<std::string> group_remark(const ExposureSchedule& schedule,

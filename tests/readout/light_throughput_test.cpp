@@ -1,4 +1,4 @@
-#include "readout/light_account.h"
+#include "readout/light_throughput.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ double light_by_exposure(const ExposureSchedule& schedule, std::int64_t slots) {
     return light;
 }
 
-TEST(LightAccountTest, AClipHoldsTheExposuresThatBeginAndEndInIt) {
+TEST(LightThroughputTest, AClipHoldsTheExposuresThatBeginAndEndInIt) {
     for (const ExposureSchedule& schedule :
          {gapped_schedule(3, 5, 29, 1), interleaved_schedule(3, 5, 9, 1),
           random_schedule(7, 9, kPaperExposureSlots, 1)})
@@ -37,7 +37,7 @@ TEST(LightAccountTest, AClipHoldsTheExposuresThatBeginAndEndInIt) {
                 << slots;
 }
 
-TEST(LightAccountTest, TheThroughputIsThatOfALongClip) {
+TEST(LightThroughputTest, TheThroughputIsThatOfALongClip) {
     const auto schedule = gapped_schedule(3, 5, 29, 1);
     const std::int64_t slots = 29 * 10000;
     const double pixel_slots = static_cast<double>(slots) * static_cast<double>(kShape.pixels());

@@ -1,8 +1,8 @@
 // Slots/s (items_per_second) accounted for, 640x480 mono on the LUX1310's clocks, schedule
-// `random`: a slot counted and timed row by row, and the account of a steady slot that is known.
+// `random`: a slot counted and timed row by row, and the cost of a steady slot that is known.
 #include <benchmark/benchmark.h>
 
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 namespace {
@@ -25,18 +25,18 @@ ReadoutTiming timing() {
 void times_a_slot(benchmark::State& state) {
     const ExposureSchedule schedule =
         random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
-    ReadoutAccount account(timing(), schedule, kShape, {});
+    ReadoutCost cost(timing(), schedule, kShape, {});
     std::int64_t slot = 100;
-    for (auto _ : state) benchmark::DoNotOptimize(account.times(slot++, 0).end);
+    for (auto _ : state) benchmark::DoNotOptimize(cost.times(slot++, 0).end);
     state.SetItemsProcessed(state.iterations());
 }
 
 void accounts_for_steady_slots(benchmark::State& state) {
     const ExposureSchedule schedule =
         random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
-    ReadoutAccount account(timing(), schedule, kShape, {});
-    for (int slot = 0; slot < 30; ++slot) account.add_next();
-    for (auto _ : state) benchmark::DoNotOptimize(account.add_next().clocks);
+    ReadoutCost cost(timing(), schedule, kShape, {});
+    for (int slot = 0; slot < 30; ++slot) cost.add_next();
+    for (auto _ : state) benchmark::DoNotOptimize(cost.add_next().clocks);
     state.SetItemsProcessed(state.iterations());
 }
 
