@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/geometry.h"
+
 namespace stipple {
 
 class KeyReader;
@@ -13,7 +15,7 @@ struct ColumnAddressing {
         kGroup         ///< a group is transferred whole if any of its pixels is due
     };
     static constexpr int kMaxChannels = 4096;
-    static constexpr int kMaxSide = 65535;  ///< of a group, in pixels
+    static constexpr int kMaxSide = kMaxFrameSide;  ///< of a group, in pixels
 
     Kind kind = Kind::kSkipChannel;
     int channels = 1;    ///< outputs that work in parallel; column c belongs to c mod channels
