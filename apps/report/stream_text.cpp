@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "apps/report/number_text.h"
+#include "core/fault_list.h"
 
 namespace stipple {
 namespace {
@@ -64,7 +65,7 @@ ordered_json schedule_json(const StreamHeader& header) {
     return json;
 }
 
-/// What only some sensors have, a line each.
+/// Properties that only some sensors have, a line each.
 std::string special_text(const StreamHeader& header) {
     const Calibration& calibration = header.calibration;
     std::string text;
@@ -130,9 +131,8 @@ bool undamaged(const StreamReport& report) {
 }
 
 std::string damage_text(const StreamReport& report) {
-    constexpr std::size_t kMaxPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
-    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
+    const std::size_t listed = std::min(report.damage.size(), kMaxShownFaults);
     if (report.damage.empty() && report.missing_slots == 0)
         return fmt::format(
             "the stream is cut off: {} are whole, then it ends within a packet, "
