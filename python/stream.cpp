@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "core/colour_filter.h"
-#include "core/fault_list.h"
 #include "python/bindings.h"
 #include "python/schedule.h"
 #include "readout/provenance.h"
@@ -85,7 +84,8 @@ std::string damage_text(const StreamReport& report) {
             report.slots, report.tail_bytes);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
-    const std::size_t listed = std::min(report.damage.size(), kMaxShownFaults);
+    constexpr std::size_t kMaxPlaces = 10;
+    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
     for (const StreamDamage& where : std::span(report.damage).first(listed))
         text += fmt::format("\n  byte {}: {}, {} bytes skipped", where.offset, where.cause,
                             where.bytes);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "apps/report/number_text.h"
-#include "core/fault_list.h"
 
 namespace stipple {
 namespace {
@@ -65,7 +64,7 @@ ordered_json schedule_json(const StreamHeader& header) {
     return json;
 }
 
-/// Properties that only some sensors have, a line each.
+/// What only some sensors have, a line each.
 std::string special_text(const StreamHeader& header) {
     const Calibration& calibration = header.calibration;
     std::string text;
@@ -131,8 +130,9 @@ bool undamaged(const StreamReport& report) {
 }
 
 std::string damage_text(const StreamReport& report) {
+    constexpr std::size_t kMaxPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
-    const std::size_t listed = std::min(report.damage.size(), kMaxShownFaults);
+    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
     if (report.damage.empty() && report.missing_slots == 0)
         return fmt::format(
             "the stream is cut off: {} are whole, then it ends within a packet, "
