@@ -52,7 +52,8 @@ std::string new_recording_name() {
     return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-/// What the stream says of where its light came from: no address, no time.
+/// The origin of the light for the provenance of the stream. It names neither address nor time, so
+/// that the same input gives the same bytes.
 FootageOrigin origin_of(const LiveArguments& arguments, const LiveCamera& camera) {
     FootageOrigin origin{.name = camera.description().model};
     if (is_replay(arguments.camera)) {
@@ -127,11 +128,11 @@ void put_in_place(StreamRecorder& recorder, LiveEmulation& emulation, const std:
     } catch (...) {
         emulation.failure = std::current_exception();
     }
-    if (!recorder.keep()) return;  // the message of the failure says where it is
+    if (!recorder.keep()) return;  // the message of the failure gives its name
     say_kept(output.c_str());
 }
 
-/// \throws what ended an emulation without a frame.
+/// \throws the reason why no frame came.
 [[noreturn]] void fail_without_frame(const LiveEmulation& emulation, const std::string& address) {
     throw_if_stopped();
     if (emulation.failure) std::rethrow_exception(emulation.failure);
@@ -140,7 +141,7 @@ void put_in_place(StreamRecorder& recorder, LiveEmulation& emulation, const std:
     throw DeviceError(address, end ? end->reason : "no frame came");
 }
 
-/// \throws what ended an emulation too early.
+/// \throws the fault that ended an emulation too early.
 void check_end(const LiveEmulation& emulation, const LiveArguments& arguments) {
     if (emulation.failure) std::rethrow_exception(emulation.failure);
     const auto& end = emulation.end;
@@ -210,15 +211,20 @@ void add_capture_live(Command& capture, Action& action) {
                  "change a key of the sensor or of the schedule, or set a feature of the camera");
     add_preview_arguments(command, options->preview);
     add_session_arguments(command, options->session);
-    command.add_option("--black-level", options->black_level_dn, "DN without light (0)")
+    command.add_option("--black-level", options->black_level_dn, "DN without light")
+        .shows_default()
         .check(number_check(0))
         .type_name("DN");
-    command.add_option("--queue", options->queue_frames, "frames that may wait (64)")
+    command
+        .add_option("--queue", options->queue_frames,
+                    "frames that may wait for the emulator; further frames are dropped and counted")
+        .shows_default()
         .check(whole_check(1, 4096))
         .type_name("N");
     command
         .add_option("--late-after", options->late_after_slots,
-                    "a packet is late so many slots after its frame (2)")
+                    "a slot is late if its packet is written more than N slots after its frame")
+        .shows_default()
         .check(positive_check())
         .type_name("N");
     add_threads(command, action.options);

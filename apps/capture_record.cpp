@@ -75,7 +75,7 @@ std::string recording_text(const std::string& file, const CameraRecording& recor
     return fmt::format("{}\nlost: {}", text, lost_text(recording.session));
 }
 
-/// \throws what ended a recording too early, once it is said what was kept of it.
+/// \throws the fault that ended a recording too early, after a message on the frames kept.
 void check_end(const CameraRecording& recording, const std::string& file,
                const std::string& address) {
     if (!recording.kept) throw_if_stopped();
@@ -156,10 +156,10 @@ void add_capture_record(Command& capture, Action& action) {
     const auto options = std::make_shared<RecordArguments>();
     add_camera_arguments(command, options->camera);
     add_settings(command, {{"camera", &options->camera.settings}},
-                 "set a feature or control of the camera, over --config");
+                 "set a feature or control of the camera, after those of --config");
     command
         .add_option("-o,--output", options->output,
-                    "recording, or a folder for one that is named by the time")
+                    "recording, or a folder for a recording that is named after the time")
         .type_name("FILE|DIR")
         .required()
         .output();
@@ -168,7 +168,7 @@ void add_capture_record(Command& capture, Action& action) {
     add_session_arguments(command, options->session);
     auto coded_flag = command.add_flag(
         "--coded", options->coded,
-        "the samples of a camera of \"capture serve --mode coded\", as \"emulate\" writes them");
+        "record the coded stream of \"capture serve --mode coded\" as \"emulate\" writes it");
     for (const char* option : {"--incomplete", "--stall", "--no-reconnect"})
         coded_flag.excludes(command.option(option));
     command.footer(

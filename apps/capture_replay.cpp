@@ -14,6 +14,7 @@
 #include "apps/subcommands.h"
 #include "capture/recording/recording_footage.h"
 #include "core/error.h"
+#include "core/fault_list.h"
 #include "io/frame_writer.h"
 
 namespace stipple {
@@ -28,8 +29,6 @@ struct ReplayOptions {
     double black_level_dn = 0;
 };
 
-constexpr std::size_t kMaxPlaces = 10;  // that are told to people
-
 nlohmann::ordered_json figures_of(const RecordingFootage& footage, std::int64_t slots) {
     const RecordingReport& report = footage.recording().report();
     auto gaps = nlohmann::ordered_json::array();
@@ -43,17 +42,18 @@ nlohmann::ordered_json figures_of(const RecordingFootage& footage, std::int64_t 
             {"cut_off", !footage.recording().end()}};
 }
 
-/// Where frames are missing; empty if none is.
+/// The gaps in the sequence of frames; empty if there are none.
 std::string gaps_text(const RecordingFootage& footage) {
     std::string text;
     const auto& gaps = footage.gaps();
-    for (std::size_t i = 0; i < std::min(gaps.size(), kMaxPlaces); ++i)
+    for (std::size_t i = 0; i < std::min(gaps.size(), kMaxShownFaults); ++i)
         text += fmt::format("{}{} at slot {}", i == 0 ? "" : ", ", gaps[i].frames, gaps[i].slot);
-    if (gaps.size() > kMaxPlaces) text += ", and more (--json lists them)";
+    if (gaps.size() > kMaxShownFaults) text += ", and more (--json lists them)";
     return text;
 }
 
-/// Warns of what is missing. \throws InputError listing the damage, if there is any.
+/// Warns of missing frames and of a missing end. \throws InputError listing the damage, if there is
+/// any.
 void say_what_is_wrong(const std::string& file, const RecordingFootage& footage) {
     const RecordingReport& report = footage.recording().report();
     if (footage.missing_frames() > 0)
@@ -63,10 +63,10 @@ void say_what_is_wrong(const std::string& file, const RecordingFootage& footage)
     const std::size_t places = report.damage.size() + report.unlisted_damage;
     if (places == 0) return;
     std::string text = "the recording is damaged";
-    for (std::size_t i = 0; i < std::min(report.damage.size(), kMaxPlaces); ++i)
+    for (std::size_t i = 0; i < std::min(report.damage.size(), kMaxShownFaults); ++i)
         text += fmt::format("\n  byte {}: {}, {} skipped", report.damage[i].offset,
                             report.damage[i].cause, counted(report.damage[i].bytes, "byte"));
-    if (places > kMaxPlaces) text += fmt::format("\n  and {} more", places - kMaxPlaces);
+    if (places > kMaxShownFaults) text += fmt::format("\n  and {} more", places - kMaxShownFaults);
     throw InputError(file, text + "\n  the output is made of what is left");
 }
 
@@ -103,12 +103,13 @@ void add_capture_replay(Command& capture, Action& action) {
         .required()
         .output(kVideoName);
     command.add_flag("--skip-gaps", options->skip_gaps,
-                     "leave missing frames out; else the frame before stands in");
+                     "leave missing frames out instead of holding the previous frame");
     command.add_flag("--fill-gaps", options->fill_gaps,
-                     "hold for missing frames even if they are most of the recording");
+                     "hold the previous frame even if most frames are missing");
     command.add_flag("--keep-incomplete", options->keep_incomplete,
-                     "use incomplete frames, with black holes; else they count as missing");
-    command.add_option("--black-level", options->black_level_dn, "DN without light (0)")
+                     "use incomplete frames, with black holes, instead of counting them missing");
+    command.add_option("--black-level", options->black_level_dn, "DN without light")
+        .shows_default()
         .check(number_check(0))
         .type_name("DN");
     command.footer(

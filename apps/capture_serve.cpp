@@ -42,7 +42,7 @@ std::string counts_text(const GigeServerCounts& counts) {
                        counted(counts.packets, "packet"), counts.packets_resent);
 }
 
-/// Tells on standard error who takes the control of the camera, and who has given it up.
+/// Reports on standard error the clients that take and give up control of the camera.
 class ClientReport {
   public:
     explicit ClientReport(const GigeServer& server) : server_(&server) {}
@@ -85,12 +85,13 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     throw_if_stopped();  // there is no output that could be shorter
 }
 
-/// What a served camera shall do wrong: `--fault-...`, for tests of clients.
+/// `--fault-...` and `--no-resend`: simulated faults, for tests of clients.
 void add_fault_arguments(Command& command, GigeServerOptions& options) {
     constexpr auto kGroup = "Faults, for tests of clients";
     GvspFaults& faults = options.faults;
     const auto share = [&](const std::string& name, double& value, const std::string& what) {
         command.add_option(name, value, what)
+            .shows_default()
             .check(number_check(0, 1))
             .type_name("SHARE")
             .group(kGroup);
@@ -98,22 +99,24 @@ void add_fault_arguments(Command& command, GigeServerOptions& options) {
     const auto count = [&](const std::string& name, auto& value, const std::string& what) {
         return command.add_option(name, value, what).type_name("N").group(kGroup);
     };
-    share("--fault-drop", faults.drop, "packets that are only sent when they are asked for again");
-    share("--fault-lose", faults.lose, "packets that are never sent");
-    share("--fault-duplicate", faults.duplicate, "packets that are sent twice");
-    command.add_flag("--fault-reorder", faults.reorder, "packets change places").group(kGroup);
-    auto gap_at = count("--fault-gap-at", faults.gap_at, "frame before which ids are left out");
-    auto gap = count("--fault-gap", faults.gap_frames, "how many ids are left out there");
+    share("--fault-drop", faults.drop, "share of packets that are only sent on request");
+    share("--fault-lose", faults.lose, "share of packets that are never sent");
+    share("--fault-duplicate", faults.duplicate, "share of packets that are sent twice");
+    command.add_flag("--fault-reorder", faults.reorder, "swap every fourth packet with the next")
+        .group(kGroup);
+    auto gap_at = count("--fault-gap-at", faults.gap_at, "frame before which ids are skipped");
+    auto gap = count("--fault-gap", faults.gap_frames, "number of ids skipped there");
     gap_at.needs(gap);
     gap.needs(gap_at);
-    count("--fault-first-block", faults.first_block, "block id of the first frame (1)")
+    count("--fault-first-block", faults.first_block, "block id of the first frame")
+        .shows_default()
         .check(whole_check(1, 65535));
     count("--fault-freeze-at", faults.freeze_at, "frame from which on nothing is sent");
-    count("--fault-seed", faults.seed, "which packets are hit (1)");
+    count("--fault-seed", faults.seed, "seed of the draw of the packets").shows_default();
     command
         .add_flag(
             "--no-resend", [&options] { options.can_resend = false; },
-            "a camera that cannot send packets again")
+            "do not send packets again on request")
         .group(kGroup);
 }
 
@@ -144,9 +147,11 @@ void add_capture_serve(Command& capture, Action& action) {
     Command command = capture.add_command("serve", "Frames or a coded stream as a GigE camera");
     const auto options = std::make_shared<ServeOptions>();
     add_served_source(command, options->source);
-    command.add_option("--address", options->server.address, "IPv4 of this machine (127.0.0.1)")
+    command.add_option("--address", options->server.address, "IPv4 address of this machine")
+        .shows_default()
         .type_name("IP");
-    command.add_option("--serial", options->server.serial, "serial number (the address)")
+    command.add_option("--serial", options->server.serial, "serial number, 1 to 15 bytes")
+        .default_text("the address")
         .check(check_serial)
         .type_name("TEXT");
     command.add_flag("--repeat", options->server.repeat, "begin again at the end of the source");

@@ -36,7 +36,7 @@ namespace {
 
 struct CharacterizeOptions {
     SensorChoice sensor;
-    std::string descriptor;  ///< of images that exist; empty: photograph them
+    std::string descriptor;  ///< of existing images; empty: images of the sensor
     std::string output;      ///< folder; may be empty if there is a descriptor
 };
 
@@ -63,7 +63,7 @@ bool is_series_name(std::string_view name) {
     return is_chart_name(name) || name == kDescriptorName || is_image_name(name);
 }
 
-/// Leaves images of the emulated sensor, 16-bit PNG with the DN as they are, and their descriptor.
+/// Writes images of the emulated sensor, DN as 16-bit PNG, and their descriptor.
 void photograph(const SensorChoice& sensor, const SensorParams& params,
                 const std::filesystem::path& folder, const RunOptions& run) {
     FlatField field(params, sensor.seed);
@@ -109,8 +109,8 @@ emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std
     return emva1288::evaluate(series, descriptor.parent_path(), read, where);
 }
 
-/// Draws the charts into the folder, as far as they can be. Returns how many there are; `failure`
-/// is why there are not more, unless that is that there is no gnuplot, which is a warning.
+/// Draws the charts into the folder and returns their number. `failure` is the reason for a missing
+/// chart; a missing gnuplot is a warning instead.
 std::size_t draw_charts(const emva1288::Evaluation& evaluation, const PendingOutput& folder,
                         std::optional<DeviceError>& failure) {
     std::size_t drawn = 0;
@@ -127,7 +127,7 @@ std::size_t draw_charts(const emva1288::Evaluation& evaluation, const PendingOut
     return drawn;
 }
 
-/// Tells the figures, and then what became of the charts.
+/// Prints the figures, then a message on charts that failed.
 void report(const CameraReport& camera, const std::optional<DeviceError>& failure, JsonFile& json,
             const RunOptions& run) {
     json.write(camera_json(camera));
@@ -172,17 +172,22 @@ void characterize(const CharacterizeOptions& options, const RunOptions& run) {
 void add_characterize(Command& app, Action& action) {
     Command command = app.add_command("characterize", "EMVA 1288 figures of a sensor or camera");
     const auto options = std::make_shared<CharacterizeOptions>();
-    const auto sensor = command.add_option("--sensor", options->sensor.sensor, "sensor (paper)")
-                            .type_name("NAME|FILE")
-                            .listed("sensors")
-                            .input();
+    const auto sensor =
+        command
+            .add_option("--sensor", options->sensor.sensor, "sensor, of \"stipple list sensors\"")
+            .shows_default()
+            .type_name("NAME|FILE")
+            .listed("sensors")
+            .input();
     const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
                                   "change a key of the sensor");
-    const auto seed = command.add_option("--seed", options->sensor.seed, "of the noise (1)")
+    const auto seed = command.add_option("--seed", options->sensor.seed, "seed of the noise")
+                          .shows_default()
                           .check(whole_check(0))
                           .type_name("S");
     const auto threads = add_threads(command, action.options);
-    command.add_option("--evaluate", options->descriptor, "images that exist: their descriptor")
+    command
+        .add_option("--evaluate", options->descriptor, "evaluate existing images: their descriptor")
         .type_name("FILE")
         .excludes(sensor)
         .excludes(set)

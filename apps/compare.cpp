@@ -41,7 +41,7 @@ struct CompareOptions {
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
-/// Of one that ends after so many frames.
+/// \throws InputError: the result or the reference ends after `frames`.
 [[noreturn]] void fail_length(const CompareOptions& options, bool is_result, std::int64_t frames) {
     const auto& [shorter, longer] = is_result ? std::tie(options.result, options.reference)
                                               : std::tie(options.reference, options.result);
@@ -66,7 +66,7 @@ void compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead&
     }
 }
 
-/// If that is known.
+/// The number of frames, if it is known.
 std::optional<std::int64_t> frames_to_come(const CompareOptions& options,
                                            const ReadAhead& reference) {
     if (options.until > 0) return options.until;
@@ -113,21 +113,30 @@ void add_compare(Command& app, Action& action) {
     const auto options = std::make_shared<CompareOptions>();
     command.add_option("RESULT", options->result, "video in linear light").required().input();
     command.add_option("REFERENCE", options->reference, "footage").required().input();
-    command.add_option("--until", options->until, "only the first N frames (all)")
-        .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))
+    command.add_option("--until", options->until, "compare the first N frames of each")
+        .default_text("all, of which both have as many")
+        .check(frames_check())
         .type_name("N");
-    command.add_option("--margin", options->quality.margin, "frames left out at each end (0)")
+    command
+        .add_option("--margin", options->quality.margin,
+                    "leave out the first N and the last N of these frames")
+        .shows_default()
         .check(whole_check(0, 1'000'000))
         .type_name("N");
     add_max_value(command, options->quality.max_value);
     add_footage_arguments(command, options->footage, "REFERENCE");
     command
-        .add_option("--peak", options->quality.peak, "light of which PSNR and PU21-PSNR are (1.0)")
+        .add_option(
+            "--peak", options->quality.peak,
+            "peak of PSNR and PU21-PSNR; with --max-value 2, a peak of 2 raises the PSNR by 6 dB")
+        .shows_default()
         .check(positive_check())
         .type_name("LIGHT");
     command
-        .add_option("--cd-per-unit", options->quality.unit_cd_per_m2,
-                    "luminance of light 1.0 for PU21, in cd/m2 (100)")
+        .add_option(
+            "--cd-per-unit", options->quality.unit_cd_per_m2,
+            "luminance of light 1.0 for PU21, in cd/m2; an HDR display reaches 1000 and more")
+        .shows_default()
         .check(positive_check())
         .type_name("L");
     add_threads(command, action.options);

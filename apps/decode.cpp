@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -9,14 +6,36 @@
 #include "apps/arguments/settings.h"
 #include "apps/decode_file.h"
 #include "apps/subcommands.h"
-#include "core/joined.h"
 #include "decoder/reconstruct.h"
 
 namespace stipple {
 namespace {
 
-std::string method_help() {
-    return fmt::format("{} ({})", joined(names_of(decode_methods())), DecodeArguments{}.method);
+/// Options on the part of the stream that is decoded, and on its faults.
+void add_reading(Command& command, DecodeArguments& arguments, std::string& check_schedule) {
+    command.add_flag("--strict", arguments.strict, "write nothing if the stream is damaged");
+    command.add_flag("--fill-gaps", arguments.fill_gaps,
+                     "decode missing slots even if they are most of the stream");
+    command
+        .add_option("--until", arguments.until,
+                    "end after the first N frames; they have the same bits as in the whole stream")
+        .default_text("all")
+        .check(frames_check())
+        .type_name("N");
+    command.add_flag("--follow", arguments.follow,
+                     "decode a stream that is still being written, until its end marker");
+    command
+        .add_option("--timeout", arguments.timeout_s,
+                    "with --follow: end when nothing has been appended for this time")
+        .shows_default()
+        .check(number_check(0, 1e6))
+        .type_name("SECONDS");
+    command
+        .add_flag("--check-schedule", check_schedule,
+                  "first test whether the samples follow the schedule in the header, or a shift "
+                  "of it; =fix decodes with the shift")
+        .type_name("[=fix]")
+        .one_of({"true", "fix"});
 }
 
 }  // namespace
@@ -31,40 +50,24 @@ void add_decode(Command& app, Action& action) {
         .type_name("OUT")
         .required()
         .output(kVideoName);
-    command.add_option("--method", options->method, method_help())
+    command.add_option("--method", options->method, "decoding method")
+        .shows_default()
         .one_of(names_of(decode_methods()))
         .type_name("NAME");
     command
         .add_option("--options", options->options,
-                    "options of the method: a file as docs/decoder_options.md says")
+                    "options of the method, a TOML file (docs/decoder_options.md)")
         .type_name("FILE")
         .input();
     add_settings(command, {{"decoder", &options->settings}}, "change one option of the method");
     command
         .add_option("--stages", options->stages,
-                    "keep the estimate of each stage as .npy, and a chart of the convergence")
+                    "keep the estimate of each stage of portz2013 as DIR/start.npy, "
+                    "DIR/stage1.npy, DIR/stage2.npy, and draw DIR/convergence.png")
         .type_name("DIR")
         .output();
-    command.add_flag("--strict", options->strict, "write nothing if the stream is damaged");
-    command.add_flag("--fill-gaps", options->fill_gaps,
-                     "decode missing slots even if they are most of the stream");
-    command.add_option("--until", options->until, "stop after the first N frames")
-        .check(whole_check(std::int64_t{1}, std::int64_t{1} << 53U))
-        .type_name("N");
-    command.add_flag("--follow", options->follow,
-                     "the stream is still being written: wait for more until its end marker");
-    command
-        .add_option("--timeout", options->timeout_s,
-                    "with --follow: end where nothing more has come for so long (10)")
-        .check(number_check(0, 1e6))
-        .type_name("SECONDS");
     const auto check_schedule = std::make_shared<std::string>();
-    command
-        .add_flag("--check-schedule", *check_schedule,
-                  "first see whether the samples follow the schedule, or which shift of it; "
-                  "=fix goes on with that shift")
-        .type_name("[=fix]")
-        .one_of({"true", "fix"});
+    add_reading(command, *options, *check_schedule);
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"

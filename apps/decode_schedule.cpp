@@ -20,7 +20,7 @@ std::string residual_text(const std::optional<double>& residual) {
     return residual ? fmt::format("{:.3f}", *residual) : "none";
 }
 
-/// What speaks for and against the header's schedule.
+/// The residuals of the schedule in the header and of others.
 std::string evidence(const ScheduleCheck& check) {
     if (check.tried == 0) return "the recording is too short";
     if (!check.best_residual && check.possible > 0)

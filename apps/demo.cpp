@@ -87,10 +87,12 @@ void demo(const DemoOptions& options, const RunOptions& run) {
 void add_demo(Command& app, Action& action) {
     Command command = app.add_command("demo", "Render, emulate, decode and compare a scene");
     const auto options = std::make_shared<DemoOptions>();
-    command.add_option("-o,--output", options->folder, "folder (stipple_demo)")
+    command.add_option("-o,--output", options->folder, "folder for all outputs")
+        .shows_default()
         .type_name("DIR")
         .output();
-    command.add_option("--scene", options->scene, "pan, roll, pencils, dice or still (pan)")
+    command.add_option("--scene", options->scene, "scene")
+        .shows_default()
         .one_of(names_of(scenes()))
         .type_name("NAME");
     add_scene_arguments(command, options->rendering);

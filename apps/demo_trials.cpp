@@ -18,7 +18,7 @@ struct Trial {
     const char* name;
     const char* schedule;
     DecodeMethod method;
-    const char* text;  ///< what it is
+    const char* text;  ///< description
 };
 constexpr std::array<Trial, 5> kTrials = {
     {{"4x exposure", "full4x", DecodeMethod::kNaive,
@@ -31,7 +31,7 @@ constexpr std::array<Trial, 5> kTrials = {
       "coded exposures, each pixel by its own nearest samples"},
      {"coded, decoded", "random", DecodeMethod::kFast, "the same samples by the method fast"}}};
 
-/// A slot of which a image is left.
+/// A slot that is shown side by side.
 struct ShownSlot {
     int slot;
     SideBySide versions;

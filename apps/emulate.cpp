@@ -36,8 +36,8 @@ struct EmulateOptions {
     SensorChoice sensor;
 };
 
-/// What is wrong with a recording named `file` that was read to its end: damage, no end, frames
-/// that are missing or incomplete. Empty if nothing is.
+/// A warning about the faults of a recording named `file` that was read to its end: damage, no end,
+/// missing or incomplete frames. Empty if it has none.
 std::string recording_faults(const std::string& file, const RecordingFootage& footage) {
     auto faults = footage.recording().faults();
     if (footage.missing_frames() > 0)

@@ -17,6 +17,7 @@
 #include "capture/frame_rate.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
+#include "core/fault_list.h"
 #include "core/joined.h"
 #include "stream/plain_text.h"
 
@@ -25,17 +26,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMaxGapsListed = 1000;
-constexpr std::size_t kMaxGapsShown = 10;
-
-/// Frames that are missing between two that are there.
+/// Missing frames between two recorded ones.
 struct Gap {
     std::uint64_t before_frame;  ///< id of the frame after it
     std::uint64_t frames;
     GapCause cause;
 };
 
-/// What was seen of the frames.
+/// Statistics of the frames.
 struct FrameSummary {
     std::optional<FrameRecord> first;
     std::uint64_t last_id = 0;
@@ -54,17 +52,17 @@ struct FrameSummary {
         if (lost == 0) return;
         missing += lost;
         ++gaps;
-        if (listed.size() < kMaxGapsListed) listed.push_back({record.id, lost, record.cause});
+        if (listed.size() < kMaxListedFaults) listed.push_back({record.id, lost, record.cause});
     }
 };
 
-/// Text of a file that may be anybody's, for a terminal.
+/// Text of an untrusted file, for a terminal.
 std::string plain(const std::string& text) {
     return is_plain_text(text, false) ? text : "(not printable)";
 }
 
 std::string_view cause_of(const Gap& gap) {
-    // By damage of the file no cause is told.
+    // Damage of the file leaves no record of a cause.
     return gap.cause == GapCause::kNone ? "damage"
                                         : kGapCauseNames[static_cast<std::size_t>(gap.cause)];
 }
@@ -110,11 +108,11 @@ std::string gaps_text(const FrameSummary& frames) {
     if (frames.gaps == 0) return "missing      none";
     std::string text =
         fmt::format("missing      {} frames in {} places", frames.missing, frames.gaps);
-    for (std::size_t i = 0; i < std::min(frames.listed.size(), kMaxGapsShown); ++i)
+    for (std::size_t i = 0; i < std::min(frames.listed.size(), kMaxShownFaults); ++i)
         text += fmt::format("\n             {} before frame {}: {}", frames.listed[i].frames,
                             frames.listed[i].before_frame, cause_of(frames.listed[i]));
-    if (frames.gaps > kMaxGapsShown)
-        text += fmt::format("\n             and {} more", frames.gaps - kMaxGapsShown);
+    if (frames.gaps > kMaxShownFaults)
+        text += fmt::format("\n             and {} more", frames.gaps - kMaxShownFaults);
     return text;
 }
 

@@ -6,8 +6,8 @@
 
 namespace stipple {
 
-/// Says what a recording of a camera is and holds: frames, rate, gaps, settings, and how far it is
-/// whole. \throws InputError if it is damaged (once all was said), DeviceError, Interrupted.
+/// Prints camera, frames, rate, gaps, settings and condition of a recording. \throws InputError if
+/// it is damaged (after printing), DeviceError, Interrupted.
 void info_recording(const std::string& file, const RunOptions& run);
 
 }  // namespace stipple

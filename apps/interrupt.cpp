@@ -77,7 +77,7 @@ void catch_signals() {
 }
 
 void occupy_standard_streams() {
-    // Read-only, so that what is written to a closed standard output fails, as it did.
+    // Read-only, so that writing to a closed standard output still fails.
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
         if (fcntl(descriptor, F_GETFD) < 0)
             static_cast<void>(open("/dev/null", O_RDONLY));  // takes the lowest number that is free

@@ -5,9 +5,9 @@
 
 namespace stipple {
 
-/// Thrown where a run that was asked to stop has nothing worth keeping.
+/// Thrown when a stopped run has nothing worth keeping.
 struct Interrupted {
-    std::string_view left;  ///< what the run leaves, for the message; may be empty
+    std::string_view left;  ///< a remark on its outputs, for the message; may be empty
 };
 
 /// From here on the first SIGINT, SIGTERM or SIGHUP only asks loops to stop, so that they finish

@@ -15,7 +15,7 @@ struct KeyList {
 };
 
 /// The lists that `--set` takes keys of, but those of cameras. Empty names stand for all.
-/// \throws UsageError naming what there is for an unknown `of`.
+/// \throws UsageError with the known names for an unknown `of`.
 [[nodiscard]] std::vector<KeyList> key_lists(const std::string& section, const std::string& of);
 
 }  // namespace stipple

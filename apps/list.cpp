@@ -22,7 +22,7 @@
 namespace stipple {
 namespace {
 
-/// A name that an option takes, and what it stands for.
+/// A name that an option takes, with its description.
 struct Entry {
     std::string name;
     std::string text;
@@ -40,7 +40,7 @@ std::string first_comment(const std::filesystem::path& file) {
     return text;
 }
 
-/// What it says up to its first full stop or colon, without a page of docs/ at the end.
+/// The beginning of the comment up to its first full stop or colon, without a page of docs/.
 std::string title_of(const std::string& comment) {
     std::size_t end = 0;
     for (; end + 2 < comment.size(); ++end) {
@@ -87,7 +87,7 @@ void list_names(const std::string& kind, const RunOptions& run) {
     run.say(text);
 }
 
-/// What it takes, in brackets: unit and range.
+/// Unit and range of a key, in brackets.
 std::string taken(const KnownKey& key) {
     std::vector<std::string> words{key.unit, key.range};
     std::erase(words, "");
@@ -143,13 +143,16 @@ void add_list(Command& app, Action& action) {
     Command command =
         app.add_command("list", "Names of sensors, schedules, scenes or methods, keys of --set");
     const auto options = std::make_shared<ListOptions>();
-    command.add_option("KIND", options->kind, "sensors, schedules, scenes, methods or keys")
+    command.add_option("KIND", options->kind, "list of names, or of the keys of --set")
         .one_of({"sensors", "schedules", "scenes", "methods", "keys"})
         .required();
-    command.add_option("SECTION", options->section, "of keys: sensor, schedule or decoder (all)")
+    command.add_option("SECTION", options->section, "section of the keys")
+        .default_text("all")
         .one_of({"sensor", "schedule", "decoder"});
-    command.add_option("OF", options->of,
-                       "mode of the sensor or timing, kind of schedule, or method (all)");
+    command
+        .add_option("OF", options->of,
+                    "of these keys: mode of the sensor or timing, kind of schedule, or method")
+        .default_text("all");
     command.footer(
         "Examples:\n"
         "  stipple list sensors\n"

@@ -59,8 +59,8 @@ int fail(ExitCode code, std::string_view message) {
     return code;
 }
 
-/// In place of std::abort(), for functions of libraries that promise to throw nothing and then have
-/// no memory; of libstdc++ some end the program without an exception then.
+/// The handler of std::terminate(): noexcept functions of libraries end here if there is no memory,
+/// some of libstdc++ without an exception.
 [[noreturn]] void end_in_a_library() {
     const std::type_info* const thrown = abi::__cxa_current_exception_type();
     if (thrown != nullptr && *thrown != typeid(std::bad_alloc)) std::abort();
@@ -81,8 +81,8 @@ void run(const Action& action) {
     action.run(action.options);
 }
 
-/// Does what the command line says, if it can be understood, and hands its last words on standard
-/// output to the system.
+/// Runs the command line, if it is right, and flushes standard output, so that a failed write is an
+/// error.
 CommandLine::Parsed run(int argc, char** argv) {
     Action action;
     CommandLine line(
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
     try {
         if (run(argc, argv) == CommandLine::Parsed::kWrong) return kUsage;
     } catch (const InputError& e) {
-        // An input that a signal has cut short is none to complain of.
+        // A signal cuts inputs short: then the input is not to blame.
         return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
     } catch (const Interrupted& e) {
         return fail(signal_code(), e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));

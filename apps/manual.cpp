@@ -7,6 +7,7 @@
 
 #include "apps/report/completion.h"
 #include "apps/report/manual_page.h"
+#include "apps/report/markdown_page.h"
 #include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "core/version.h"
@@ -15,26 +16,27 @@
 namespace stipple {
 namespace {
 
-/// Of a command about the command line itself.
+/// Arguments of the two commands about the command line itself.
 struct ManualOptions {
     std::string argument;  ///< a folder, or a shell
+    bool markdown = false;
     std::function<CommandDescription()> describe;
 };
 
 bool is_page_name(std::string_view name) {
-    return name.starts_with("stipple") && name.ends_with(".1");
+    return name.starts_with("stipple") && (name.ends_with(".1") || name.ends_with(".md"));
 }
 
-void write_pages(const CommandDescription& command, const PendingOutput& folder) {
-    const std::string name = manual_page_name(command) + ".1";
+void write_pages(const CommandDescription& command, const PendingOutput& folder, bool markdown) {
+    const std::string name = manual_page_name(command) + (markdown ? ".md" : ".1");
     write_whole(folder.partial() / name, (folder.final_path() / name).string(),
-                manual_page(command, version()));
-    for (const CommandDescription& below : command.commands) write_pages(below, folder);
+                markdown ? markdown_page(command) : manual_page(command, version()));
+    for (const CommandDescription& below : command.commands) write_pages(below, folder, markdown);
 }
 
 void write_manual(const ManualOptions& options, const RunOptions& run) {
     PendingOutput folder(options.argument, run.force, OutputKind::kFolder, is_page_name);
-    write_pages(options.describe(), folder);
+    write_pages(options.describe(), folder, options.markdown);
     folder.commit();
 }
 
@@ -51,15 +53,19 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
     manual.add_option("FOLDER", options->argument, "folder to write the pages to")
         .required()
         .output();
-    manual.add_flag("--force", action.options.force, "replace existing outputs");
+    manual.add_flag("--markdown", options->markdown,
+                    "write the tables of options as Markdown instead, as in docs/cli.md");
+    manual.add_flag("--force", action.options.force,
+                    "replace the folder, if it holds nothing but such pages");
     manual.footer(
         "Examples:\n"
         "  stipple manual man1\n"
-        "  man man1/stipple-emulate.1");
+        "  man man1/stipple-emulate.1\n"
+        "  stipple manual pages --markdown");
     set_action(manual, action, options, write_manual);
 
     Command completion = app.add_command("completion", "Completion of the command line in a shell");
-    completion.add_option("SHELL", options->argument, "bash, zsh or fish")
+    completion.add_option("SHELL", options->argument, "shell")
         .one_of({"bash", "zsh", "fish"})
         .required();
     completion.footer(

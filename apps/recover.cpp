@@ -58,7 +58,7 @@ void list_leftovers(const fs::path& folder, const RunOptions& run) {
     json.write({{"left", left}});
 }
 
-/// How much of it was whole.
+/// The whole part of a recovered file.
 std::string recovered_text(const fs::path& output, const Recovered& recovered) {
     std::string text = fmt::format("{}: {} whole {}", output.string(), recovered.whole,
                                    recovered.kind == Recoverable::kStream ? "slots" : "frames");
@@ -107,11 +107,14 @@ void run_recover(const RecoverOptions& options, const RunOptions& run) {
 void add_recover(Command& app, Action& action) {
     Command command = app.add_command("recover", "What killed runs have left, and how to keep it");
     const auto options = std::make_shared<RecoverOptions>();
-    command.add_option("PATH", options->path,
-                       "folder whose leftovers are listed (.), or the one to keep");
+    command
+        .add_option("PATH", options->path,
+                    "folder whose unfinished outputs are listed, or the file to keep")
+        .default_text("this folder");
     command
         .add_option("-o,--output", options->output,
-                    "its new name (the one that it was going to have); nothing is replaced")
+                    "new name of the file; existing files are never replaced")
+        .default_text("the name of the output")
         .type_name("FILE")
         .output(kRecoveredName);
     command.footer(

@@ -54,7 +54,8 @@ void add_schedule_check(Command& schedule, Action& action) {
     add_settings(command,
                  {schedule_section(options->schedule), {"sensor", &options->sensor_settings}},
                  "change a key of the schedule or of the sensor");
-    command.add_option("--sensor", options->sensor, "sensor (paper)")
+    command.add_option("--sensor", options->sensor, "sensor, of \"stipple list sensors\"")
+        .shows_default()
         .type_name("NAME|FILE")
         .listed("sensors")
         .input();

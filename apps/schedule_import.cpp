@@ -56,7 +56,8 @@ void add_schedule_import(Command& schedule, Action& action) {
     command
         .add_option(
             "VOLUME", options->volume,
-            ".npy of (slots, rows, columns): masks of 0 and 1 or 255, an exposure per pixel")
+            ".npy of (slots, rows, columns): masks of 0 and 1 or of 0 and 255, an exposure for "
+            "each pixel")
         .type_name("FILE.npy")
         .required()
         .input();
@@ -65,13 +66,16 @@ void add_schedule_import(Command& schedule, Action& action) {
         .required()
         .output(kScheduleName);
     command.add_flag("--lengths", options->lengths,
-                     "layers are the lengths of successive exposures in slots, from slot 0 on");
+                     "VOLUME holds (exposures, rows, columns): lengths of 0 to 64 slots of "
+                     "successive exposures");
     command
         .add_option("--period", options->period_slots,
-                    "with --lengths: slots after which all repeats (the largest sum)")
-        .check(whole_check(1, 65535))
+                    "with --lengths: slots after which the exposures repeat")
+        .default_text("the largest sum of lengths")
+        .check(whole_check(1, kMaxPeriodSlots))
         .type_name("N");
-    command.add_option("--name", options->name, "of the schedule (the output's)")
+    command.add_option("--name", options->name, "name of the schedule")
+        .default_text("that of the output")
         .check(check_name)
         .type_name("NAME");
     command.footer(

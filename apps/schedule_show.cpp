@@ -44,13 +44,18 @@ void add_schedule_show(Command& schedule, Action& action) {
     const auto options = std::make_shared<ShowOptions>();
     add_schedule_choice(command, options->schedule);
     add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
-    command.add_option("-o,--output", options->output, "image, .png or .svg (text if absent)")
+    command.add_option("-o,--output", options->output, "image, .png or .svg")
+        .default_text("text on standard output")
         .type_name("FILE")
         .output(kDiagramName);
-    command.add_option("--pixels", options->pixels, "pixels that the diagram shows (10)")
+    command
+        .add_option("--pixels", options->pixels,
+                    "number of pixels in the diagram, spread over the tile")
+        .shows_default()
         .check(whole_check(1, 64))
         .type_name("N");
-    command.add_option("--slots", options->slots, "slots that it shows (two periods, 24 to 64)")
+    command.add_option("--slots", options->slots, "number of slots in the diagram")
+        .default_text("two periods, 24 to 64")
         .check(whole_check(1, 1024))
         .type_name("N");
     command.footer(

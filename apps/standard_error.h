@@ -44,8 +44,8 @@ inline void say_warning(std::string_view warning) noexcept {
 
 constexpr auto kAllBefore = [] { return "what was written before is"; };
 
-/// Says so much of what a run that failed has written to `output` is kept. Where there is no memory
-/// for that, without the name.
+/// Tells that the data written to `output` by a failed run are kept; without the name if there is
+/// no memory for it.
 template <typename Text = decltype(kAllBefore)>
 void say_kept(const char* output, Text what = kAllBefore) noexcept {
     try {

@@ -59,7 +59,7 @@ void synth(const SynthOptions& options, const RunOptions& run) {
 void add_synth(Command& app, Action& action) {
     Command command = app.add_command("synth", "Render an embedded HDR scene as footage");
     const auto options = std::make_shared<SynthOptions>();
-    command.add_option("SCENE", options->scene, "pan, roll, pencils, dice or still")
+    command.add_option("SCENE", options->scene, "scene, of \"stipple list scenes\"")
         .one_of(names_of(scenes()))
         .required();
     command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")

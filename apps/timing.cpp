@@ -11,6 +11,7 @@
 #include "apps/report/readout_text.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/geometry.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
@@ -63,21 +64,20 @@ void add_timing(Command& app, Action& action) {
         .listed("sensors")
         .required()
         .input();
-    command.add_option("--schedule", options->sensor.schedule, "exposure schedule (random)")
+    command
+        .add_option("--schedule", options->sensor.schedule,
+                    "exposure schedule, of \"stipple list schedules\"")
+        .shows_default()
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();
-    command
-        .add_parsed(
-            "--roi",
-            [options](const std::string& text) {
-                parse_size("--roi", text, 1, 65535, options->roi);
-            },
-            "width and height of what is read (the whole array)")
-        .type_name("WxH");
+    add_size(command, "--roi", options->roi, {1, kMaxFrameSide},
+             "window: the first W columns and H rows")
+        .default_text("the whole array");
     add_settings(command, sensor_sections(options->sensor),
                  "change a key of the sensor or of the schedule");
-    command.add_option("--seed", options->sensor.seed, "of the schedule (1)")
+    command.add_option("--seed", options->sensor.seed, "seed of the schedule")
+        .shows_default()
         .check(whole_check(0))
         .type_name("S");
     add_waveform_arguments(command, options->waveform);

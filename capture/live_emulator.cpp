@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "capture/host_clock.h"
+#include "core/fault_list.h"
 #include "core/gap_limit.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{50};
-constexpr std::size_t kMaxLateListed = 1000;
 
 }  // namespace
 
@@ -92,7 +92,7 @@ void LiveEmulator::take(const CapturedFrame& frame) {
     result_.latencies.add(latency_us);
     if (latency_us <= options_.late_after_slots * recorder_.setup().params.slot_us) return;
     ++result_.late_slots;
-    if (result_.late.size() < kMaxLateListed)
+    if (result_.late.size() < kMaxListedFaults)
         result_.late.push_back({recorder_.stats().slots - 1, arrival_ns, latency_us});
 }
 

@@ -1,6 +1,7 @@
 # cmake --install: the program, its configurations, and each module as a library with its headers for other
 # projects (docs/library.md): find_package(stipple COMPONENTS decoder), stipple::decoder; pkg-config stipple.
 include(CMakePackageConfigHelpers)
+include(StipplePackages)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stipple)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/stipple)
@@ -37,6 +38,7 @@ foreach(module IN LISTS STIPPLE_MODULES)
             COMPONENT libraries)
 endforeach()
 
+stipple_dependencies(stipple_dependencies stipple_pkgconfig stipple_flags ${STIPPLE_MODULES})
 configure_package_config_file(cmake/stippleConfig.cmake.in ${CMAKE_BINARY_DIR}/stippleConfig.cmake
     INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -49,9 +51,5 @@ list(TRANSFORM STIPPLE_MODULES PREPEND "-lstipple_" OUTPUT_VARIABLE stipple_libr
 list(REVERSE stipple_libraries)
 list(JOIN stipple_libraries " " stipple_libraries)
 string(REGEX REPLACE "[^/]+" ".." stipple_up "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
-set(stipple_aravis "")
-if(STIPPLE_ARAVIS)
-    set(stipple_aravis aravis-0.8)
-endif()
 configure_file(cmake/stipple.pc.in stipple.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/stipple.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT libraries)

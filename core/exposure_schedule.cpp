@@ -6,16 +6,13 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/philox.h"
 
 namespace stipple {
 namespace {
 
 constexpr char kWhere[] = "exposure schedule";
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// The most of a pixel's exposures whose spans cover one slot of the period. `under_way` holds a
 /// zero for each slot, before and after.
@@ -59,10 +56,11 @@ ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slot
       first_(std::move(first)),
       exposures_(std::move(exposures)) {
     if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTileSide || tile_cols > kMaxTileSide)
-        throw InputError(kWhere, fmt::format("tile {} x {} is outside 1..65535 rows and columns",
-                                             tile_rows, tile_cols));
+        throw InputError(kWhere, fmt::format("tile {} x {} is outside 1..{} rows and columns",
+                                             tile_rows, tile_cols, kMaxTileSide));
     if (period_slots < 1 || period_slots > kMaxPeriodSlots)
-        throw InputError(kWhere, fmt::format("period {} is outside 1..65535 slots", period_slots));
+        throw InputError(
+            kWhere, fmt::format("period {} is outside 1..{} slots", period_slots, kMaxPeriodSlots));
     if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
         first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
         throw InputError(kWhere, "the list of exposures does not match the tile");

@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry.h"
+#include "core/index.h"
+
 namespace stipple {
 
 inline constexpr int kMaxExposureSlots = 64;  ///< bits of `Exposure::open_slots`
 inline constexpr int kMaxPeriodSlots = 65535;
-inline constexpr int kMaxTileSide = 65535;  ///< pixels
+inline constexpr int kMaxTileSide = kMaxFrameSide;
 
 /// One exposure of one pixel: the slots in which its shutter is open. Bit i of `open_slots` is
 /// slot `first_slot + i`; bit 0 is set. It is read out at the end of its last open slot.
@@ -86,8 +89,7 @@ class ExposureSchedule {
 
   private:
     [[nodiscard]] std::size_t pixel(int tile_row, int tile_col) const {
-        return static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_cols_) +
-               static_cast<std::size_t>(tile_col);
+        return row_major(tile_row, tile_col, tile_cols_);
     }
     /// `zeros` has a zero per slot of the period before and after the call; clearing it for each
     /// pixel would take seconds.

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace stipple {
+
+/// Max rows, max columns and max sites of a frame, as in a sample stream (docs/stream_format.md).
+inline constexpr int kMaxFrameSide = 65535;
+inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
 
 /// Size of one frame. A site is one photodiode: a pixel of a mono sensor, or one of the stacked
 /// colour planes of a pixel.

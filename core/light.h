@@ -15,12 +15,8 @@ enum class Transfer {
     kSrgb,     ///< IEC 61966-2-1
 };
 
-/// Max sides and sites of a frame in a sample stream (docs/stream_format.md).
-inline constexpr std::uint64_t kMaxFrameSide = 65535;
-inline constexpr std::uint64_t kMaxFrameSites = std::uint64_t{1} << 28U;
-
 /// The shape of rows x cols x planes. \throws InputError at `where` unless 1 <= rows,
-/// cols <= 65535, planes is 1 or 3 and there are at most 2^28 sites.
+/// cols <= kMaxFrameSide, planes is 1 or 3 and there are at most kMaxFrameSites.
 [[nodiscard]] FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
                                        std::string_view where);
 

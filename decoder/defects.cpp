@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 
@@ -36,10 +37,6 @@ struct SiteSum {
         return std::max(light / static_cast<float>(open_slots), at_least);
     }
 };
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Sums of one row of sites; where two chains interleave, their open slots are shared out evenly.
 void sum_row(const Measurements& m, std::size_t begin, std::span<SiteSum> row) {

@@ -5,15 +5,12 @@
 #include <cstdint>
 #include <map>
 
+#include "core/index.h"
 #include "decoder/measurements.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Exposures by their last slot, and how many sites have each.
 class ExposureList {

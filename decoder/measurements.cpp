@@ -7,15 +7,12 @@
 #include <cassert>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(std::int64_t value) {
-    return static_cast<std::size_t>(value);
-}
 
 class Collector {
   public:
@@ -56,7 +53,7 @@ class Collector {
         const auto sites = window_.shape.sites();
         const int first_plane = cfa_ == ColourFilter::kNone ? 0 : colour_plane(cfa_, row, col);
         auto voxel = index(first) * sites + index(first_plane) * window_.shape.pixels() +
-                     index(window_row) * index(window_.shape.cols) + index(window_col);
+                     row_major(window_row, window_col, window_.shape.cols);
         const PixelResponse& response = responses_.at(row, col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
             write(voxel, sample.dn[plane], span, response);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/index.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -68,8 +69,7 @@ class PixelResponses {
     explicit PixelResponses(const Calibration& calibration);
 
     [[nodiscard]] const PixelResponse& at(int row, int col) const {
-        return responses_[static_cast<std::size_t>(row % rows_) * static_cast<std::size_t>(cols_) +
-                          static_cast<std::size_t>(col % cols_)];
+        return responses_[row_major(row % rows_, col % cols_, cols_)];
     }
 
   private:

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/gap_limit.h"
+#include "core/index.h"
 #include "core/memory_limit.h"
 #include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
@@ -18,10 +19,6 @@
 
 namespace stipple {
 namespace {
-
-std::size_t index(std::int64_t value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
 #include "io/npy_fields.h"
@@ -18,7 +19,6 @@ namespace stipple {
 namespace {
 
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 26U;
-constexpr std::uint64_t kLongestSide = 65535;
 
 /// How the values of a type become numbers.
 struct ValueType {
@@ -63,9 +63,9 @@ void check_shape(const std::vector<std::uint64_t>& shape, std::string_view where
             fmt::format("has {} dimensions; needs three: (slots, rows, columns)", shape.size()));
     std::uint64_t values = 1;
     for (const std::uint64_t side : shape) {
-        if (side < 1 || side > kLongestSide)
+        if (side < 1 || side > kMaxFrameSide)
             throw InputError(where, fmt::format("shape ({}, {}, {}): sides are 1 to {}", shape[0],
-                                                shape[1], shape[2], kLongestSide));
+                                                shape[1], shape[2], kMaxFrameSide));
         values *= side;
     }
     if (values > kMaxValues)

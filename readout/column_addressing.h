@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/geometry.h"
+
 namespace stipple {
 
 class KeyReader;
@@ -13,7 +15,7 @@ struct ColumnAddressing {
         kGroup         ///< each group with a due pixel is transferred whole
     };
     static constexpr int kMaxChannels = 4096;
-    static constexpr int kMaxSide = 65535;  ///< of a group, in pixels
+    static constexpr int kMaxSide = kMaxFrameSide;  ///< of a group, in pixels
 
     Kind kind = Kind::kSkipChannel;
     int channels = 1;    ///< parallel outputs, 1..4096; column c belongs to channel c mod channels

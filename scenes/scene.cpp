@@ -1,5 +1,7 @@
 #include "scenes/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/parallel.h"
 #include "scenes/dice.h"
 #include "scenes/pan.h"
@@ -55,9 +58,13 @@ void require(bool holds, std::string_view option, std::string_view range) {
 
 void check(const SceneOptions& options) {
     const FrameShape shape = options.shape;
-    require(options.slots >= 1 && options.slots <= 1'000'000, "slots", "must be 1..1000000");
-    require(shape.rows >= 8 && shape.rows <= 4096, "rows", "must be 8..4096");
-    require(shape.cols >= 8 && shape.cols <= 4096, "cols", "must be 8..4096");
+    const auto within = [](int value, int least, int most, std::string_view option) {
+        require(value >= least && value <= most, option,
+                fmt::format("must be {}..{}", least, most));
+    };
+    within(options.slots, 1, SceneOptions::kMaxSlots, "slots");
+    within(shape.rows, SceneOptions::kMinSide, SceneOptions::kMaxSide, "rows");
+    within(shape.cols, SceneOptions::kMinSide, SceneOptions::kMaxSide, "cols");
     require(shape.planes == 1 || shape.planes == 3, "planes", "must be 1 (mono) or 3 (RGB)");
     require(options.slot_duration >= 0.01 && options.slot_duration <= 8, "slot_duration",
             "must be 0.01..8 slots of 1/200 s");
@@ -170,10 +177,7 @@ void Scene::render(int slot, std::span<float> frame) const {
                         static_cast<float>(col) - 0.5F * static_cast<float>(shape.cols),
                         static_cast<float>(row) - 0.5F * static_cast<float>(shape.rows)};
                     const Rgb light = integrate_pixel(instants, plan, corner, pixel_size);
-                    const auto pixel =
-                        static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.cols) +
-                        static_cast<std::size_t>(col);
-                    store(light, shape, pixel, frame);
+                    store(light, shape, row_major(row, col, shape.cols), frame);
                 }
             });
         },

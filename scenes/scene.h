@@ -30,8 +30,12 @@ struct NamedScene {
 [[nodiscard]] SceneName scene_from_name(std::string_view name);
 
 struct SceneOptions {
-    int slots = 48;                                           ///< 1..1 000 000
-    FrameShape shape{.rows = 240, .cols = 320, .planes = 3};  ///< 8..4096 each way; 1 or 3 planes
+    static constexpr int kMaxSlots = 1'000'000;
+    static constexpr int kMinSide = 8;
+    static constexpr int kMaxSide = 4096;
+
+    int slots = 48;                                           ///< 1..kMaxSlots
+    FrameShape shape{.rows = 240, .cols = 320, .planes = 3};  ///< kMinSide..kMaxSide; 1 or 3 planes
     std::uint64_t seed = 1;    ///< of textures, colours and arrangement; the motion is similar
     double slot_duration = 1;  ///< in 1/200 s, the unit of the speeds; 0.01..8
     int time_samples = 8;      ///< per 1/200 s and 240 rows, 1..64; 8 keeps steps below a pixel

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/philox.h"
 #include "sensor_model/normal.h"
@@ -11,10 +12,6 @@ namespace stipple {
 namespace {
 
 constexpr std::uint64_t kPatternKey = 0;  ///< not the seed: the pattern outlives a run
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 double factor(double spread, std::uint32_t word) {
     return std::max(0.0, 1 + spread * static_cast<double>(normal_one(word)));
@@ -84,7 +81,7 @@ FixedPattern::FixedPattern(const SensorParams& params, FrameShape shape)
         const auto columns = column_offsets(chip.terms, shape.cols, plane);
         parallel_for(0, shape.rows, [&](int row) {
             for (int col = 0; col < shape.cols; ++col) {
-                const std::size_t pixel = index(row) * index(shape.cols) + index(col);
+                const std::size_t pixel = row_major(row, col, shape.cols);
                 SiteTraits site = chip.site(philox4x32(
                     random_address(static_cast<std::uint32_t>(pixel), chip.terms.device_id,
                                    RandomPurpose::kFixedPattern, plane),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "core/index.h"
+
 namespace stipple {
 namespace {
 
@@ -22,10 +24,6 @@ DuePixels left_part(DuePixels due, int cols) {
     const auto end = std::ranges::partition_point(
         due, [cols](const DuePixel& pixel) { return pixel.col < cols; });
     return due.first(static_cast<std::size_t>(end - due.begin()));
-}
-
-std::size_t index(std::int64_t value) {
-    return static_cast<std::size_t>(value);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "stream/calibration_codec.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
@@ -43,10 +44,10 @@ struct Field {
 };
 
 constexpr Field kHeaderLength{12, "header bytes", kFixedBytes + kCrcBytes, kMaxHeaderBytes};
-constexpr Field kRows{16, "rows", 1, 65535};
-constexpr Field kCols{18, "columns", 1, 65535};
+constexpr Field kRows{16, "rows", 1, kMaxFrameSide};
+constexpr Field kCols{18, "columns", 1, kMaxFrameSide};
 constexpr Field kPlanes{20, "planes", 1, 4};
-constexpr Field kSites{16, "rows x columns x planes", 1, 1U << 28U};
+constexpr Field kSites{16, "rows x columns x planes", 1, kMaxFrameSites};
 constexpr Field kColourFilter{21, "colour filter array", 0, 4};
 constexpr Field kBitDepth{22, "bit depth", 1, 16};
 constexpr Field kRounding{23, "rounding", 0, 1};

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/fault_list.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
@@ -34,7 +35,7 @@ struct StreamDamage {
 };
 
 struct StreamReport {
-    static constexpr std::size_t kMaxListedDamage = 1000;
+    static constexpr std::size_t kMaxListedDamage = kMaxListedFaults;
 
     int version = 0;  ///< of the format, docs/stream_format.md
     std::uint64_t packets = 0;

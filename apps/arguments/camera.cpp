@@ -15,10 +15,13 @@ namespace stipple {
 
 void add_camera_arguments(Command& command, CameraArguments& arguments) {
     command.add_option("ADDRESS", arguments.address, address_forms()).required().input();
-    command.add_option("--config", arguments.config, "settings of the camera, Feature = value")
+    command
+        .add_option("--config", arguments.config,
+                    "settings of the camera, a file of lines Feature = value")
         .type_name("FILE")
         .input();
-    command.add_option("--buffers", arguments.buffers.frames, "buffers for frames on the host (32)")
+    command.add_option("--buffers", arguments.buffers.frames, "frames that the host can hold")
+        .shows_default()
         .check(whole_check(2, 1024))
         .type_name("N");
 }
@@ -62,7 +65,7 @@ void add_incomplete_argument(Command& command, IncompletePolicy& policy) {
                     {{"drop", IncompletePolicy::kDrop},
                      {"keep", IncompletePolicy::kKeep},
                      {"mask", IncompletePolicy::kMask}},
-                    "frames that did not arrive whole: drop, keep, or mask what is missing (mask)")
+                    "incomplete frames: drop, keep, or mask (fill missing pixels with 0)")
         .type_name("POLICY");
 }
 
@@ -73,8 +76,9 @@ void add_session_arguments(Command& command, SessionOptions& options) {
             [&options](const std::string& ms) {
                 options.stall = std::chrono::milliseconds(std::stoi(ms));
             },
-            "silence in ms, or 5 frame periods, after which the camera is opened anew; 0: never "
-            "(250)")
+            "open the camera again after a silence of this time and of five frame periods; "
+            "0: never")
+        .default_text(fmt::format("{} ms", options.stall.count()))
         .check(whole_check(0, 3'600'000))
         .type_name("MS");
     command.add_flag(
@@ -88,10 +92,12 @@ void check_session_arguments(const Command& command, const CameraArguments& came
 }
 
 void add_capture_limits(Command& command, CaptureLimits& limits) {
-    command.add_option("--frames", limits.frames, "stop after so many (until Ctrl-C)")
-        .check(whole_check(1, std::uint64_t{1} << 53U))
+    command.add_option("--frames", limits.frames, "stop after N frames")
+        .default_text("at Ctrl-C")
+        .check(frames_check())
         .type_name("N");
-    command.add_option("--seconds", limits.seconds, "stop after so long (until Ctrl-C)")
+    command.add_option("--seconds", limits.seconds, "stop after S seconds")
+        .default_text("at Ctrl-C")
         .check(positive_check())
         .type_name("S");
 }

@@ -50,7 +50,11 @@ ValueCheck whole_check(std::uint64_t min, std::uint64_t max) {
     return range_check("a whole number", min, max);
 }
 
-void parse_size(const std::string& option, const std::string& text, int min, int max,
+ValueCheck frames_check() {
+    return whole_check(1, std::uint64_t{1} << 53U);
+}
+
+void parse_size(const std::string& option, const std::string& text, SideRange sides,
                 FrameShape& shape) {
     const char* const end = text.data() + text.size();
     const auto cols = std::from_chars(text.data(), end, shape.cols);
@@ -59,8 +63,19 @@ void parse_size(const std::string& option, const std::string& text, int min, int
     if (cols.ec != std::errc() || rows.ec != std::errc() || rows.ptr != end)
         throw UsageError(option, "\"" + text + "\" is not a size like 640x480");
     for (const int side : {shape.cols, shape.rows})
-        if (side < min || side > max)
-            throw UsageError(option, fmt::format("{}: sides are {} to {} pixels", text, min, max));
+        if (side < sides.min || side > sides.max)
+            throw UsageError(
+                option, fmt::format("{}: sides are {} to {} pixels", text, sides.min, sides.max));
+}
+
+CommandOption add_size(Command& command, const std::string& name, FrameShape& shape,
+                       SideRange sides, const std::string& text) {
+    const auto take = [name, sides, &shape](const std::string& size) {
+        parse_size(name, size, sides, shape);
+    };
+    CommandOption option = command.add_parsed(name, take, text).type_name("WxH");
+    return shape.pixels() == 0 ? option
+                               : option.default_text(fmt::format("{}x{}", shape.cols, shape.rows));
 }
 
 }  // namespace stipple

@@ -21,10 +21,24 @@ namespace stipple {
 [[nodiscard]] ValueCheck whole_check(std::uint64_t min,
                                      std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
+/// A number of frames or slots: 1 to 2^53, which JSON holds exactly.
+[[nodiscard]] ValueCheck frames_check();
+
+/// The sides that an image may have, in pixels.
+struct SideRange {
+    int min;
+    int max;
+};
+
 /// Takes "640x480", width and height, into `shape`. \throws UsageError naming `option` if
-/// it is no such text or a side is outside min..max pixels.
-void parse_size(const std::string& option, const std::string& text, int min, int max,
+/// it is no such text or a side is outside `sides`.
+void parse_size(const std::string& option, const std::string& text, SideRange sides,
                 FrameShape& shape);
+
+/// An option WxH, which sets rows and columns of `shape`. The help ends with the present size,
+/// unless that is empty.
+CommandOption add_size(Command& command, const std::string& name, FrameShape& shape,
+                       SideRange sides, const std::string& text);
 
 /// The names of things that have one, for CommandOption::one_of.
 template <typename Things>

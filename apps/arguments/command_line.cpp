@@ -38,7 +38,7 @@ std::vector<std::string> with_help(const CLI::App& program, std::vector<std::str
     return words;
 }
 
-/// What the options given name, by the words of the command line.
+/// The files and folders that the given options name, each with the name of its option.
 std::vector<std::pair<std::string, fs::path>> named_files(
     const std::vector<CLI::Option*>& options) {
     std::vector<std::pair<std::string, fs::path>> files;
@@ -48,7 +48,7 @@ std::vector<std::pair<std::string, fs::path>> named_files(
     return files;
 }
 
-/// \throws UsageError for words that name no file where one is wanted.
+/// \throws UsageError for an empty name or "-" as the name of a file.
 void check_names(const DeclaredOptions& declared) {
     const auto check = [](const CLI::Option* option, const char* standard_stream) {
         for (const std::string& name : option->results()) {
@@ -97,6 +97,7 @@ OptionDescription described(const CLI::Option& option, const DeclaredOptions& de
     if (out.argument) out.names.push_back(option.get_name());
     if (!out.argument && option.get_type_size() > 0) out.value = option.get_type_name();
     out.text = option.get_description();
+    out.group = option.get_group();
     out.required = option.get_required();
     out.repeats = option.get_items_expected_max() > 1;
     if (const auto values = declared.values.find(&option); values != declared.values.end()) {
@@ -135,6 +136,17 @@ CommandOption& CommandOption::type_name(const std::string& name) {
 
 CommandOption& CommandOption::required() {
     option_->required();
+    return *this;
+}
+
+CommandOption& CommandOption::shows_default() {
+    const std::string value = option_->capture_default_str()->get_default_str();
+    option_->default_str({});  // CLI11 would print it a second time
+    return default_text(value);
+}
+
+CommandOption& CommandOption::default_text(const std::string& text) {
+    option_->description(fmt::format("{} (default: {})", option_->get_description(), text));
     return *this;
 }
 
@@ -287,7 +299,7 @@ void CommandLine::check_files() const {
     const auto outputs = named_files(declared_.outputs);
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
         for (const auto& [option, input] : inputs)
-            // What is no file is the name of a sensor or schedule.
+            // An input that does not exist as a file is the name of a sensor or schedule.
             if (std::error_code error; fs::exists(input_path(input), error) &&
                                        same_file(output->second, input_path(input)))
                 throw UsageError(output->first,

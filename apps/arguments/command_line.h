@@ -25,8 +25,8 @@ namespace stipple {
 /// The problem of a value, or an empty text.
 using ValueCheck = std::function<std::string(const std::string&)>;
 
-/// A command line that cannot be meant: exit code 2. Thrown by callbacks and by options that take
-/// their value apart themselves.
+/// A wrong command line: exit code 2. Thrown by callbacks and by options that parse their value
+/// themselves.
 class UsageError : public std::runtime_error {
   public:
     UsageError(std::string option, const std::string& problem)
@@ -38,15 +38,15 @@ class UsageError : public std::runtime_error {
     std::string option_;
 };
 
-/// What an output may be called: any name, or one by the `rule` for its extension.
+/// The names that an output may have: any, or those with one of the extensions.
 struct OutputName {
     std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
     std::array<std::string_view, 3> extensions = {};  ///< in lower case; names may be in upper case
     bool may_have_none = true;
 };
 
-/// \throws UsageError naming `option` if `file` is not called as `name` says. What is there and is
-/// no file, as a folder, a pipe or a device, may have any name.
+/// \throws UsageError naming `option` if `file` has no name of `name`. An existing folder, pipe or
+/// device may have any name.
 void check_extension(const std::string& option, const std::string& file, const OutputName& name);
 
 /// The values that an option takes.
@@ -55,7 +55,7 @@ struct OptionValues {
     std::string list;                  ///< of `stipple list`, or empty
 };
 
-/// What is known of the options of a command line beyond CLI11.
+/// Properties of the options of a command line that CLI11 does not know.
 struct DeclaredOptions {
     std::vector<CLI::Option*> inputs;
     std::vector<CLI::Option*> outputs;
@@ -71,6 +71,10 @@ class CommandOption {
 
     CommandOption& type_name(const std::string& name);
     CommandOption& required();
+    /// Ends the help with the value that the variable of the option has now: "(default: 16)".
+    CommandOption& shows_default();
+    /// Ends the help with this default, for one that no variable holds: "all frames".
+    CommandOption& default_text(const std::string& text);
     CommandOption& check(const ValueCheck& check);
     /// Of a list: one value may hold several, "a,b".
     CommandOption& split_at_commas();
@@ -81,10 +85,10 @@ class CommandOption {
     CommandOption& group(const std::string& heading);
     CommandOption& needs(const CommandOption& other);
     CommandOption& excludes(const CommandOption& other);
-    /// It names what is read: a file, a folder, a pattern or "replay:FILE".
+    /// Its value is an input: a file, a folder, a pattern or "replay:FILE".
     CommandOption& input();
-    /// It names what is written. Parsing refuses an output that is an input or another output, or
-    /// that is not called as `name` says.
+    /// Its value is an output. Parsing refuses an output that is an input or another output, or
+    /// that has no name of `name`.
     CommandOption& output(const OutputName& name = {});
 
   private:
@@ -92,7 +96,7 @@ class CommandOption {
     DeclaredOptions* declared_;
 };
 
-/// A subcommand. Copies stand for the same one. What options write to must outlive the parsing.
+/// A subcommand. Copies stand for the same one. The variables of options must outlive the parsing.
 class Command {
   public:
     Command(CLI::App& app, DeclaredOptions& declared) : app_(&app), declared_(&declared) {}
@@ -101,35 +105,40 @@ class Command {
     [[nodiscard]] Command add_command(const std::string& name, const std::string& text);
     /// Text below the options.
     void footer(const std::string& text);
-    /// Runs once the command line is taken apart, if it names this subcommand.
+    /// Runs after parsing, if the command line names this subcommand.
     void callback(std::function<void()> action);
 
     /// `names` as "-o,--output", without a dash a positional argument. Values are texts, paths and
     /// numbers: those that command_line.cpp lists.
     template <typename Value>
     CommandOption add_option(const std::string& names, Value& value, const std::string& text);
-    /// An option that takes its value apart itself.
+    /// An option that parses its value itself.
     CommandOption add_parsed(const std::string& names, std::function<void(std::string)> take,
                              const std::string& text);
     /// An option that may be given several times, with one value each.
     CommandOption add_list(const std::string& names, std::vector<std::string>& values,
                            const std::string& text);
-    /// The same, where each value is taken apart. `take` may throw UsageError.
+    /// The same, for values that `take` parses. `take` may throw UsageError.
     CommandOption add_list(const std::string& names, std::function<void(std::string)> take,
                            const std::string& text);
-    /// An option that is a name of a value.
+    /// An option that is a name of a value. The help ends with the name of the present value.
     template <typename Value>
     CommandOption add_choice(const std::string& names, Value& value,
                              std::vector<std::pair<std::string, Value>> choices,
                              const std::string& text) {
         std::vector<std::string> known;
         known.reserve(choices.size());
-        for (const auto& choice : choices) known.push_back(choice.first);
+        std::string preset;
+        for (const auto& choice : choices) {
+            known.push_back(choice.first);
+            if (choice.second == value) preset = choice.first;
+        }
         const auto take = [&value, choices = std::move(choices)](const std::string& name) {
             for (const auto& choice : choices)
                 if (choice.first == name) value = choice.second;
         };
-        return add_parsed(names, take, text).one_of(known);
+        CommandOption option = add_parsed(names, take, text).one_of(known);
+        return preset.empty() ? option : option.default_text(preset);
     }
     CommandOption add_flag(const std::string& names, bool& value, const std::string& text);
     /// A flag that does something.
@@ -141,7 +150,7 @@ class Command {
     /// An option that was added before.
     [[nodiscard]] CommandOption option(const std::string& name);
     /// For callbacks. \throws UsageError naming the first of these options that was given, although
-    /// it does nothing here; `why` says so and what to do.
+    /// it has no effect here; `why` gives the reason and the remedy.
     void refuse(const std::vector<std::string>& names, const std::string& why) const;
 
     /// This one, if it has no subcommands, else those below it that have none.
@@ -168,8 +177,8 @@ class CommandLine {
     /// As it was declared.
     [[nodiscard]] CommandDescription description() const;
     enum class Parsed { kAction, kHelp, kWrong };
-    /// Takes the command line apart and runs the callbacks of the subcommand that it names. Prints
-    /// help and version where they are asked for, and what is wrong where something is.
+    /// Parses the command line and runs the callbacks of the subcommand that it names. Prints help
+    /// and version if they are asked for, and a message if the command line is wrong.
     /// \throws std::system_error if standard output cannot be written.
     [[nodiscard]] Parsed parse(int argc, char** argv);
 

@@ -11,13 +11,13 @@ namespace stipple {
 
 void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
-        .add_choice<std::optional<Transfer>>(
-            "--transfer", options.transfer,
-            {{"linear", Transfer::kLinear},
-             {"gamma22", Transfer::kGamma22},
-             {"srgb", Transfer::kSrgb}},
-            "how the numbers of " + footage + " map to light (linear)")
-        .type_name("linear|gamma22|srgb");
+        .add_choice<std::optional<Transfer>>("--transfer", options.transfer,
+                                             {{"linear", Transfer::kLinear},
+                                              {"gamma22", Transfer::kGamma22},
+                                              {"srgb", Transfer::kSrgb}},
+                                             "how the numbers of " + footage + " map to light")
+        .default_text("linear, with a warning if they look gamma-coded")
+        .type_name("NAME");
     const auto take_raw = [&options](const std::string& text) {
         try {
             options.raw = parse_raw_format(text);
@@ -29,11 +29,13 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
         .add_parsed("--raw", take_raw,
                     "read " + footage + " as frames without a header, such as 640x480:mono12p")
         .type_name("SIZE:FORMAT[:KEY=VALUE]...");
-    command.add_flag("--luminance", options.luminance, "Rec. 709 luminance of colour footage");
+    command.add_flag("--luminance", options.luminance,
+                     "reduce colour footage to Rec. 709 luminance");
 }
 
 void add_max_value(Command& command, std::optional<double>& max_value) {
-    command.add_option("--max-value", max_value, "clip light to V first")
+    command.add_option("--max-value", max_value, "first clip light to V")
+        .default_text("not clipped")
         .check(positive_check())
         .type_name("V");
 }
@@ -43,21 +45,14 @@ ReadAhead read_footage(const std::string& source, const FootageOptions& options)
 }
 
 void add_scene_arguments(Command& command, SceneOptions& options) {
-    constexpr int kMinSide = 8;  // as SceneOptions
-    constexpr int kMaxSide = 4096;
-    constexpr int kMaxSlots = 1000000;
-    command.add_option("--frames", options.slots, "frames of 1/200 s (48)")
-        .check(whole_check(1, kMaxSlots))
+    constexpr SideRange kSides{SceneOptions::kMinSide, SceneOptions::kMaxSide};
+    command.add_option("--frames", options.slots, "number of frames, of 1/200 s each")
+        .shows_default()
+        .check(whole_check(1, SceneOptions::kMaxSlots))
         .type_name("N");
-    command
-        .add_parsed(
-            "--size",
-            [&options](const std::string& text) {
-                parse_size("--size", text, kMinSide, kMaxSide, options.shape);
-            },
-            "width and height (320x240)")
-        .type_name("WxH");
-    command.add_option("--seed", options.seed, "textures and arrangement (1)")
+    add_size(command, "--size", options.shape, kSides, "width and height of the scene");
+    command.add_option("--seed", options.seed, "seed of textures and arrangement")
+        .shows_default()
         .check(whole_check(0))
         .type_name("S");
 }

@@ -4,7 +4,7 @@
 
 namespace stipple {
 
-// What the outputs of the subcommands are called.
+// Names that the outputs of the commands may have.
 
 constexpr OutputName kStreamName{"a sample stream is a .stipple, or has a name without extension",
                                  {".stipple"}};

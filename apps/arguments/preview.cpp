@@ -2,31 +2,34 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/output_names.h"
+#include "core/geometry.h"
 #include "io/pending_output.h"
 
 namespace stipple {
 
 void add_preview_arguments(Command& command, PreviewArguments& arguments) {
-    constexpr int kMinSide = 8;
-    constexpr int kMaxSide = 65536;
+    constexpr SideRange kSides{8, kMaxFrameSide};
     command
         .add_option("--preview", arguments.file,
-                    "image of what the decoder makes of the newest slots, replaced again and "
-                    "again: .png to look at, .npy linear light")
+                    "keep a decoded image of the newest slots: .png (tone-mapped, saturated "
+                    "pixels red) or .npy (linear light)")
         .type_name("FILE")
         .output(kPreviewName);
     command
         .add_option("--preview-method", arguments.method,
-                    "naive: at once, noisier; fast: as it will be decoded, in seconds (naive)")
+                    "decoding method of the preview: naive, or fast, which is better and takes "
+                    "seconds")
+        .shows_default()
         .one_of({"fast", "naive"})
         .type_name("NAME");
     command
         .add_parsed(
             "--preview-size",
             [&arguments](const std::string& text) {
-                parse_size("--preview-size", text, kMinSide, kMaxSide, arguments.size.emplace());
+                parse_size("--preview-size", text, kSides, arguments.size.emplace());
             },
-            "so much of the middle of the frame (all, or what is decoded in some seconds)")
+            "part of the frame in the preview, from its middle")
+        .default_text("as much as is decoded within some seconds")
         .type_name("WxH");
 }
 

@@ -19,12 +19,20 @@ void RunOptions::say(std::string_view text) const {
 }
 
 void add_run_options(Command& command, RunOptions& run) {
-    command.add_option("--json", run.json, "write the figures as JSON; - is standard output")
+    command
+        .add_option("--json", run.json,
+                    "write the figures of the run as JSON; - is standard output, without text then")
         .type_name("FILE")
+        .group(kCommonOptions)
         .output();
-    command.add_flag("--force", run.force, "replace existing outputs");
-    command.add_flag("--no-sync", run.no_sync,
-                     "do not wait until outputs are on the disk; a power cut may lose them");
+    command
+        .add_flag("--force", run.force,
+                  "replace existing outputs, the file of --json too; of a link the file behind it")
+        .group(kCommonOptions);
+    command
+        .add_flag("--no-sync", run.no_sync,
+                  "do not wait until outputs are on the disk; a power cut may lose them")
+        .group(kCommonOptions);
     command
         .add_parsed(
             "--max-memory",
@@ -35,13 +43,19 @@ void add_run_options(Command& command, RunOptions& run) {
                                      "\"" + size + "\" is not a size like 512M or 2G, from 1M on");
                 run.max_memory = *bytes;
             },
-            "refuse inputs that need more memory (a quarter of the machine's)")
-        .type_name("SIZE");
-    command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only");
+            "refuse inputs that need more memory, such as 512M or 2G")
+        .default_text("a quarter of the machine's memory")
+        .type_name("SIZE")
+        .group(kCommonOptions);
+    command.add_flag("-q,--quiet", run.quiet, "print errors and warnings only")
+        .group(kCommonOptions);
 }
 
 CommandOption add_threads(Command& command, RunOptions& run) {
-    return command.add_option("--threads", run.threads, "threads to use; 0 is one per core")
+    return command
+        .add_option("--threads", run.threads,
+                    "number of threads; 0: one per core. The result has the same bits for any N")
+        .shows_default()
         .check(whole_check(0, 1024))
         .type_name("N");
 }

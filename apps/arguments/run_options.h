@@ -9,7 +9,7 @@ namespace stipple {
 class Command;
 class CommandOption;
 
-/// What subcommands can be told.
+/// Values of the options that every command has, and of --threads.
 struct RunOptions {
     bool quiet = false;
     bool force = false;
@@ -23,7 +23,8 @@ struct RunOptions {
     void say(std::string_view text) const;
 };
 
-/// What every subcommand has: `--json`, `--force`, `--no-sync`, `--max-memory` and `--quiet`.
+/// The options that every command has: `--json`, `--force`, `--no-sync`, `--max-memory` and
+/// `--quiet`.
 void add_run_options(Command& command, RunOptions& run);
 
 /// `--threads`, of subcommands that spread their work (core/parallel.h).

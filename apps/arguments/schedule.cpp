@@ -1,14 +1,10 @@
 #include "apps/arguments/schedule.h"
 
 #include "apps/arguments/checks.h"
+#include "core/geometry.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
-namespace {
-
-constexpr int kMaxSide = 65535;
-
-}  // namespace
 
 SettingsSection schedule_section(ScheduleChoice& choice) {
     return {"schedule", &choice.settings};
@@ -17,20 +13,14 @@ SettingsSection schedule_section(ScheduleChoice& choice) {
 void add_schedule_choice(Command& command, ScheduleChoice& choice) {
     command
         .add_option("SCHEDULE", choice.schedule,
-                    "name of config/schedules, file of that form, or compiled .mem or .hex")
+                    "exposure schedule, of \"stipple list schedules\", or compiled (.mem, .hex)")
         .type_name("NAME|FILE")
         .listed("schedules")
         .required()
         .input();
-    command
-        .add_parsed(
-            "--size",
-            [&choice](const std::string& text) {
-                parse_size("--size", text, 1, kMaxSide, choice.shape);
-            },
-            "width and height of the array (640x480)")
-        .type_name("WxH");
-    command.add_option("--seed", choice.seed, "of random codes (1)")
+    add_size(command, "--size", choice.shape, {1, kMaxFrameSide}, "width and height of the array");
+    command.add_option("--seed", choice.seed, "seed of random codes")
+        .shows_default()
         .check(whole_check(0))
         .type_name("S");
 }

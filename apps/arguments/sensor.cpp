@@ -7,17 +7,20 @@
 namespace stipple {
 
 void add_sensor_arguments(Command& command, SensorChoice& sensor) {
-    command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\" (paper)")
+    command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\"")
+        .shows_default()
         .type_name("NAME|FILE")
         .listed("sensors")
         .input();
     command
         .add_option("--schedule", sensor.schedule,
-                    "exposure schedule, of \"stipple list schedules\" (random)")
+                    "exposure schedule, of \"stipple list schedules\"")
+        .shows_default()
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();
-    command.add_option("--seed", sensor.seed, "of noise and schedule (1)")
+    command.add_option("--seed", sensor.seed, "seed of noise and schedule")
+        .shows_default()
         .check(whole_check(0))
         .type_name("S");
     add_overrun(command, sensor.overrun);
@@ -27,7 +30,8 @@ void add_overrun(Command& command, OverrunPolicy& policy) {
     command
         .add_choice("--overrun", policy,
                     {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}},
-                    "what a readout that exceeds its slot does: stretch it, or drop rows (stretch)")
+                    "a readout that exceeds its slot: stretch the slot, or drop its last rows; "
+                    "drop needs a sensor with timing")
         .type_name("POLICY");
 }
 
@@ -37,11 +41,13 @@ std::vector<SettingsSection> sensor_sections(SensorChoice& sensor) {
 
 void add_waveform_arguments(Command& command, WaveformOptions& options) {
     constexpr int kMaxSlots = 1'000'000;
-    const auto file =
-        command.add_option("--vcd", options.file, "write the readout as a waveform, for GTKWave")
-            .type_name("FILE")
-            .output(kWaveformName);
-    command.add_option("--vcd-slots", options.slots, "slots in it at most (16)")
+    const auto file = command
+                          .add_option("--vcd", options.file,
+                                      "write the readout as a waveform; needs a sensor with timing")
+                          .type_name("FILE")
+                          .output(kWaveformName);
+    command.add_option("--vcd-slots", options.slots, "number of slots in the waveform")
+        .shows_default()
         .check(whole_check(1, kMaxSlots))
         .type_name("N")
         .needs(file);

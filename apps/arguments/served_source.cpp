@@ -50,14 +50,14 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
     command
         .add_choice("--mode", source.mode,
                     {{"frames", ServedMode::kFrames}, {"coded", ServedMode::kCoded}},
-                    "frames: as they are; coded: the samples of a sensor (frames)")
-        .type_name("frames|coded");
-    command
-        .add_option("--fps", source.frames_per_s,
-                    "frames or slots a second (as recorded; in mode coded of the sensor; 25)")
+                    "send frames as they are, or the coded samples of a sensor")
+        .type_name("MODE");
+    command.add_option("--fps", source.frames_per_s, "frames or slots per second")
+        .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}", kFramesPerS))
         .check(number_check(0.01, 100000.0))
         .type_name("N");
-    command.add_option("--format", source.format, "pixel format of footage (Mono8)")
+    command.add_option("--format", source.format, "pixel format of footage, in mode frames")
+        .default_text("Mono8, RGB8 for colour")
         .type_name("NAME");
     add_sensor_arguments(command, source.sensor);
     add_settings(command, sensor_sections(source.sensor),

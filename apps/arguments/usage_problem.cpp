@@ -59,7 +59,7 @@ std::string option_problem(const std::vector<const CLI::App*>& commands, const C
     return nearest.empty() ? problem : fmt::format("{}; did you mean {}?", problem, nearest);
 }
 
-/// What a word too many may come from: a shell has written out a pattern.
+/// The message for a surplus word. A shell that expands a pattern is the usual cause.
 std::string surplus_problem(const std::vector<const CLI::App*>& commands, const std::string& word) {
     const std::string problem =
         fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
@@ -69,7 +69,7 @@ std::string surplus_problem(const std::vector<const CLI::App*>& commands, const 
                : problem;
 }
 
-/// What no subcommand has use for.
+/// The message for words that no command takes; empty if there are none.
 std::string leftover_problem(const std::vector<const CLI::App*>& commands) {
     std::string surplus;
     for (const CLI::App* command : commands) {

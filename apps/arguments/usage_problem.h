@@ -10,13 +10,13 @@ class ParseError;
 
 namespace stipple {
 
-/// The word among `words` that stands for a subcommand and is none: says so, and which was probably
-/// meant. Empty if there is no such word.
+/// A message about the first word in place of a subcommand that names none, with the most similar
+/// name. Empty if there is no such word.
 [[nodiscard]] std::string unknown_subcommand(const CLI::App& program,
                                              std::span<const std::string> words);
 
-/// What is wrong with `words`, which `program` could not take apart: what is misspelt comes before
-/// what is missing, and how to get help is added.
+/// The message for `words` that `program` could not parse. A misspelt word is reported before a
+/// missing one; the command for help is added.
 [[nodiscard]] std::string usage_problem(const CLI::App& program, std::span<const std::string> words,
                                         const CLI::ParseError& error);
 

@@ -35,7 +35,8 @@ constexpr Row kRows[] = {
     {"dynamic_range", "dynamic range", &CameraFigures::dynamic_range, 1, ": 1"},
     {"linearity_error", "linearity error", &CameraFigures::linearity_error, 100, "%"}};
 
-/// Part of the dark values that are 0 where the noise is cut off: Phi(-3).
+/// Share of zeros in a dark image whose black level is 3 sigma of the noise: Phi(-3). More zeros
+/// mean that the noise is cut off.
 constexpr double kCutOff = 0.00135;
 
 nlohmann::ordered_json figures_json(const CameraFigures& figures) {

@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-/// What was measured, and what a sensor is configured to, if it is one of ours.
+/// Measured figures; and for an emulated sensor the figures that follow from its parameters.
 struct CameraReport {
     emva1288::Evaluation evaluation;
     std::optional<emva1288::CameraFigures> configured;

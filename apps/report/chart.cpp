@@ -76,7 +76,7 @@ std::string terminal_of(std::string_view extension, ChartSize size) {
 
 }  // namespace
 
-// The image comes through a pipe, for gnuplot does not notice where it cannot be written.
+// The image comes through a pipe, because gnuplot does not notice failed writes to a file.
 std::string draw_chart(std::string_view extension, ChartSize size, const std::string& commands) {
     const Descriptor script(memfd_create(kGnuplot, MFD_CLOEXEC));
     const Descriptor log(memfd_create(kGnuplot, MFD_CLOEXEC));

@@ -21,7 +21,7 @@ struct ChartSize {
 
 /// The content of the file that gnuplot draws. `commands` are gnuplot's (data in here-documents,
 /// `$points << END`); terminal and output are set here from the `extension`, ".png" or ".svg".
-/// \throws NoGnuplot, DeviceError if it fails, with what it said.
+/// \throws NoGnuplot, DeviceError with the message of gnuplot.
 [[nodiscard]] std::string draw_chart(std::string_view extension, ChartSize size,
                                      const std::string& commands);
 

@@ -7,8 +7,8 @@
 
 namespace stipple {
 
-/// What completes the command line in a shell: "bash", "zsh" or "fish". Values of options that name
-/// files are completed by the shell, those that `stipple list` knows by asking it.
+/// The completion script for a shell: "bash", "zsh" or "fish". The shell completes names of files;
+/// `stipple list` gives the names of sensors and schedules.
 [[nodiscard]] std::string completion(const CommandDescription& program, std::string_view shell);
 
 }  // namespace stipple

@@ -8,11 +8,11 @@
 
 namespace stipple {
 
-/// What came of one way to record and decode a scene.
+/// The result of one way to record and decode a scene.
 struct TrialResult {
     std::string name;
     std::string schedule;
-    std::string text;  ///< what it is
+    std::string text;  ///< description
     RecordingSize size;
     VideoQuality quality;
 };

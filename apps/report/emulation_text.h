@@ -8,8 +8,8 @@
 
 namespace stipple {
 
-/// What was emulated, at which speed (nothing: not known), for programs: the keys of `emulate` in
-/// docs/cli.md.
+/// Results of an emulation for programs: the keys of `emulate` in docs/cli.md. `slots_per_s` is
+/// empty if the speed is not known.
 [[nodiscard]] nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                                     std::optional<double> slots_per_s);
 

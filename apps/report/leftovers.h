@@ -5,13 +5,13 @@
 
 namespace stipple {
 
-// What runs that were killed have left: partial outputs whose process is no longer there.
+// Partial outputs of killed runs: their process has ended.
 
-/// Says in a line on standard error that a run which was killed has left some of `output`, if so.
+/// Warns on standard error if a killed run has left a partial `output`.
 void say_leftover(const std::filesystem::path& output);
 
-/// What the name of a file says beside its content: that a run is writing it, or was killed; empty
-/// if it is no name of a partial output. Begins with "; ".
+/// "; " and a remark that the run of a partial output still writes it, or was killed. Empty for
+/// other files.
 [[nodiscard]] std::string leftover_text(const std::filesystem::path& file);
 
 }  // namespace stipple

@@ -7,7 +7,7 @@
 
 namespace stipple {
 
-/// What `capture live` has done, for its report.
+/// Results of `capture live`.
 struct LiveReport {
     const LiveEmulation& emulation;
     const StreamRecorder& recorder;

@@ -13,7 +13,7 @@
 namespace stipple {
 namespace {
 
-/// In colour, with the pixels that are too bright in red.
+/// In colour, with saturated pixels in red.
 std::vector<float> marked(const PreviewFrame& frame) {
     const std::size_t pixels = frame.shape.pixels();
     std::vector<float> light(3 * pixels);

@@ -8,11 +8,11 @@
 
 namespace stipple {
 
-/// Replaces `file` at once as a whole: a .png with what is too bright in red and a line of text
+/// Replaces `file` at once as a whole: a .png with saturated pixels in red and a line of text
 /// above, or a .npy of linear light, (1, H, W) or (1, H, W, 3). \throws InputError, DeviceError.
 void write_preview(const std::filesystem::path& file, const PreviewFrame& frame);
 
-/// What has become of the preview `file`, once it has finished: the key `preview` of docs/cli.md,
+/// Statistics of the finished preview `file`: the key `preview` of docs/cli.md,
 /// and the same for people.
 [[nodiscard]] nlohmann::ordered_json preview_json(const std::string& file,
                                                   const LivePreview& preview);

@@ -30,7 +30,7 @@ class Progress {
     void reach(double frames, std::int64_t complete);
     void reach(double frames) { reach(frames, static_cast<std::int64_t>(frames)); }
 
-    /// What stands behind the counter from now on, as "3 lost"; empty: nothing.
+    /// The remark behind the counter from now on, as "3 lost"; empty: none.
     void note(std::string text);
 
     [[nodiscard]] std::int64_t done() const { return complete_; }

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// What a recording cost the chip, for programs: the key `readout` of `emulate` in docs/cli.md.
+/// Readout cost of a recording, for programs: the key `readout` of `emulate` in docs/cli.md.
 /// `light_throughput` is that of schedule and filters.
 [[nodiscard]] nlohmann::ordered_json readout_json(const ReadoutCost& cost, double light_throughput);
 

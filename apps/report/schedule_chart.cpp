@@ -30,7 +30,7 @@ struct Drawing {
     std::vector<Box> reads;
 };
 
-/// Adds an exposure that begins in `begin`; what lies outside [0, slots) is cut off.
+/// Adds an exposure that begins in `begin`, cut off at 0 and `slots`.
 void add_exposure(Drawing& drawing, const Exposure& e, std::int64_t begin, const Box& lane) {
     const auto cut = [&](std::int64_t slot) {
         return std::clamp(static_cast<double>(slot), lane.left, lane.right);

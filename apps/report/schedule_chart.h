@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-/// What a timing diagram shows: slots [0, slots) of these pixels, in the midst of a recording.
+/// Content of a timing diagram: slots [0, slots) of these pixels, after the first exposures.
 struct ScheduleDiagram {
     std::string name;
     const ExposureSchedule& schedule;
@@ -19,7 +19,7 @@ struct ScheduleDiagram {
 
 /// Draws a timing diagram in the manner of Figure 1 of Portz, Zhang, Jiang (ICCP 2013): a row per
 /// pixel, a box per stretch of open slots, its colour that of the exposure's light. Exposures with
-/// gaps have a line from their first to their last slot, and a dot where they are read; those of
+/// gaps have a line from their first to their last slot, and a dot at their readout; those of
 /// the second charge store are in the lower half of a row, which is labelled. \throws InputError
 /// for a name that ends neither in .png nor in .svg or exists and not `force`; DeviceError if
 /// gnuplot fails.

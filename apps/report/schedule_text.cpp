@@ -8,7 +8,7 @@
 namespace stipple {
 namespace {
 
-/// What becomes of a charge store of a pixel.
+/// The line of a charge store of a pixel.
 std::string line_of(const ExposureSchedule& schedule, ArrayPixel pixel, int store, int slots) {
     const int row = pixel.row % schedule.tile_rows();
     const int col = pixel.col % schedule.tile_cols();

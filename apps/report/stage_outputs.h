@@ -15,12 +15,12 @@
 
 namespace stipple {
 
-/// Keeps what the stages of a decoding method come to: their frames as NAME.npy in a folder, and
-/// how what they minimise falls, as figures and as a chart (convergence.png) in that folder.
+/// Keeps the results of the stages of a decoding method: their frames as NAME.npy in a folder, and
+/// the descent of their objective as figures and as a chart (convergence.png) in that folder.
 class StageOutputs {
   public:
-    /// `folder` is made where it is absent; empty: no files, figures only. \throws InputError if it
-    /// cannot be made, or as PendingOutput for the chart.
+    /// `folder` is created if it does not exist; empty: no files, figures only. \throws InputError
+    /// if it cannot be made, or as PendingOutput for the chart.
     StageOutputs(std::filesystem::path folder, FrameShape shape, bool force);
 
     /// For DecodeOptions; refers to this object. Its frames throw as FrameWriter.

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// Writes `text` to the file `path`, which messages call `name`. What cannot be written whole is
+/// Writes `text` to the file `path`, which messages call `name`. A file that cannot be completed is
 /// removed. \throws DeviceError.
 void write_whole(const std::filesystem::path& path, const std::string& name, std::string_view text);
 

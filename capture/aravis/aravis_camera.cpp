@@ -9,6 +9,7 @@
 #include "capture/aravis/aravis_stream.h"
 #include "capture/recording/recording_format.h"
 #include "core/error.h"
+#include "core/geometry.h"
 
 namespace stipple {
 namespace {
@@ -47,7 +48,8 @@ FrameLayout layout_of(const AravisDevice& device) {
     layout.height = read_int(device, "Height", 0);
     layout.offset_x = read_int(device, "OffsetX", 0);
     layout.offset_y = read_int(device, "OffsetY", 0);
-    if (layout.width <= 0 || layout.height <= 0 || layout.width > 65535 || layout.height > 65535)
+    if (layout.width <= 0 || layout.height <= 0 || layout.width > kMaxFrameSide ||
+        layout.height > kMaxFrameSide)
         throw DeviceError(device.address(), fmt::format("says that its frames have {} x {} pixels",
                                                         layout.width, layout.height));
     if (layout.width * layout.format->bits_per_pixel % 8 != 0)

@@ -9,6 +9,7 @@
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
 #include "capture/recording/recording_reader.h"
+#include "core/fault_list.h"
 #include "io/footage_reader.h"
 
 namespace stipple {
@@ -57,7 +58,7 @@ class RecordingFootage {
     [[nodiscard]] std::uint64_t missing_frames() const { return missing_; }
     /// Frame rate of the camera, from the frames so far.
     [[nodiscard]] const FrameRate& rate() const { return rate_; }
-    static constexpr std::size_t kMaxListedGaps = 1000;
+    static constexpr std::size_t kMaxListedGaps = kMaxListedFaults;
     /// The first kMaxListedGaps gaps so far.
     [[nodiscard]] const std::vector<RecordingGap>& gaps() const { return gaps_; }
     /// Whether all frames were read, so that the reader's report is complete.

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/light.h"
+#include "core/geometry.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
 
@@ -100,8 +100,9 @@ struct Fields {
 
 std::string layout_problem(const FrameLayout& layout) {
     if (layout.format == nullptr) return "a pixel format that is not known";
-    if (layout.width < 1 || layout.width > 65535 || layout.height < 1 || layout.height > 65535)
-        return "a frame that is not 1 to 65535 pixels wide and high";
+    if (layout.width < 1 || layout.width > kMaxFrameSide || layout.height < 1 ||
+        layout.height > kMaxFrameSide)
+        return fmt::format("a frame that is not 1 to {} pixels wide and high", kMaxFrameSide);
     if (layout.stride_bytes < layout.format->row_bytes(layout.width) ||
         layout.stride_bytes > kMaxFramePayloadBytes / static_cast<std::uint64_t>(layout.height))
         return "a stride that does not fit its width";

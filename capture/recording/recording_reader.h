@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "capture/recording/recording_format.h"
+#include "core/fault_list.h"
 
 namespace stipple {
 
@@ -19,7 +20,7 @@ struct RecordingDamage {
 };
 
 struct RecordingReport {
-    static constexpr std::size_t kMaxListedDamage = 1000;
+    static constexpr std::size_t kMaxListedDamage = kMaxListedFaults;
 
     std::uint64_t frames = 0;          ///< delivered
     std::uint64_t missing_blocks = 0;  ///< by the numbers of the blocks

@@ -11,6 +11,7 @@
 
 #include "capture/setting_value.h"
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/joined.h"
 
 namespace stipple {
@@ -103,13 +104,12 @@ class FormatSetter {
 
     [[nodiscard]] std::uint32_t number(std::string_view name, std::uint32_t otherwise,
                                        int least) const {
-        constexpr int kLargest = 65535;
         const std::string* const text = value_of(settings_, name);
         if (text == nullptr) return otherwise;
         const auto value = integer_setting(*text);
-        if (!value || *value < least || *value > kLargest)
-            refuse(name,
-                   fmt::format("\"{}\" is no whole number from {} to {}", *text, least, kLargest));
+        if (!value || *value < least || *value > kMaxFrameSide)
+            refuse(name, fmt::format("\"{}\" is no whole number from {} to {}", *text, least,
+                                     kMaxFrameSide));
         return static_cast<std::uint32_t>(*value);
     }
 
@@ -206,10 +206,10 @@ class FormatSetter {
     }
 
     void check(const Image& got) {
-        constexpr std::uint32_t kLargest = 65535;
         FrameLayout& layout = result_.layout;
         layout.format = format_;
-        if (got.width == 0 || got.height == 0 || got.width > kLargest || got.height > kLargest)
+        if (got.width == 0 || got.height == 0 || got.width > kMaxFrameSide ||
+            got.height > kMaxFrameSide)
             throw DeviceError(
                 device_.address(),
                 fmt::format("the driver answers with {} x {} pixels", got.width, got.height));

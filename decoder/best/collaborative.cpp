@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/index.h"
 #include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/best/collaborative_filter.h"
@@ -21,10 +22,6 @@ namespace {
 constexpr double kStartShare = 0.15;  // of all work; for the progress
 constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
 constexpr float kMaxSigma = 10;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 class CollaborativeSolver {
   public:

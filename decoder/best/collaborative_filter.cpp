@@ -6,15 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/best/patch_kernels.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Cuts [0, count) into equal bands, as many as can be at least `least` long, and at least one.
 class Bands {

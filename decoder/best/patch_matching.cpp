@@ -4,15 +4,12 @@
 #include <cassert>
 #include <utility>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/best/patch_kernels.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 struct PatchPlace {
     int slot = 0;
@@ -63,8 +60,7 @@ class Matcher {
 
   private:
     [[nodiscard]] std::size_t voxel(const PatchPlace& at) const {
-        return (index(at.slot) * index(shape_.rows) + index(at.row)) * index(shape_.cols) +
-               index(at.col);
+        return index(at.slot) * shape_.pixels() + row_major(at.row, at.col, shape_.cols);
     }
 
     void add_around(const PatchPlace& centre, int radius) {

@@ -4,15 +4,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/index.h"
+
 namespace stipple {
 namespace {
 
 constexpr int kBlurPixels = 7;
 constexpr int kBlurRadius = kBlurPixels / 2;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// mean[i] of the kBlurPixels arrays that begin at `from(0)`, `from(1)`, ...
 template <typename From>

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
 #include "core/key_reader.h"
 #include "core/light.h"
 #include "core/parallel.h"
@@ -21,10 +22,6 @@ namespace {
 
 constexpr float kMinStep = 0.05F;  // of the step at `step_flux`
 constexpr float kMaxStep = 4;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Light of a frame as one plane.
 void reduce_to_one_plane(std::span<const float> frame, std::span<float> light) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/fast/box_blur.h"
 #include "decoder/measurements.h"
@@ -20,10 +21,6 @@ namespace {
 /// Variance, in squared changes of light: of a voxel in no sample, and of a saturated one.
 constexpr float kUnsampledDoubt = 8;
 constexpr float kSaturatedDoubt = 0.7F;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Slots in which no site collects light.
 std::vector<bool> closed_slots(const Measurements& m) {

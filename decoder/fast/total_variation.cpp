@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/gradient_kernels.h"
@@ -18,10 +19,6 @@ namespace {
 /// Bounds of the squared norm of the spatial gradient and of one temporal difference.
 constexpr float kSpatialCoupling = 8;
 constexpr float kTemporalCoupling = 4;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Planes whose differences share a norm.
 struct PlaneGroup {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/plane.h"
 #include "decoder/motion/motion.h"
@@ -18,10 +19,6 @@ constexpr int kHop = 4;     ///< to the pixels nearby whose motion is tried
 constexpr int kHopPasses = 2;
 constexpr int kFollowings = 2;         ///< of a motion back to where it begins
 constexpr float kRootOffset = 0.002F;  ///< light that is added before the square root
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Pixels from one frame to the next.
 struct Shift {
@@ -146,7 +143,7 @@ class Between {
     [[nodiscard]] std::size_t nearest(float row, float col) const {
         const int r = std::clamp(static_cast<int>(row + 0.5F), 0, shape_.rows - 1);
         const int c = std::clamp(static_cast<int>(col + 0.5F), 0, shape_.cols - 1);
-        return index(r) * index(shape_.cols) + index(c);
+        return row_major(r, c, shape_.cols);
     }
 
     /// The motion of one frame: at the pixel, then where that motion comes from, and so on.

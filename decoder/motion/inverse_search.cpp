@@ -14,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
 
@@ -149,19 +151,17 @@ class PatchGrid {
           stride_(stride),
           rows_((from.rows - kSide + stride - 1) / stride + 1),
           cols_((from.cols - kSide + stride - 1) / stride + 1),
-          shift_(index(rows_, 0)) {}
+          shift_(patch_index(rows_, 0)) {}
 
     void start_from(const DenseFlow& coarser) {
         for (int i = 0; i < rows_; ++i)
             for (int k = 0; k < cols_; ++k) {
                 const int row = std::min((row_of(i) + kSide / 2) / 2, coarser.rows - 1);
                 const int col = std::min((col_of(k) + kSide / 2) / 2, coarser.cols - 1);
-                const std::size_t at =
-                    static_cast<std::size_t>(row) * static_cast<std::size_t>(coarser.cols) +
-                    static_cast<std::size_t>(col);
+                const std::size_t at = row_major(row, col, coarser.cols);
                 constexpr float kScale = 2.0F / kFraction;
-                shift_[index(i, k)] = {kScale * coarser.row_shift[at],
-                                       kScale * coarser.col_shift[at]};
+                shift_[patch_index(i, k)] = {kScale * coarser.row_shift[at],
+                                             kScale * coarser.col_shift[at]};
             }
     }
     void search() {
@@ -178,10 +178,7 @@ class PatchGrid {
   private:
     [[nodiscard]] int row_of(int i) const { return std::min(i * stride_, from_.rows - kSide); }
     [[nodiscard]] int col_of(int k) const { return std::min(k * stride_, from_.cols - kSide); }
-    [[nodiscard]] std::size_t index(int i, int k) const {
-        return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols_) +
-               static_cast<std::size_t>(k);
-    }
+    [[nodiscard]] std::size_t patch_index(int i, int k) const { return row_major(i, k, cols_); }
     /// Takes the shift of a neighbour `side` before or after the patch if that is better, descends.
     void improve(int i, int k, int side);
 
@@ -201,7 +198,7 @@ void PatchGrid::improve(int i, int k, int side) {
     const auto compare_at = [&](const Shift& shift) {
         return compare(patch, place_of(to_, row, col, shift), to_.stride);
     };
-    const Shift start = shift_[index(i, k)];
+    const Shift start = shift_[patch_index(i, k)];
     Shift best = start;
     Difference difference = compare_at(best);
     const auto consider = [&](const Shift& other) {
@@ -211,8 +208,8 @@ void PatchGrid::improve(int i, int k, int side) {
             difference = found;
         }
     };
-    if (i + side >= 0 && i + side < rows_) consider(shift_[index(i + side, k)]);
-    if (k + side >= 0 && k + side < cols_) consider(shift_[index(i, k + side)]);
+    if (i + side >= 0 && i + side < rows_) consider(shift_[patch_index(i + side, k)]);
+    if (k + side >= 0 && k + side < cols_) consider(shift_[patch_index(i, k + side)]);
     constexpr int kDescents = 3;
     const bool descended = side > 0 && best.row == start.row && best.col == start.col;
     for (int step = 0; !descended && step < kDescents; ++step) {
@@ -228,19 +225,19 @@ void PatchGrid::improve(int i, int k, int side) {
         consider(next);
         if (difference.error >= before) break;
     }
-    shift_[index(i, k)] = best;
+    shift_[patch_index(i, k)] = best;
 }
 
 void PatchGrid::smooth(float range_sigma_px) {
     const float decline = 1 / (range_sigma_px * range_sigma_px);
     const std::vector<Shift> old = shift_;
     const auto mean_around = [&](int i, int k) {
-        const Shift& own = old[index(i, k)];
+        const Shift& own = old[patch_index(i, k)];
         Shift sum;
         float weights = 0;
         for (int y = std::max(0, i - 1); y <= std::min(rows_ - 1, i + 1); ++y)
             for (int x = std::max(0, k - 1); x <= std::min(cols_ - 1, k + 1); ++x) {
-                const Shift& other = old[index(y, x)];
+                const Shift& other = old[patch_index(y, x)];
                 const float down = other.row - own.row;
                 const float right = other.col - own.col;
                 const float weight = 1 / (1 + decline * (down * down + right * right));
@@ -251,7 +248,7 @@ void PatchGrid::smooth(float range_sigma_px) {
         return Shift{sum.row / weights, sum.col / weights};
     };
     for (int i = 0; i < rows_; ++i)
-        for (int k = 0; k < cols_; ++k) shift_[index(i, k)] = mean_around(i, k);
+        for (int k = 0; k < cols_; ++k) shift_[patch_index(i, k)] = mean_around(i, k);
 }
 
 /// Weighted sums of shifts over the patches that cover a pixel.
@@ -297,13 +294,11 @@ DenseFlow PatchGrid::dense() const {
             const int row = row_of(i);
             const int col = col_of(k);
             const std::uint8_t* at = from_.pixels + row * from_.stride + col;
-            std::size_t first =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(from_.cols) +
-                static_cast<std::size_t>(col);
+            std::size_t first = row_major(row, col, from_.cols);
             alignas(64) std::int16_t there[kPixels];
-            sample(place_of(to_, row, col, shift_[index(i, k)]), to_.stride, there);
+            sample(place_of(to_, row, col, shift_[patch_index(i, k)]), to_.stride, there);
             for (int p = 0; p < kPixels; p += kSide, at += from_.stride) {
-                add_votes(at, there + p, shift_[index(i, k)], first, votes);
+                add_votes(at, there + p, shift_[patch_index(i, k)], first, votes);
                 first += static_cast<std::size_t>(from_.cols);
             }
         }

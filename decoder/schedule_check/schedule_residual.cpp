@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
+
 namespace stipple {
 namespace {
 
 constexpr std::int64_t kNearSlots = 8;  ///< pairs are no further apart in time
 constexpr float kSaturated = std::numeric_limits<float>::max();
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// Samples of one row that are due under a shifted schedule.
 std::size_t count_shifted(const StreamHeader& header, const ScheduleShift& shift, std::int64_t slot,

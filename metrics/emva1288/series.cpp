@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/geometry.h"
 
 namespace stipple::emva1288 {
 namespace {
@@ -81,8 +82,8 @@ class Parser {
     void read_format(std::istringstream& words) {
         if (series_.bits != 0) fail("a second line n");
         series_.bits = integer(words, "bits", 16);
-        series_.cols = integer(words, "width", 65535);
-        series_.rows = integer(words, "height", 65535);
+        series_.cols = integer(words, "width", kMaxFrameSide);
+        series_.rows = integer(words, "height", kMaxFrameSide);
     }
 
     void begin_group(std::istringstream& words, bool dark) {

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -15,10 +16,6 @@ namespace {
 constexpr std::string_view kTitle = "stipple sequencer program, version 1";
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 constexpr std::size_t kMaxPixelSlots = std::size_t{1} << 28U;
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 std::size_t digits_per_word(const SequencerProgram& program) {
     return (index(program.tile_cols) * index(program.bits_per_pixel) + 3) / 4;

@@ -5,13 +5,10 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/index.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 /// True if some exposure takes one store in even repetitions of the period and the other in odd.
 bool stores_alternate(const ExposureSchedule& schedule) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/exposure_schedule.h"
+#include "core/index.h"
 #include "readout/schedules/draws.h"
 
 namespace stipple {
@@ -26,16 +27,10 @@ struct GroupTile {
     std::vector<GroupCode> codes;
 
     GroupTile(int tile_rows, int tile_cols)
-        : rows(tile_rows),
-          cols(tile_cols),
-          codes(static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_cols)) {}
-    [[nodiscard]] GroupCode& at(int row, int col) {
-        return codes[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
-                     static_cast<std::size_t>(col)];
-    }
+        : rows(tile_rows), cols(tile_cols), codes(index(tile_rows) * index(tile_cols)) {}
+    [[nodiscard]] GroupCode& at(int row, int col) { return codes[row_major(row, col, cols)]; }
     [[nodiscard]] const GroupCode& at(int row, int col) const {
-        return codes[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
-                     static_cast<std::size_t>(col)];
+        return codes[row_major(row, col, cols)];
     }
 };
 

@@ -16,9 +16,9 @@ namespace {
 
 void check_tile(int rows, int cols) {
     if (rows < 1 || cols < 1 || rows > kMaxTileSide || cols > kMaxTileSide)
-        throw InputError("random codes", fmt::format("tile {} x {} is outside 1..65535 rows and "
-                                                     "columns",
-                                                     rows, cols));
+        throw InputError("random codes",
+                         fmt::format("tile {} x {} is outside 1..{} rows and columns", rows, cols,
+                                     kMaxTileSide));
 }
 
 /// Fisher-Yates.

@@ -8,12 +8,10 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/light.h"
+#include "core/geometry.h"
 
 namespace stipple {
 namespace {
-
-constexpr int kMaxSide = kMaxFrameSide;
 
 void require(bool holds, std::string_view sensor, const std::string& constraint) {
     if (!holds) throw InputError(fmt::format("sensor \"{}\": timing", sensor), constraint);
@@ -25,11 +23,11 @@ bool rises(const std::vector<int>& values) {
 
 void check_array(const ReadoutTiming& timing, std::string_view sensor) {
     const ColumnAddressing& addressing = timing.addressing;
-    require(
-        timing.rows >= 1 && timing.rows <= kMaxSide && timing.cols >= 1 && timing.cols <= kMaxSide,
-        sensor,
-        fmt::format("an array of {} x {} pixels (cols x rows); both are 1..{}", timing.cols,
-                    timing.rows, kMaxSide));
+    require(timing.rows >= 1 && timing.rows <= kMaxFrameSide && timing.cols >= 1 &&
+                timing.cols <= kMaxFrameSide,
+            sensor,
+            fmt::format("an array of {} x {} pixels (cols x rows); both are 1..{}", timing.cols,
+                        timing.rows, kMaxFrameSide));
     require(addressing.channels >= 1 && timing.cols % addressing.channels == 0, sensor,
             fmt::format("{} channels do not divide {} columns evenly", addressing.channels,
                         timing.cols));

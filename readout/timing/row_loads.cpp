@@ -5,13 +5,10 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/index.h"
 
 namespace stipple {
 namespace {
-
-std::size_t index(int value) {
-    return static_cast<std::size_t>(value);
-}
 
 int divided_up(int value, int by) {
     return (value + by - 1) / by;

@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/geometry.h"
 #include "core/key_reader.h"
-#include "core/light.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {

@@ -13,6 +13,7 @@ import layout
 import links
 import listed
 import packages
+import quoted_messages
 import sizes
 import words
 from tree import Tree
@@ -158,6 +159,13 @@ class ChecksTest(unittest.TestCase):
     def test_the_index_of_the_documentation_links_every_page(self):
         pages = {links.INDEX: "[a](a.md)\n", "docs" + "/a.md": "", "docs/notes" + "/b.md": ""}
         self.assertEqual(self.places(links.check, pages), [links.INDEX])
+
+    def test_a_quoted_message_is_one_of_the_program(self):
+        source = 'fail(fmt::format("{}: ends \\"{}\\" "\n     "before {} slots", a, b, c));\n'
+        rows = ["| `ends ... before ... slots` | why |", '| `ends "..."` and `cause` | `not a message` |',
+                "| `ends before ... frames` | why |"]
+        files = {"apps/a.cpp": source, quoted_messages.PAGE: "".join(row + "\n" for row in rows)}
+        self.assertEqual(self.places(quoted_messages.check, files), [quoted_messages.PAGE + ":3"])
 
     def test_every_config_key_is_explained(self):
         text = '# width\na = 1\nb = "#"\nc = 2  # height\n[t]\nd = 1\n'
