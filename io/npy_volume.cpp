@@ -18,7 +18,7 @@ namespace stipple {
 namespace {
 
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 26U;
-constexpr std::uint64_t kLongestSide = 65535;
+constexpr std::uint64_t kMaxSide = 65535;
 
 /// How the values of a type become numbers.
 struct ValueType {
@@ -63,9 +63,9 @@ void check_shape(const std::vector<std::uint64_t>& shape, std::string_view where
             fmt::format("has {} dimensions; needs three: (slots, rows, columns)", shape.size()));
     std::uint64_t values = 1;
     for (const std::uint64_t side : shape) {
-        if (side < 1 || side > kLongestSide)
+        if (side < 1 || side > kMaxSide)
             throw InputError(where, fmt::format("shape ({}, {}, {}): sides are 1 to {}", shape[0],
-                                                shape[1], shape[2], kLongestSide));
+                                                shape[1], shape[2], kMaxSide));
         values *= side;
     }
     if (values > kMaxValues)

@@ -16,6 +16,7 @@
 namespace stipple {
 namespace {
 
+constexpr std::uint32_t kMaxSide = 65535;
 constexpr std::array<std::string_view, 7> kFormatSettings{
     "Input", "Width", "Height", "OffsetX", "OffsetY", "PixelFormat", "AcquisitionFrameRate"};
 
@@ -103,13 +104,12 @@ class FormatSetter {
 
     [[nodiscard]] std::uint32_t number(std::string_view name, std::uint32_t otherwise,
                                        int least) const {
-        constexpr int kLargest = 65535;
         const std::string* const text = value_of(settings_, name);
         if (text == nullptr) return otherwise;
         const auto value = integer_setting(*text);
-        if (!value || *value < least || *value > kLargest)
+        if (!value || *value < least || *value > kMaxSide)
             refuse(name,
-                   fmt::format("\"{}\" is no whole number from {} to {}", *text, least, kLargest));
+                   fmt::format("\"{}\" is no whole number from {} to {}", *text, least, kMaxSide));
         return static_cast<std::uint32_t>(*value);
     }
 
@@ -206,10 +206,9 @@ class FormatSetter {
     }
 
     void check(const Image& got) {
-        constexpr std::uint32_t kLargest = 65535;
         FrameLayout& layout = result_.layout;
         layout.format = format_;
-        if (got.width == 0 || got.height == 0 || got.width > kLargest || got.height > kLargest)
+        if (std::min(got.width, got.height) == 0 || std::max(got.width, got.height) > kMaxSide)
             throw DeviceError(
                 device_.address(),
                 fmt::format("the driver answers with {} x {} pixels", got.width, got.height));
@@ -285,9 +284,9 @@ bool is_v4l2_format_setting(const std::string& name) {
 }
 
 std::vector<std::string> v4l2_format_names(const V4l2Device& device) {
-    constexpr std::uint32_t kMost = 1000;  // a driver that never ends its list
+    constexpr std::uint32_t kMaxFormats = 1000;  // a driver that never ends its list
     std::vector<std::string> names;
-    for (std::uint32_t i = 0; i < kMost; ++i) {
+    for (std::uint32_t i = 0; i < kMaxFormats; ++i) {
         v4l2_fmtdesc entry{};
         entry.index = i;
         entry.type = device.buffer_type();
