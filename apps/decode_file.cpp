@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -85,23 +86,27 @@ DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, F
         });
 }
 
-/// What made the frames end: a value of the JSON key `ended_by`.
-std::string_view end_of(const DecodeReport& report, const DecodeArguments& arguments,
-                        const StreamFollower& follower) {
-    if (report.slots == arguments.until) return "until";
-    if (stop_signal() != 0) return "signal";
-    return follower.timed_out() ? "timeout" : "stream";
+/// What made the frames end.
+enum class End { kStream, kUntil, kSignal, kTimeout };
+/// Values of the JSON key `ended_by`.
+constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "signal", "timeout"};
+
+End end_of(const DecodeReport& report, const DecodeArguments& arguments,
+           const StreamFollower& follower) {
+    if (report.slots == arguments.until) return End::kUntil;
+    if (stop_signal() != 0) return End::kSignal;
+    return follower.timed_out() ? End::kTimeout : End::kStream;
 }
 
 /// Ends that the user may not expect.
-void warn(std::string_view end, const DecodeReport& report, const DecodeArguments& arguments,
+void warn(End end, const DecodeReport& report, const DecodeArguments& arguments,
           const StreamFollower& follower) {
-    if (end == "timeout")
+    if (end == End::kTimeout)
         say_error(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
             "if it ended here, after {}",
             arguments.stream, follower.timeout_s(), counted(report.slots, "slot"));
-    else if (end == "stream" && arguments.until > 0)
+    else if (end == End::kStream && arguments.until > 0)
         say_error("{}: ends after {}, before --until {}", arguments.stream,
                   counted(report.slots, "slot"), arguments.until);
 }
@@ -111,12 +116,11 @@ double saturated_fraction(const DecodeReport& report) {
     return static_cast<double>(report.saturated_samples) / static_cast<double>(report.samples);
 }
 
-nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
-                                  std::string_view end) {
+nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method, End end) {
     return {{"method", method},
             {"seconds", report.seconds},
             {"slots", report.slots},
-            {"ended_by", end},
+            {"ended_by", kEndNames[static_cast<std::size_t>(end)]},
             {"saturated_fraction", saturated_fraction(report)},
             {"voxels", report.voxels},
             {"voxels_per_second", static_cast<double>(report.voxels) / report.seconds},
@@ -124,12 +128,10 @@ nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string&
             {"threads", thread_count()}};
 }
 
-/// What packets of a wrong size may mean.
-std::string schedule_hint(const StreamReport& report) {
-    const bool found = std::ranges::any_of(report.damage, [](const StreamDamage& damage) {
-        return damage.cause.ends_with("not what is due");
-    });
-    return found ? "\n  the chip may have run another schedule: --check-schedule looks for it" : "";
+std::string_view schedule_hint(const StreamReport& report) {
+    return report.undue_packets == 0
+               ? ""
+               : "\n  the chip may have run another schedule: --check-schedule looks for it";
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();
-    const std::string_view end = end_of(report, arguments, follower);
+    const End end = end_of(report, arguments, follower);
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
@@ -177,13 +179,13 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     StreamReport found = reader.report();
     if (found.samples == 0)
         say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));
-    if (end == "stream" && !found.complete && undamaged(found))
+    if (end == End::kStream && !found.complete && undamaged(found))
         say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
                   arguments.stream);
-    if (end == "signal") found.tail_bytes = 0;  // of a packet that was still being written
+    if (end == End::kSignal) found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
-        throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +
-                                               "\n  the output is made of what is left");
+        throw InputError(arguments.stream, fmt::format("{}{}\n  the output is made of what is left",
+                                                       damage_text(found), schedule_hint(found)));
 }
 
 }  // namespace stipple
