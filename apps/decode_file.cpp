@@ -20,7 +20,6 @@
 #include "apps/report/stage_outputs.h"
 #include "apps/report/standard_error.h"
 #include "apps/report/stream_text.h"
-#include "apps/stream_follower.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -29,6 +28,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/frame_writer.h"
+#include "io/growing_file.h"
 
 namespace stipple {
 namespace {
@@ -52,16 +52,17 @@ std::uint64_t peak_memory_bytes() {
 }
 
 StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
-                         StreamFollower& follower) {
+                         GrowingFile& growing) {
     if (!arguments.follow) return StreamReader(arguments.stream, policy);
     for (;;) {
-        const std::filesystem::path file = follower.wait_for_file();
+        const auto file = growing.wait_for_file();
+        if (!file) throw Interrupted{};
         try {
-            return StreamReader(file, policy,
-                                [&](std::uint64_t bytes) { return follower.more(bytes); });
+            return StreamReader(*file, policy,
+                                [&](std::uint64_t bytes) { return growing.more(bytes); });
         } catch (const InputError&) {
             throw_if_stopped();  // the rest of the header may still have come
-            if (std::filesystem::exists(file)) throw;
+            if (std::filesystem::exists(*file)) throw;
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
@@ -92,20 +93,20 @@ enum class End { kStream, kUntil, kSignal, kTimeout };
 constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "signal", "timeout"};
 
 End end_of(const DecodeReport& report, const DecodeArguments& arguments,
-           const StreamFollower& follower) {
+           const GrowingFile& growing) {
     if (report.slots == arguments.until) return End::kUntil;
     if (stop_signal() != 0) return End::kSignal;
-    return follower.timed_out() ? End::kTimeout : End::kStream;
+    return growing.timed_out() ? End::kTimeout : End::kStream;
 }
 
 /// Ends that the user may not expect.
 void warn(End end, const DecodeReport& report, const DecodeArguments& arguments,
-          const StreamFollower& follower) {
+          const GrowingFile& growing) {
     if (end == End::kTimeout)
         say_error(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
             "if it ended here, after {}",
-            arguments.stream, follower.timeout_s(), counted(report.slots, "slot"));
+            arguments.stream, growing.timeout_s(), counted(report.slots, "slot"));
     else if (end == End::kStream && arguments.until > 0)
         say_error("{}: ends after {}, before --until {}", arguments.stream,
                   counted(report.slots, "slot"), arguments.until);
@@ -141,15 +142,15 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     options.fill_gaps = arguments.fill_gaps;
     options.where = arguments.stream;
     if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
-    StreamFollower follower(arguments.stream, arguments.timeout_s);
+    GrowingFile growing(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; });
     JsonFile json(run);
     std::optional<ScheduleCheck> check;
     if (!arguments.check_schedule.empty()) {
-        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, follower);
+        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, growing);
         check = checked_schedule(reader, arguments, run);
     }
     StreamReader reader = open_stream(
-        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, follower);
+        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, growing);
     if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
@@ -163,12 +164,12 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();
-    const End end = end_of(report, arguments, follower);
+    const End end = end_of(report, arguments, growing);
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
     json.write(figures);
-    warn(end, report, arguments, follower);
+    warn(end, report, arguments, growing);
     run.say(fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments.output,
                         counted(report.slots, "frame"), arguments.method, rounded(report.seconds),
                         rounded(1e-6 * figures["voxels_per_second"].get<double>()),
