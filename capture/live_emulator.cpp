@@ -29,12 +29,13 @@ LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecord
 LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
+    CapturedFrame frame;
     camera_.begin();
     try {
         while (goes_on(result_) && !result_.end &&
                !options_.limits.reached(result_.latencies.count(), elapsed_s())) {
-            if (const auto frame = camera_.next(kPollInterval))
-                take(*frame);
+            if (camera_.next(frame, kPollInterval))
+                take(frame);
             else
                 result_.end = camera_.end();
         }

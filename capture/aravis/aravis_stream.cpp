@@ -93,7 +93,7 @@ struct AravisStream::Impl {
     [[nodiscard]] bool is_credible(const FrameLayout& said, std::size_t came) const;
     [[nodiscard]] std::uint64_t mismatches() const;
     [[nodiscard]] std::uint64_t info(const char* name) const;
-    [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer);
+    [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer, FramePool& pool);
     [[nodiscard]] FrameLayout layout_of(ArvBuffer* buffer) const;
     void read_chunks(ArvBuffer* buffer, FrameRecord& record) const;
 };
@@ -237,8 +237,9 @@ void AravisStream::Impl::read_chunks(ArvBuffer* buffer, FrameRecord& record) con
     record.black_level_dn = number("ChunkBlackLevel");
 }
 
-CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
+CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool) {
     CapturedFrame frame;
+    frame.payload = pool.take();
     FrameRecord& record = frame.record;
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
     const BufferMemory& memory = memory_of(buffer);
@@ -329,14 +330,14 @@ void AravisStream::start() {
     impl_->running = true;
 }
 
-Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
+Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {
     const auto us = static_cast<guint64>(std::max<std::int64_t>(timeout.count(), 0)) * 1000;
     ArvBuffer* buffer = arv_stream_timeout_pop_buffer(impl_->stream, us);
     if (buffer == nullptr) {
         if (impl_->lost) return DeviceLost{"the camera no longer answers"};
         return NoFrame{};
     }
-    CapturedFrame frame = impl_->frame_from(buffer);
+    CapturedFrame frame = impl_->frame_from(buffer, pool);
     impl_->hand_back(buffer, frame.record.status == FrameStatus::kComplete);
     if (const std::uint64_t mismatches = impl_->mismatches();
         mismatches != impl_->mismatches_seen) {

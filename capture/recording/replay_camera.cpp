@@ -115,6 +115,7 @@ CameraDescription ReplayCamera::description() const {
 
 /// The next frame of the file, or of the next round.
 bool ReplayCamera::load() {
+    if (coming_.payload.capacity() == 0) coming_.payload = pool().take();
     if (!source_.next(coming_)) {
         if (!settings_.loop) return false;
         source_.rewind();
