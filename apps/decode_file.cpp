@@ -19,7 +19,6 @@
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
 #include "apps/standard_error.h"
-#include "apps/stream_follower.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -28,6 +27,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/frame_writer.h"
+#include "io/growing_file.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {
@@ -52,16 +52,17 @@ std::uint64_t peak_memory_bytes() {
 }
 
 StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
-                         StreamFollower& follower) {
+                         GrowingFile& growing) {
     if (!arguments.follow) return StreamReader(arguments.stream, policy);
     for (;;) {
-        const std::filesystem::path file = follower.wait_for_file();
+        const auto file = growing.wait_for_file();
+        if (!file) throw Interrupted{};
         try {
-            return StreamReader(file, policy,
-                                [&](std::uint64_t bytes) { return follower.more(bytes); });
+            return StreamReader(*file, policy,
+                                [&](std::uint64_t bytes) { return growing.more(bytes); });
         } catch (const InputError&) {
             throw_if_stopped();  // the rest of the header may still have come
-            if (std::filesystem::exists(file)) throw;
+            if (std::filesystem::exists(*file)) throw;
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
@@ -93,20 +94,20 @@ enum class DecodeEnd : std::uint8_t { kStream, kUntil, kTimeout, kSignal };
 constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "timeout", "signal"};
 
 DecodeEnd end_of(const DecodeReport& report, const DecodeArguments& arguments,
-                 const StreamFollower& follower) {
+                 const GrowingFile& growing) {
     if (report.slots == arguments.until) return DecodeEnd::kUntil;
     if (stop_signal() != 0) return DecodeEnd::kSignal;
-    return follower.timed_out() ? DecodeEnd::kTimeout : DecodeEnd::kStream;
+    return growing.timed_out() ? DecodeEnd::kTimeout : DecodeEnd::kStream;
 }
 
 /// Ends that the user may not expect.
 void warn(DecodeEnd end, const DecodeReport& report, const DecodeArguments& arguments,
-          const StreamFollower& follower) {
+          const GrowingFile& growing) {
     if (end == DecodeEnd::kTimeout)
         say_error(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
             "if it ended here, after {}",
-            arguments.stream, follower.timeout_s(), counted(report.slots, "slot"));
+            arguments.stream, growing.timeout_s(), counted(report.slots, "slot"));
     else if (end == DecodeEnd::kStream && arguments.until > 0)
         say_error("{}: ends after {}, before --until {}", arguments.stream,
                   counted(report.slots, "slot"), arguments.until);
@@ -130,12 +131,10 @@ nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string&
             {"threads", thread_count()}};
 }
 
-/// What packets of a wrong size may mean.
-std::string schedule_hint(const StreamReport& report) {
-    const bool found = std::ranges::any_of(report.damage, [](const StreamDamage& damage) {
-        return damage.cause.ends_with("not what is due");
-    });
-    return found ? "\n  the chip may have run another schedule: --check-schedule looks for it" : "";
+std::string_view schedule_hint(const StreamReport& report) {
+    return report.undue_packets == 0
+               ? ""
+               : "\n  the chip may have run another schedule: --check-schedule looks for it";
 }
 
 }  // namespace
@@ -145,15 +144,15 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     options.fill_gaps = arguments.fill_gaps;
     options.where = arguments.stream;
     if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
-    StreamFollower follower(arguments.stream, arguments.timeout_s);
+    GrowingFile growing(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; });
     JsonFile json(run);
     std::optional<ScheduleCheck> check;
     if (arguments.check_schedule != CheckSchedule::kNo) {
-        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, follower);
+        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, growing);
         check = checked_schedule(reader, arguments, run);
     }
     StreamReader reader = open_stream(
-        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, follower);
+        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, growing);
     if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
@@ -167,12 +166,12 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
     writer.finish();
     stages.finish();
-    const DecodeEnd end = end_of(report, arguments, follower);
+    const DecodeEnd end = end_of(report, arguments, growing);
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
     json.write(figures);
-    warn(end, report, arguments, follower);
+    warn(end, report, arguments, growing);
     run.say(fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments.output,
                         counted(report.slots, "frame"), arguments.method, rounded(report.seconds),
                         rounded(1e-6 * figures["voxels_per_second"].get<double>()),
@@ -189,8 +188,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (end == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
-        throw InputError(arguments.stream, damage_text(found) + schedule_hint(found) +
-                                               "\n  the output is made of what is left");
+        throw InputError(arguments.stream, fmt::format("{}{}\n  the output is made of what is left",
+                                                       damage_text(found), schedule_hint(found)));
 }
 
 }  // namespace stipple

@@ -15,6 +15,7 @@
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "capture/frame_rate.h"
+#include "capture/gap_filler.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/fault_list.h"
@@ -36,17 +37,16 @@ struct Gap {
 /// Statistics of the frames.
 struct FrameSummary {
     std::optional<FrameRecord> first;
-    std::uint64_t last_id = 0;
     std::uint64_t incomplete = 0;
     std::uint64_t missing = 0;
     std::uint64_t gaps = 0;
     std::vector<Gap> listed;  ///< the first of them
     FrameRate rate;
+    GapFiller filler;
 
     void add(const FrameRecord& record) {
-        const std::uint64_t lost = first ? missing_after(last_id, record) : record.lost_before;
+        const std::uint64_t lost = filler.next(record).lost;
         if (!first) first = record;
-        last_id = record.id;
         rate.add(record);
         if (record.status != FrameStatus::kComplete) ++incomplete;
         if (lost == 0) return;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "capture/frame_pool.h"
 #include "capture/frame_record.h"
 #include "core/error.h"
 
@@ -75,8 +76,18 @@ class Camera {
     [[nodiscard]] virtual Arrival wait(std::chrono::milliseconds timeout) = 0;
     virtual void stop() noexcept = 0;
 
+    /// Payloads of later frames have the memory of `pool`, which must outlive the camera. By
+    /// default each frame has memory of its own.
+    void use(FramePool& pool) { pool_ = &pool; }
+
   protected:
     Camera() = default;
+    /// Where `wait` takes the payloads of its frames from.
+    [[nodiscard]] FramePool& pool() const { return *pool_; }
+
+  private:
+    FramePool without_memory_;
+    FramePool* pool_ = &without_memory_;
 };
 
 /// Settings of a camera as text, by the name of the GenICam feature or V4L2 control. `Width`,

@@ -101,6 +101,7 @@ struct Gap {
 struct CaptureSession::Impl {
     Opener open;
     SessionOptions options;
+    FramePool pool;                                          ///< before the cameras, which use it
     std::unique_ptr<Camera> camera;                          ///< null during an outage
     std::vector<std::unique_ptr<CameraReopener>> reopeners;  ///< the last one is at work
     CameraDescription description;
@@ -136,12 +137,14 @@ struct CaptureSession::Impl {
     [[nodiscard]] bool begins_anew(const FrameRecord& record) const;
     [[nodiscard]] bool follows_doubtful(const FrameRecord& record) const;
     void drop_doubtful();
+    [[nodiscard]] NoFrame drop(CapturedFrame frame);
     [[nodiscard]] SessionEvent take(CapturedFrame frame);
     [[nodiscard]] SessionEvent deliver(CapturedFrame frame);
 };
 
 void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
     camera = std::move(opened);
+    camera->use(pool);
     description = camera->description();
     layout = camera->layout();
     counted = {};
@@ -262,15 +265,22 @@ bool CaptureSession::Impl::follows_doubtful(const FrameRecord& record) const {
 }
 
 void CaptureSession::Impl::drop_doubtful() {
-    if (doubtful) ++totals.repeated;
-    doubtful.reset();
+    if (!doubtful) return;
+    ++totals.repeated;
+    static_cast<void>(drop(*std::exchange(doubtful, {})));
+}
+
+/// Without a count.
+NoFrame CaptureSession::Impl::drop(CapturedFrame frame) {
+    pool.give_back(std::move(frame.payload));
+    return {};
 }
 
 SessionEvent CaptureSession::Impl::take(CapturedFrame frame) {
     const FrameRecord& record = frame.record;
     const bool is_past = !reconnected && ids.is_past(record.wire_id);
     // A packet that was resent too late: Aravis makes a frame of it again, long after the frame.
-    if (is_past && record.status != FrameStatus::kComplete) return NoFrame{};
+    if (is_past && record.status != FrameStatus::kComplete) return drop(std::move(frame));
     if (is_past && doubtful && follows_doubtful(record)) {
         coming = std::move(frame);
         return deliver(*std::exchange(doubtful, {}));
@@ -294,7 +304,7 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     if (dropped) {
         gap.add(GapCause::kOwnDrop, 1);
         ++totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
-        return NoFrame{};
+        return drop(std::move(frame));
     }
     if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
     record.lost_before = gap.total();
@@ -342,6 +352,18 @@ CaptureSession::~CaptureSession() {
 
 SessionEvent CaptureSession::next(std::chrono::milliseconds timeout) {
     return impl_->camera ? impl_->wait_for_frame(timeout) : impl_->wait_for_camera(timeout);
+}
+
+void CaptureSession::reserve(std::size_t frames) {
+    impl_->pool.reserve(frames + kOwnFrames, impl_->layout.payload_bytes());
+}
+
+void CaptureSession::give_back(std::vector<std::uint8_t>&& payload) {
+    impl_->pool.give_back(std::move(payload));
+}
+
+std::uint64_t CaptureSession::late_allocations() const {
+    return impl_->pool.misses();
 }
 
 void CaptureSession::count_own_drop(const FrameRecord& record) noexcept {

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "capture/camera.h"
 
@@ -73,6 +75,17 @@ class CaptureSession {
 
     /// Waits for the next event, at most `timeout`.
     [[nodiscard]] SessionEvent next(std::chrono::milliseconds timeout);
+
+    /// Frames that the session itself holds at most: the one being received, and two whose order
+    /// is in doubt.
+    static constexpr std::size_t kOwnFrames = 3;
+    /// Makes memory for the payloads of all later frames of this layout, if the caller holds up to
+    /// `frames` of them at a time and gives them back. Called once, before the first `next`.
+    void reserve(std::size_t frames);
+    /// The memory of a payload is free for a later frame. Any thread may call it.
+    void give_back(std::vector<std::uint8_t>&& payload);
+    /// Number of payloads that the memory of `reserve` was not enough for.
+    [[nodiscard]] std::uint64_t late_allocations() const;
 
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.
     void count_own_drop(const FrameRecord& record) noexcept;

@@ -32,6 +32,7 @@ class FrameQueue {
 
     /// Closed and empty.
     [[nodiscard]] bool ended() const;
+    [[nodiscard]] std::size_t max_frames() const { return max_frames_; }
     /// The most frames that ever waited.
     [[nodiscard]] std::size_t peak() const;
 

@@ -72,10 +72,6 @@ struct FrameRecord {
     std::uint64_t payload_hash = 0;  ///< XXH3, 64 bit, of the stored payload
 };
 
-/// Frames missing between the one with `id_before` and this one: as recorded or, if these are more,
-/// by the ids, which tell of frames that a damaged file has lost too.
-[[nodiscard]] std::uint64_t missing_after(std::uint64_t id_before, const FrameRecord& record);
-
 /// A frame in its wire format.
 struct CapturedFrame {
     FrameRecord record;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -24,7 +25,8 @@ struct LiveCameraOptions {
 
 /// A camera with a thread that receives its frames, and a queue of `waiting_frames` frames, fewer
 /// if `max_memory` demands it. A full queue drops frames; the record of the next frame has their
-/// number (kOwnDrop).
+/// number (kOwnDrop). The memory of all frames is allocated at the start, and frames are moved, not
+/// copied, so the resident memory does not depend on how many wait.
 class LiveCamera {
   public:
     /// Opens and starts the camera. Frames before `begin` are discarded, except with `from_start`.
@@ -39,13 +41,17 @@ class LiveCamera {
     [[nodiscard]] const CameraDescription& description() const { return description_; }
 
     void begin();
-    /// The next frame; empty after the timeout, or if the camera is lost for good. Rethrows an
-    /// exception of the receiving thread (no memory).
-    [[nodiscard]] std::optional<CapturedFrame> next(std::chrono::milliseconds timeout);
+    /// Replaces `frame`, whose memory is used again, by the next one. Returns false after the
+    /// timeout, or if the camera is lost for good. Rethrows an exception of the receiving thread
+    /// (no memory).
+    [[nodiscard]] bool next(CapturedFrame& frame, std::chrono::milliseconds timeout);
     /// Why no further frame will come; empty as long as one may come.
     [[nodiscard]] std::optional<DeviceLost> end() const;
     /// Maximum number of frames that waited.
     [[nodiscard]] std::size_t peak() const { return frames_.peak(); }
+    /// Number of frames whose memory was not allocated at the start. 0 as long as the camera keeps
+    /// its layout and the caller holds one frame.
+    [[nodiscard]] std::uint64_t late_allocations() const { return session_.late_allocations(); }
     /// Stops the camera. Returns the counts of its frames.
     SessionTotals stop();
     /// Precondition: it is stopped.

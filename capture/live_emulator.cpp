@@ -29,12 +29,13 @@ LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecord
 LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
+    CapturedFrame frame;
     camera_.begin();
     try {
         while (goes_on(result_) && !result_.end &&
                !options_.limits.reached(result_.latencies.count(), elapsed_s())) {
-            if (const auto frame = camera_.next(kPollInterval))
-                take(*frame);
+            if (camera_.next(frame, kPollInterval))
+                take(frame);
             else
                 result_.end = camera_.end();
         }
@@ -60,13 +61,14 @@ std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
 }
 
 void LiveEmulator::hold_missing(const FrameRecord& record) {
-    // Nothing stands in for what came before the first frame.
-    if (result_.latencies.count() == 0) return;
-    const std::uint64_t incomplete = record.status == FrameStatus::kComplete ? 0 : 1;
-    const std::uint64_t slots = lost_to_hold(record.lost_before) + incomplete;
+    const bool complete = record.status == FrameStatus::kComplete;
+    const GapFiller::Gap gap = filler_.next(record, complete);
+    if (gap.held == 0) return;
+    const std::uint64_t incomplete = complete ? 0 : 1;
+    const std::uint64_t slots = lost_to_hold(gap.lost) + incomplete;
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     result_.held_slots += slots;
-    result_.totals.lost[static_cast<std::size_t>(record.cause)] += record.lost_before;
+    result_.totals.lost[static_cast<std::size_t>(record.cause)] += gap.lost;
     result_.totals.incomplete += incomplete;
 }
 

@@ -10,6 +10,7 @@
 #include "capture/capture_limits.h"
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
+#include "capture/gap_filler.h"
 #include "capture/live_camera.h"
 #include "core/duration_histogram.h"
 #include "readout/stream_recorder.h"
@@ -80,6 +81,7 @@ class LiveEmulator {
     StreamRecorder& recorder_;
     LiveEmulatorOptions options_;
     std::vector<float> light_;
+    GapFiller filler_;
     LiveEmulation result_;
     std::int64_t first_done_ns_ = 0;  ///< when the first slot was in the stream
     std::int64_t last_done_ns_ = 0;

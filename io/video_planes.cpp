@@ -65,7 +65,7 @@ Colours colours_of(const AVPixFmtDescriptor& about) {
 LumaWeights luma_weights(const AVFrame& frame, const std::string& name) {
     constexpr LumaWeights kBt601{0.299F, 0.114F};
     constexpr LumaWeights kBt709{0.2126F, 0.0722F};
-    constexpr int kLeastRowsOfBt709 = 720;
+    constexpr int kMinRowsOfBt709 = 720;
     switch (frame.colorspace) {
         case AVCOL_SPC_BT709:
             return kBt709;
@@ -80,7 +80,7 @@ LumaWeights luma_weights(const AVFrame& frame, const std::string& name) {
             return {0.2627F, 0.0593F};
         case AVCOL_SPC_UNSPECIFIED:
         case AVCOL_SPC_RESERVED:
-            return frame.height >= kLeastRowsOfBt709 ? kBt709 : kBt601;
+            return frame.height >= kMinRowsOfBt709 ? kBt709 : kBt601;
         default:
             throw InputError(name, fmt::format("its colours are coded by the matrix \"{}\"; give "
                                                "BT.601, BT.709 or BT.2020 (not constant luminance)",

@@ -177,13 +177,13 @@ void VideoWriter::Impl::open_encoder(AVRational rate) {
 }
 
 void VideoWriter::Impl::open(const std::filesystem::path& file, double frames_per_second) {
-    constexpr int kMostInRate = 60'000;  // numerator, denominator
+    constexpr int kMaxTermOfRate = 60'000;  // numerator, denominator
     constexpr const char* kCreate = "cannot be created";
     av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* created = nullptr;
     check(avformat_alloc_output_context2(&created, nullptr, nullptr, file.c_str()), kCreate);
     muxer.reset(created);
-    open_encoder(av_d2q(frames_per_second, kMostInRate));
+    open_encoder(av_d2q(frames_per_second, kMaxTermOfRate));
     packet.reset(av_packet_alloc());
     padded = new_frame(shape.planes == 1 ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24, encoder->width,
                        encoder->height);

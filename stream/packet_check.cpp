@@ -11,7 +11,7 @@ namespace stipple {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-using Fault = std::optional<std::string>;
+using Fault = std::optional<PacketFault>;
 
 bool unused_bits_are_zero(std::size_t samples, int bit_depth, Bytes payload) {
     const auto used_bits = samples * static_cast<std::size_t>(bit_depth) % 8;
@@ -33,17 +33,19 @@ Fault payload_fault(const StreamHeader& stream, const PacketHeader& packet, Byte
                     const DueRule& rule) {
     const int bit_depth = stream.calibration.bit_depth;
     if (payload.size() != packed_bytes(packet.samples, bit_depth))
-        return fmt::format("{} samples of {} bits in {} bytes", packet.samples, bit_depth,
-                           payload.size());
+        return PacketFault{fmt::format("{} samples of {} bits in {} bytes", packet.samples,
+                                       bit_depth, payload.size())};
     const bool dropped = (packet.flags & SamplePacket::kDropped) != 0;
     const bool expected = dropped ? packet.samples == 0 : is_due(stream, packet, rule);
-    if (!expected) return fmt::format("{} samples are not what is due", packet.samples);
+    if (!expected)
+        return PacketFault{fmt::format("{} samples are not what is due", packet.samples), true};
     if (!unused_bits_are_zero(packet.samples, bit_depth, payload))
-        return "unused bits are not zero";
+        return PacketFault{"unused bits are not zero"};
     return std::nullopt;
 }
 
-Fault entry_fault(Bytes payload, std::uint64_t slots, std::uint64_t index_offset) {
+std::optional<std::string> entry_fault(Bytes payload, std::uint64_t slots,
+                                       std::uint64_t index_offset) {
     const auto entries = load_index(payload);
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const bool rises = i == 0 || (entries[i].slot > entries[i - 1].slot &&
@@ -60,19 +62,22 @@ Fault entry_fault(Bytes payload, std::uint64_t slots, std::uint64_t index_offset
 Fault sample_fault(const StreamHeader& stream, const PacketHeader& packet, Bytes payload,
                    StreamPosition expected, const DueRule& rule) {
     constexpr unsigned kKnownFlags = SamplePacket::kOverrun | SamplePacket::kDropped;
-    if (packet.reserved != 0) return "reserved bytes are not zero";
-    if ((packet.flags & ~kKnownFlags) != 0) return fmt::format("unknown flags {:#x}", packet.flags);
-    if (packet.slot > kMaxSlot) return fmt::format("slot {} is not below 2^53", packet.slot);
+    if (packet.reserved != 0) return PacketFault{"reserved bytes are not zero"};
+    if ((packet.flags & ~kKnownFlags) != 0)
+        return PacketFault{fmt::format("unknown flags {:#x}", packet.flags)};
+    if (packet.slot > kMaxSlot)
+        return PacketFault{fmt::format("slot {} is not below 2^53", packet.slot)};
     if (packet.rows < 1 || packet.first_row + packet.rows > stream.shape.rows)
-        return fmt::format("rows {}+{} are outside the {} rows of the array", packet.first_row,
-                           packet.rows, stream.shape.rows);
+        return PacketFault{fmt::format("rows {}+{} are outside the {} rows of the array",
+                                       packet.first_row, packet.rows, stream.shape.rows)};
     if (StreamPosition{static_cast<std::int64_t>(packet.slot), packet.first_row} < expected)
-        return fmt::format("slot {} row {} comes twice or too late", packet.slot, packet.first_row);
+        return PacketFault{
+            fmt::format("slot {} row {} comes twice or too late", packet.slot, packet.first_row)};
     return payload_fault(stream, packet, payload, rule);
 }
 
-Fault index_fault(const PacketHeader& packet, Bytes payload, std::uint64_t offset,
-                  StreamPosition expected) {
+std::optional<std::string> index_fault(const PacketHeader& packet, Bytes payload,
+                                       std::uint64_t offset, StreamPosition expected) {
     if (packet.reserved != 0 || packet.flags != 0 || packet.first_row != 0 || packet.rows != 0)
         return "flags, rows or reserved bytes of the index are not zero";
     if (packet.slot > kMaxSlot) return fmt::format("{} slots are not below 2^53", packet.slot);

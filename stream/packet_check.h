@@ -18,15 +18,22 @@ struct DueRule {
     const DueCounts* counts = nullptr;  ///< these counts instead of the schedule
 };
 
+/// What is wrong with a packet whose CRCs are correct.
+struct PacketFault {
+    std::string text;
+    /// Its number of samples is not that of the due pixels: the chip may have run another schedule.
+    bool is_undue = false;
+};
+
 /// The fault of a packet of kind 1 with correct CRCs; nothing if it is good. The packet must not
 /// begin before `expected`.
-[[nodiscard]] std::optional<std::string> sample_fault(const StreamHeader& stream,
+[[nodiscard]] std::optional<PacketFault> sample_fault(const StreamHeader& stream,
                                                       const PacketHeader& packet,
                                                       std::span<const std::uint8_t> payload,
                                                       StreamPosition expected,
                                                       const DueRule& rule = {});
 
-/// The same for an index packet; the offsets of its entries must be less than `offset`.
+/// The same for an index packet. The offsets of its entries must be less than `offset`.
 [[nodiscard]] std::optional<std::string> index_fault(const PacketHeader& packet,
                                                      std::span<const std::uint8_t> payload,
                                                      std::uint64_t offset, StreamPosition expected);

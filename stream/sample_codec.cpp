@@ -35,7 +35,8 @@ DecodedSamples decode_samples(const StreamHeader& stream, const Framing& framing
         return fail("a packet is longer than what there is");
     const auto payload = bytes.subspan(kPacketHeaderBytes, header.payload_bytes);
     if (crc32c(payload) != header.payload_crc) return fail("samples are damaged (CRC mismatch)");
-    if (const auto fault = sample_fault(stream, header, payload, expected)) return fail(*fault);
+    if (const auto fault = sample_fault(stream, header, payload, expected))
+        return fail(fault->text);
     SamplePacket& packet = decoded.packet;
     packet.slot = static_cast<std::int64_t>(header.slot);
     packet.first_row = header.first_row;

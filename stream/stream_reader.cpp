@@ -102,7 +102,7 @@ struct StreamReader::Impl {
     /// At the end of what there is of the file: true if it is to be looked at again.
     bool more_comes();
     void count_bytes_after_end();
-    [[nodiscard]] std::optional<std::string> fault_of(const PacketHeader& found,
+    [[nodiscard]] std::optional<PacketFault> fault_of(const PacketHeader& found,
                                                       Bytes payload) const;
 
     /// Strict: throws. Tolerant: reports it.
@@ -229,30 +229,34 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
     }
     checksum = add_to_checksum(checksum, bytes);
     const auto fault = fault_of(found, payload);
-    if (fault)
-        note(size, *fault);
-    else if (found.kind == PacketKind::kIndex)
+    if (fault) {
+        note(size, fault->text);
+        if (fault->is_undue) ++report.undue_packets;
+    } else if (found.kind == PacketKind::kIndex) {
         take_index(found);
-    else
+    } else {
         deliver(found, payload, packet);
+    }
     window.skip(size);
     return fault || found.kind == PacketKind::kIndex ? Step::kGoOn : Step::kDelivered;
 }
 
-std::optional<std::string> StreamReader::Impl::fault_of(const PacketHeader& found,
+std::optional<PacketFault> StreamReader::Impl::fault_of(const PacketHeader& found,
                                                         Bytes payload) const {
-    if (index_offset) return "a packet after the index";
+    if (index_offset) return PacketFault{"a packet after the index"};
     if (found.kind == PacketKind::kSamples)
         return sample_fault(stream.header, found, payload, order.expected(),
                             {any_schedule, stream.counts ? &*stream.counts : nullptr});
     if (found.kind != PacketKind::kIndex)
-        return fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
+        return PacketFault{
+            fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind))};
     // After damage and gaps no offset is right, but the number of slots is.
     const StreamPosition end{static_cast<std::int64_t>(found.slot), 0};
     const bool intact = report.damage.empty() && end == order.expected();
     const auto before = intact ? window.offset() : std::numeric_limits<std::uint64_t>::max();
-    if (auto fault = index_fault(found, payload, before, order.expected())) return fault;
-    return intact ? wrong_entry(load_index(payload), window, stream.framing) : std::nullopt;
+    auto fault = index_fault(found, payload, before, order.expected());
+    if (!fault && intact) fault = wrong_entry(load_index(payload), window, stream.framing);
+    return fault ? std::optional(PacketFault{*fault}) : std::nullopt;
 }
 
 void StreamReader::Impl::skip_to(StreamPosition position) {

@@ -48,6 +48,9 @@ struct StreamReport {
     /// True once the end marker has been read: the file is whole and will not grow.
     bool complete = false;
     std::uint64_t tail_bytes = 0;  ///< of an incomplete packet at the end of the file
+    /// Left out, as their number of samples is not that of the due pixels: the chip may have run
+    /// another schedule.
+    std::uint64_t undue_packets = 0;
     std::vector<StreamDamage> damage;
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };

@@ -7,14 +7,18 @@ sensor has no noise, so that each slot of the stream can be checked as it is wri
   the sum of its slots: no part of an incomplete frame, and no frame at a wrong place, became light;
 - a slot has the level of the next frame, or the one before (held): these are counted.
 
-usage: long_live.py [STIPPLE [SECONDS [FOLDER [CAMERA-OPTION]...]]]
+usage: long_live.py [--stall S] [--rate HZ] [STIPPLE [SECONDS [FOLDER [CAMERA-OPTION]...]]]
        build/release/stipple, 7200 s, temporary files, --fault-lose 0.001
+
+With --stall the emulating thread of `live` stands still for S seconds, from the 70th second on, every
+10 s: the queue fills, as when the machine is busy. 64 frame periods and more fill it.
 
 Slots that are checked are cut out of the file (holes), so that it takes no more than some 100 MB of
 the disk, though it is 33 MB/s long. Exit code 1 if anything is wrong, or if the memory of `live` or of
 `serve` grows by more than 5 MB after the first minute.
 """
 
+import argparse
 import ctypes
 import glob
 import json
@@ -32,8 +36,9 @@ from realtime import ADDRESS, RATE, SHAPE, Namespace
 LEVELS = numpy.arange(97) * 61 % 97 * 2 + 40  # one after the other differ, by 72 or more
 EXPOSURES = 4  # of schedule random: 1, 2, 4, 8 slots
 PACKET, INDEX, HEADER_BYTES = b"\xc5SPK", 3, 36  # docs/stream_format.md
-MOST_GROWTH_MB, SETTLED_S, EACH_S = 5.0, 60, 10
+MAX_GROWTH_MB, SETTLED_S, EACH_S = 5.0, 60, 10
 FALLOC_FL_KEEP_SIZE, FALLOC_FL_PUNCH_HOLE = 1, 2
+PTRACE_DETACH, PTRACE_SEIZE, PTRACE_INTERRUPT, WALL = 17, 0x4206, 0x4207, 0x40000000
 LIBC = ctypes.CDLL(None, use_errno=True)
 
 
@@ -115,6 +120,19 @@ class Follower:
         self.freed = end
 
 
+def stall(process, seconds):
+    """Stops the first thread of a process, which emulates, and no other (ptrace)."""
+    def trace(request):
+        if LIBC.ptrace(request, process.pid, None, None) != 0:
+            sys.exit(f"the emulating thread cannot be stopped: {os.strerror(ctypes.get_errno())}")
+
+    trace(PTRACE_SEIZE)
+    trace(PTRACE_INTERRUPT)
+    os.waitpid(process.pid, WALL)
+    time.sleep(seconds)
+    trace(PTRACE_DETACH)
+
+
 def resident_mb(process):
     """What the process holds, without pages of files."""
     with open(f"/proc/{process.pid}/status", encoding="ascii") as file:
@@ -143,9 +161,9 @@ class Memory:
                 f"{self.last:.1f} at the end")
 
 
-def start_camera(stipple, footage, options, figures):
+def start_camera(stipple, footage, rate, options, figures):
     camera = subprocess.Popen(
-        [*stipple, "capture", "serve", footage, "--format", "Mono8", "--fps", str(RATE), "--repeat",
+        [*stipple, "capture", "serve", footage, "--format", "Mono8", "--fps", f"{rate:g}", "--repeat",
          "--address", ADDRESS, "--json", figures, *options], stdout=subprocess.PIPE, text=True)
     line = camera.stdout.readline()
     if not line.startswith("READY"):
@@ -153,7 +171,7 @@ def start_camera(stipple, footage, options, figures):
     return camera
 
 
-def run(stipple, camera, seconds, folder):
+def run(stipple, camera, seconds, folder, stall_s):
     """Figures of `live`, what its slots hold, memory of both."""
     figures = os.path.join(folder, "live.json")
     live = subprocess.Popen(
@@ -173,6 +191,8 @@ def run(stipple, camera, seconds, folder):
             follower.follow()
         if passed - looked >= EACH_S:
             looked = passed
+            if stall_s > 0 and passed > SETTLED_S + EACH_S:
+                stall(live, stall_s)
             for each in memory.values():
                 each.look(passed)
             if follower is None:
@@ -190,15 +210,18 @@ def run(stipple, camera, seconds, folder):
 
 
 def main():
-    stipple, seconds, parent, *options = sys.argv[1:] + ["build/release/stipple", "7200",
-                                                         None][len(sys.argv[1:]):]
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--stall", type=float, default=0)
+    parser.add_argument("--rate", type=float, default=RATE)
+    known, given = parser.parse_known_args()
+    stipple, seconds, parent, *options = given + ["build/release/stipple", "7200", None][len(given):]
     options = options or ["--fault-lose", "0.001"]
     with tempfile.TemporaryDirectory(dir=parent) as folder, Namespace() as inside:
         footage, figures = os.path.join(folder, "levels.npy"), os.path.join(folder, "serve.json")
         write_footage(footage)
-        camera = start_camera([*inside, stipple], footage, options, figures)
+        camera = start_camera([*inside, stipple], footage, known.rate, options, figures)
         try:
-            live, slots, memory = run([*inside, stipple], camera, float(seconds), folder)
+            live, slots, memory = run([*inside, stipple], camera, float(seconds), folder, known.stall)
         finally:
             camera.terminate()
             camera.wait()
@@ -218,7 +241,7 @@ def main():
     if not slots.held <= held <= slots.held + slots.either or live["frames"] + held != slots.count:
         slots.fault("slots, frames and held ones do not agree")
     faults = slots.faults + [f"{name} grew by {each.growth():.1f} MB"
-                             for name, each in memory.items() if each.growth() > MOST_GROWTH_MB]
+                             for name, each in memory.items() if each.growth() > MAX_GROWTH_MB]
     print("\n".join(faults[:20]) or "nothing wrong")
     sys.exit(1 if faults else 0)
 

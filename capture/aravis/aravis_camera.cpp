@@ -163,7 +163,7 @@ CameraDescription AravisCamera::description() const {
 }
 
 Arrival AravisCamera::wait(std::chrono::milliseconds timeout) {
-    Arrival arrival = stream_->wait(timeout);
+    Arrival arrival = stream_->wait(timeout, pool());
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) {
         FrameRecord& record = frame->record;
         if (!record.exposure_us) record.exposure_us = exposure_us_;

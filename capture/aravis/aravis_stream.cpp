@@ -22,14 +22,11 @@ constexpr std::size_t kMaxPayloadBytes = std::size_t{1} << 30U;
 /// After so many openings of a stream the traffic of others does not pause.
 constexpr int kMaxOpenings = 10;
 
-/// Memory of a buffer.
-struct Slot {
-    explicit Slot(std::size_t bytes) : memory(bytes) {}
-    std::vector<std::uint8_t> memory;
-};
+using BufferMemory = std::vector<std::uint8_t>;
 
-Slot& slot_of(ArvBuffer* buffer) {
-    return *static_cast<Slot*>(const_cast<void*>(arv_buffer_get_user_data(buffer)));
+/// What `push_buffers` gave it.
+BufferMemory& memory_of(ArvBuffer* buffer) {
+    return *static_cast<BufferMemory*>(const_cast<void*>(arv_buffer_get_user_data(buffer)));
 }
 
 /// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
@@ -100,7 +97,7 @@ struct AravisStream::Impl {
     [[nodiscard]] bool is_credible(const FrameLayout& said, std::size_t came) const;
     [[nodiscard]] std::uint64_t mismatches() const;
     [[nodiscard]] std::uint64_t info(const char* name) const;
-    [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer);
+    [[nodiscard]] CapturedFrame frame_from(ArvBuffer* buffer, FramePool& pool);
     [[nodiscard]] FrameLayout layout_of(ArvBuffer* buffer) const;
     void read_chunks(ArvBuffer* buffer, FrameRecord& record) const;
 };
@@ -178,9 +175,9 @@ bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) 
 void AravisStream::Impl::push_buffers() {
     buffer_bytes = wanted_bytes();
     for (int i = 0; i < buffers.frames; ++i) {
-        auto* slot = new Slot(buffer_bytes);
-        reuse(arv_buffer_new_full(buffer_bytes, slot->memory.data(), slot,
-                                  [](void* old) { delete static_cast<Slot*>(old); }));
+        auto* const memory = new BufferMemory(buffer_bytes);
+        reuse(arv_buffer_new_full(buffer_bytes, memory->data(), memory,
+                                  [](void* old) { delete static_cast<BufferMemory*>(old); }));
     }
 }
 
@@ -196,7 +193,7 @@ void AravisStream::Impl::hand_back(ArvBuffer* buffer, bool complete) {
 }
 
 void AravisStream::Impl::reuse(ArvBuffer* buffer) const {
-    mark_unwritten(slot_of(buffer).memory);
+    mark_unwritten(memory_of(buffer));
     arv_buffer_set_timestamp(buffer, 0);
     arv_buffer_set_system_timestamp(buffer, 0);
     arv_buffer_set_frame_id(buffer, kNoId);
@@ -256,11 +253,12 @@ void AravisStream::Impl::read_chunks(ArvBuffer* buffer, FrameRecord& record) con
     record.black_level_dn = number("ChunkBlackLevel");
 }
 
-CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
+CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool) {
     CapturedFrame frame;
+    frame.payload = pool.take();
     FrameRecord& record = frame.record;
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
-    const Slot& slot = slot_of(buffer);
+    const BufferMemory& memory = memory_of(buffer);
     const bool has_leader = arv_buffer_get_frame_id(buffer) != kNoId;
     // Frames come in order, so the least that it can be is the next one.
     record.wire_id = has_leader ? arv_buffer_get_frame_id(buffer)
@@ -271,20 +269,19 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer) {
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
     stamp_arrival(buffer, record);
-    std::size_t came = slot.memory.size();
+    std::size_t came = memory.size();
     if (status == ARV_BUFFER_STATUS_SUCCESS) {
         arv_buffer_get_data(buffer, &came);
         const FrameLayout now = layout_of(buffer);
-        const bool credible = is_credible(now, std::min(came, slot.memory.size()));
+        const bool credible = is_credible(now, std::min(came, memory.size()));
         if (credible) layout = now;
         if (!credible) record.status = FrameStatus::kDeviceError;
         if (arv_buffer_has_chunks(buffer) != FALSE) read_chunks(buffer, record);
     }
     record.layout = layout;
     const std::size_t wanted = layout.payload_bytes();
-    const std::size_t kept = std::min(wanted, slot.memory.size());
-    frame.payload.assign(slot.memory.begin(),
-                         slot.memory.begin() + static_cast<std::ptrdiff_t>(kept));
+    const std::size_t kept = std::min(wanted, memory.size());
+    frame.payload.assign(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(kept));
     record.bytes_received = kept;
     if (came < wanted && record.status == FrameStatus::kComplete)
         record.status = FrameStatus::kSizeMismatch;
@@ -350,14 +347,14 @@ void AravisStream::start() {
     impl_->running = true;
 }
 
-Arrival AravisStream::wait(std::chrono::milliseconds timeout) {
+Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {
     const auto us = static_cast<guint64>(std::max<std::int64_t>(timeout.count(), 0)) * 1000;
     ArvBuffer* buffer = arv_stream_timeout_pop_buffer(impl_->stream, us);
     if (buffer == nullptr) {
         if (impl_->lost) return DeviceLost{"the camera no longer answers"};
         return NoFrame{};
     }
-    CapturedFrame frame = impl_->frame_from(buffer);
+    CapturedFrame frame = impl_->frame_from(buffer, pool);
     impl_->hand_back(buffer, frame.record.status == FrameStatus::kComplete);
     if (const std::uint64_t mismatches = impl_->mismatches();
         mismatches != impl_->mismatches_seen) {

@@ -29,7 +29,8 @@ class AravisStream {
     [[nodiscard]] std::vector<std::string> warnings() const;
 
     void start();  ///< \throws DeviceError
-    [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout);
+    /// As Camera::wait; the payload is taken from `pool`.
+    [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout, FramePool& pool);
     void stop() noexcept;
 
   private:

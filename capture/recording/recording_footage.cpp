@@ -10,9 +10,6 @@
 namespace stipple {
 namespace {
 
-/// Counted of one gap: sums do not overflow.
-constexpr std::uint64_t kLongestGap = std::uint64_t{1} << 40U;
-
 FrameShape shape_of(const FrameLayout& layout) {
     return {layout.height, layout.width, layout.format->planes};
 }
@@ -36,10 +33,7 @@ RecordingFootage::RecordingFootage(const std::filesystem::path& file,
       has_coming_(advance()),
       light_((has_coming_ ? coming_.record.layout
                           : throw InputError(file.string(), "holds no frame that can be used")),
-             options.black_level_dn) {
-    missing_ = 0;
-    gaps_.clear();
-}
+             options.black_level_dn) {}
 
 bool RecordingFootage::advance() {
     const FrameLayout layout = coming_.record.layout;
@@ -47,12 +41,10 @@ bool RecordingFootage::advance() {
     while (reader_.next(coming_)) {
         const FrameRecord& record = coming_.record;
         const bool usable = !options_.drop_incomplete || record.status == FrameStatus::kComplete;
-        const std::uint64_t lost = last_id_ ? missing_after(*last_id_, record) : record.lost_before;
-        last_id_ = record.id;
         rate_.add(record);
-        const std::uint64_t gap = std::min(lost, kLongestGap) + (usable ? 0 : 1);
+        const std::uint64_t gap = filler_.next(record, usable).held;
         missing_ += gap;
-        to_hold_ += gap;
+        if (options_.hold_missing) to_hold_ += gap;
         if (gap > 0) note(gap);
         if (!usable) continue;
         if (layout.format != nullptr && record.layout != layout)
@@ -60,8 +52,6 @@ bool RecordingFootage::advance() {
                              fmt::format("frame {} has another region or pixel format than those "
                                          "before; footage has one",
                                          record.id));
-        // Nothing stands in for what came before the first frame.
-        if (!options_.hold_missing || layout.format == nullptr) to_hold_ = 0;
         check_proportion(record);
         return true;
     }

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
+#include "capture/gap_filler.h"
 #include "capture/recording/recording_reader.h"
 #include "core/fault_list.h"
 #include "io/footage_reader.h"
@@ -74,7 +74,7 @@ class RecordingFootage {
     std::filesystem::path file_;
     RecordingReader reader_;
     RecordingFootageOptions options_;
-    std::optional<std::uint64_t> last_id_;  ///< of the frame read last, usable or not
+    GapFiller filler_;
     CapturedFrame coming_;
     std::int64_t slots_ = 0;  ///< slots read
     std::vector<RecordingGap> gaps_;

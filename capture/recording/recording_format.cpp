@@ -18,85 +18,145 @@
 namespace stipple {
 namespace {
 
-constexpr std::array kFields{
-    RecordField{"id", "<u8"},
-    RecordField{"wire_id", "<u8"},
-    RecordField{"lost_before", "<u8"},
-    RecordField{"device_ns", "<i8"},
-    RecordField{"host_monotonic_ns", "<i8"},
-    RecordField{"host_realtime_ns", "<i8"},
-    RecordField{"exposure_us", "<f8"},
-    RecordField{"gain", "<f8"},
-    RecordField{"black_level_dn", "<f8"},
-    RecordField{"bytes_received", "<u8"},
-    RecordField{"payload_hash", "<u8"},
-    RecordField{"stride_bytes", "<u8"},
-    RecordField{"epoch", "<u4"},
-    RecordField{"offset_x", "<u4"},
-    RecordField{"offset_y", "<u4"},
-    RecordField{"width", "<u4"},
-    RecordField{"height", "<u4"},
-    RecordField{"holes", "<u4"},
-    RecordField{"cause", "u1"},
-    RecordField{"status", "u1"},
-    RecordField{"stamp_source", "u1"},
-    RecordField{"packing", "u1"},
-    RecordField{"filter", "u1"},
-    RecordField{"planes", "u1"},
-    RecordField{"bits_per_pixel", "u1"},
-    RecordField{"significant_bits", "u1"},
-    RecordField{"format", "S32"},
+/// A pixel format in a frame record.
+struct StoredFormat {
+    std::uint8_t packing = 0;
+    std::uint8_t filter = 0;
+    std::uint8_t planes = 0;
+    std::uint8_t bits_per_pixel = 0;
+    std::uint8_t significant_bits = 0;
+    std::array<char, 32> name{};  ///< padded with zeros
+
+    friend bool operator==(const StoredFormat&, const StoredFormat&) = default;
 };
 
-constexpr std::size_t kPayloadHashOffset = 80;
-constexpr std::size_t kFormatNameBytes = 32;
-constexpr std::uint32_t kMaxOffset = std::numeric_limits<std::int32_t>::max();
-
-void append_format(std::vector<std::uint8_t>& bytes, const PixelFormat& format) {
-    assert(format.name.size() < kFormatNameBytes);
-    bytes.push_back(static_cast<std::uint8_t>(format.packing));
-    bytes.push_back(static_cast<std::uint8_t>(format.filter));
-    bytes.push_back(static_cast<std::uint8_t>(format.planes));
-    bytes.push_back(static_cast<std::uint8_t>(format.bits_per_pixel));
-    bytes.push_back(static_cast<std::uint8_t>(format.significant_bits));
-    const std::size_t start = bytes.size();
-    bytes.resize(start + kFormatNameBytes);
-    std::copy(format.name.begin(), format.name.end(), bytes.data() + start);
-}
-
-/// The format that the 37 bytes from the packing on describe; nullptr if it is none of ours.
-const PixelFormat* decode_format(const std::uint8_t* bytes) {
-    const auto* const name = reinterpret_cast<const char*>(bytes + 5);
-    const PixelFormat* format = pixel_format_named({name, strnlen(name, kFormatNameBytes)});
-    if (format == nullptr) return nullptr;
-    std::vector<std::uint8_t> expected;
-    append_format(expected, *format);
-    return std::equal(expected.begin(), expected.end(), bytes) ? format : nullptr;
-}
-
-double or_nan(const std::optional<double>& value) {
-    return value.value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
-std::optional<double> unless_nan(double value) {
-    if (std::isnan(value)) return std::nullopt;
-    return value;
-}
-
-std::uint64_t bits_of(std::int64_t value) {
-    return static_cast<std::uint64_t>(value);
-}
-
-/// Takes the numbers of a frame record, whose length has been checked, one after the other.
-struct Fields {
-    const std::uint8_t* at;
-    template <Stored T>
-    T take() {
-        at += sizeof(T);
-        return load<T>(at - sizeof(T));
-    }
-    std::int64_t take_signed() { return static_cast<std::int64_t>(take<std::uint64_t>()); }
+/// The content of a frame record. `format` stands for the pointer in the layout.
+struct StoredFrame {
+    FrameRecord record;
+    std::uint32_t holes = 0;
+    StoredFormat format;
 };
+
+/// The layout of the frame record: calls visit(name, type, value) for each field, in the order of
+/// the bytes. There are no gaps between fields. Writer, reader and `frame_record_fields` use it.
+template <typename Frame, typename Visit>
+constexpr void visit_fields(Frame& frame, Visit visit) {
+    auto& [record, holes, format] = frame;
+    visit("id", "<u8", record.id);
+    visit("wire_id", "<u8", record.wire_id);
+    visit("lost_before", "<u8", record.lost_before);
+    visit("device_ns", "<i8", record.device_ns);
+    visit("host_monotonic_ns", "<i8", record.host_monotonic_ns);
+    visit("host_realtime_ns", "<i8", record.host_realtime_ns);
+    visit("exposure_us", "<f8", record.exposure_us);
+    visit("gain", "<f8", record.gain);
+    visit("black_level_dn", "<f8", record.black_level_dn);
+    visit("bytes_received", "<u8", record.bytes_received);
+    visit("payload_hash", "<u8", record.payload_hash);
+    visit("stride_bytes", "<u8", record.layout.stride_bytes);
+    visit("epoch", "<u4", record.epoch);
+    visit("offset_x", "<u4", record.layout.offset_x);
+    visit("offset_y", "<u4", record.layout.offset_y);
+    visit("width", "<u4", record.layout.width);
+    visit("height", "<u4", record.layout.height);
+    visit("holes", "<u4", holes);
+    visit("cause", "u1", record.cause);
+    visit("status", "u1", record.status);
+    visit("stamp_source", "u1", record.stamp_source);
+    visit("packing", "u1", format.packing);
+    visit("filter", "u1", format.filter);
+    visit("planes", "u1", format.planes);
+    visit("bits_per_pixel", "u1", format.bits_per_pixel);
+    visit("significant_bits", "u1", format.significant_bits);
+    visit("format", "S32", format.name);
+}
+
+/// A value is stored as it lies in memory (little-endian), an optional number as NaN if it is
+/// empty.
+template <typename T>
+constexpr std::size_t kStoredBytes = sizeof(T);
+template <>
+constexpr std::size_t kStoredBytes<std::optional<double>> = sizeof(double);
+
+template <typename T>
+void store_value(std::uint8_t* bytes, const T& value) {
+    std::memcpy(bytes, &value, sizeof(T));
+}
+void store_value(std::uint8_t* bytes, const std::optional<double>& value) {
+    store(bytes, value.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+template <typename T>
+void load_value(const std::uint8_t* bytes, T& value) {
+    std::memcpy(&value, bytes, sizeof(T));
+}
+void load_value(const std::uint8_t* bytes, std::optional<double>& value) {
+    const auto number = load<double>(bytes);
+    value = std::isnan(number) ? std::nullopt : std::optional(number);
+}
+
+constexpr StoredFrame kNoFrame{};
+
+constexpr std::size_t kFieldCount = [] {
+    std::size_t count = 0;
+    visit_fields(kNoFrame, [&](auto, auto, const auto&) { ++count; });
+    return count;
+}();
+
+constexpr auto kFields = [] {
+    std::array<RecordField, kFieldCount> fields{};
+    std::size_t count = 0;
+    std::size_t offset = 0;
+    visit_fields(kNoFrame, [&]<typename T>(auto name, auto type, const T&) {
+        fields[count++] = {name, type, offset};
+        offset += kStoredBytes<T>;
+    });
+    return fields;
+}();
+static_assert(kFields.back().offset + sizeof(StoredFormat::name) == kFrameRecordBytes);
+
+/// Of a type in the notation of NumPy.
+constexpr std::size_t width_of(std::string_view type) {
+    std::size_t width = 0;
+    for (const char c : type)
+        if (c >= '0' && c <= '9') width = 10 * width + static_cast<std::size_t>(c - '0');
+    return width;
+}
+static_assert([] {
+    bool agree = true;
+    visit_fields(kNoFrame, [&]<typename T>(auto, auto type, const T&) {
+        agree = agree && width_of(type) == kStoredBytes<T>;
+    });
+    return agree;
+}());
+
+constexpr std::size_t offset_of(std::string_view field) {
+    return std::ranges::find(kFields, field, &RecordField::name)->offset;
+}
+
+StoredFormat stored(const PixelFormat& format) {
+    StoredFormat result{.packing = static_cast<std::uint8_t>(format.packing),
+                        .filter = static_cast<std::uint8_t>(format.filter),
+                        .planes = static_cast<std::uint8_t>(format.planes),
+                        .bits_per_pixel = static_cast<std::uint8_t>(format.bits_per_pixel),
+                        .significant_bits = static_cast<std::uint8_t>(format.significant_bits)};
+    assert(format.name.size() < result.name.size());
+    std::ranges::copy(format.name, result.name.begin());
+    return result;
+}
+
+/// nullptr if it is none of ours.
+const PixelFormat* format_of(const StoredFormat& format) {
+    const std::size_t length = strnlen(format.name.data(), format.name.size());
+    const PixelFormat* named = pixel_format_named({format.name.data(), length});
+    return named != nullptr && stored(*named) == format ? named : nullptr;
+}
+
+bool has_known_codes(const FrameRecord& record) {
+    return static_cast<std::size_t>(record.cause) < kGapCauseNames.size() &&
+           record.status <= FrameStatus::kDeviceError &&
+           record.stamp_source <= StampSource::kUnnamedClock;
+}
 
 std::string layout_problem(const FrameLayout& layout) {
     if (layout.format == nullptr) return "a pixel format that is not known";
@@ -111,13 +171,13 @@ std::string layout_problem(const FrameLayout& layout) {
     return {};
 }
 
-std::string take_holes(Fields fields, std::uint32_t count, std::uint64_t payload_bytes,
+std::string take_holes(std::span<const std::uint8_t> bytes, std::uint64_t payload_bytes,
                        CapturedFrame& frame) {
     frame.holes.clear();
     std::uint64_t previous_end = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const auto begin = fields.take<std::uint64_t>();
-        const auto end = fields.take<std::uint64_t>();
+    for (; !bytes.empty(); bytes = bytes.subspan(kHoleBytes)) {
+        const auto begin = load<std::uint64_t>(&bytes[0]);
+        const auto end = load<std::uint64_t>(&bytes[8]);
         if (begin < previous_end || end <= begin || end > payload_bytes)
             return "holes that are out of order or outside the payload";
         frame.holes.emplace_back(begin, end);
@@ -161,30 +221,17 @@ std::optional<BlockHeader> decode_block_header(std::span<const std::uint8_t> byt
 }
 
 std::vector<std::uint8_t> encode_frame_record(const CapturedFrame& frame) {
-    const FrameRecord& record = frame.record;
-    const FrameLayout& layout = record.layout;
-    assert(layout.format != nullptr);
+    assert(frame.record.layout.format != nullptr);
     const std::size_t holes = std::min(frame.holes.size(), kMaxHoles);
-    std::vector<std::uint8_t> bytes;
+    const StoredFrame content{frame.record, static_cast<std::uint32_t>(holes),
+                              stored(*frame.record.layout.format)};
+    std::vector<std::uint8_t> bytes(kFrameRecordBytes);
     bytes.reserve(kFrameRecordBytes + holes * kHoleBytes);
-    for (const std::uint64_t value :
-         {record.id, record.wire_id, record.lost_before, bits_of(record.device_ns),
-          bits_of(record.host_monotonic_ns), bits_of(record.host_realtime_ns)})
-        append(bytes, value);
-    for (const auto& value : {record.exposure_us, record.gain, record.black_level_dn})
-        append(bytes, or_nan(value));
-    append(bytes, std::uint64_t{record.bytes_received});
-    append(bytes, record.payload_hash);
-    append(bytes, std::uint64_t{layout.stride_bytes});
-    append(bytes, record.epoch);
-    for (const int value : {layout.offset_x, layout.offset_y, layout.width, layout.height})
-        append(bytes, static_cast<std::uint32_t>(value));
-    append(bytes, static_cast<std::uint32_t>(holes));
-    bytes.push_back(static_cast<std::uint8_t>(record.cause));
-    bytes.push_back(static_cast<std::uint8_t>(record.status));
-    bytes.push_back(static_cast<std::uint8_t>(record.stamp_source));
-    append_format(bytes, *layout.format);
-    assert(bytes.size() == kFrameRecordBytes);
+    std::uint8_t* at = bytes.data();
+    visit_fields(content, [&]<typename T>(auto, auto, const T& value) {
+        store_value(at, value);
+        at += kStoredBytes<T>;
+    });
     for (std::size_t i = 0; i < holes; ++i) {
         append(bytes, std::uint64_t{frame.holes[i].first});
         append(bytes, std::uint64_t{(i + 1 < holes ? frame.holes[i] : frame.holes.back()).second});
@@ -193,47 +240,33 @@ std::vector<std::uint8_t> encode_frame_record(const CapturedFrame& frame) {
 }
 
 void store_payload_hash(std::span<std::uint8_t> record, std::uint64_t hash) {
-    store(&record[kPayloadHashOffset], hash);
+    store(&record[offset_of("payload_hash")], hash);
 }
 
 std::string decode_frame_record(std::span<const std::uint8_t> bytes, std::uint64_t payload_bytes,
                                 CapturedFrame& frame) {
     if (bytes.size() < kFrameRecordBytes) return "a frame record that is too short";
-    Fields fields{bytes.data()};
-    FrameRecord& record = frame.record;
-    record.id = fields.take<std::uint64_t>();
-    record.wire_id = fields.take<std::uint64_t>();
-    record.lost_before = fields.take<std::uint64_t>();
-    record.device_ns = fields.take_signed();
-    record.host_monotonic_ns = fields.take_signed();
-    record.host_realtime_ns = fields.take_signed();
-    record.exposure_us = unless_nan(fields.take<double>());
-    record.gain = unless_nan(fields.take<double>());
-    record.black_level_dn = unless_nan(fields.take<double>());
-    record.bytes_received = fields.take<std::uint64_t>();
-    record.payload_hash = fields.take<std::uint64_t>();
-    record.layout.stride_bytes = fields.take<std::uint64_t>();
-    record.epoch = fields.take<std::uint32_t>();
-    for (int* const value : {&record.layout.offset_x, &record.layout.offset_y, &record.layout.width,
-                             &record.layout.height})
-        *value = static_cast<int>(std::min(fields.take<std::uint32_t>(), kMaxOffset));
-    const auto holes = fields.take<std::uint32_t>();
-    const auto cause = fields.take<std::uint8_t>();
-    const auto status = fields.take<std::uint8_t>();
-    const auto stamp_source = fields.take<std::uint8_t>();
-    if (cause >= kGapCauseNames.size() || status > 3 || stamp_source > 4)
-        return "a cause, status or clock that is not known";
-    record.cause = static_cast<GapCause>(cause);
-    record.status = static_cast<FrameStatus>(status);
-    record.stamp_source = static_cast<StampSource>(stamp_source);
-    record.layout.format = decode_format(fields.at);
-    if (std::string problem = layout_problem(record.layout); !problem.empty()) return problem;
-    if (record.status == FrameStatus::kComplete && payload_bytes < record.layout.payload_bytes())
+    StoredFrame content;
+    const std::uint8_t* at = bytes.data();
+    visit_fields(content, [&]<typename T>(auto, auto, T& value) {
+        load_value(at, value);
+        at += kStoredBytes<T>;
+    });
+    FrameRecord& record = content.record;
+    FrameLayout& layout = record.layout;
+    for (int* const offset : {&layout.offset_x, &layout.offset_y})
+        if (*offset < 0) *offset = std::numeric_limits<int>::max();  // 2^31 and more in the file
+    if (!has_known_codes(record)) return "a cause, status or clock that is not known";
+    layout.format = format_of(content.format);
+    if (std::string problem = layout_problem(layout); !problem.empty()) return problem;
+    if (record.status == FrameStatus::kComplete && payload_bytes < layout.payload_bytes())
         return fmt::format("{} of the {} bytes of its layout, but is said to be complete",
-                           payload_bytes, record.layout.payload_bytes());
-    if (holes > kMaxHoles || bytes.size() != kFrameRecordBytes + holes * kHoleBytes)
+                           payload_bytes, layout.payload_bytes());
+    const auto holes = bytes.subspan(kFrameRecordBytes);
+    if (content.holes > kMaxHoles || holes.size() != content.holes * kHoleBytes)
         return "a number of holes that does not fit its length";
-    return take_holes({bytes.data() + kFrameRecordBytes}, holes, payload_bytes, frame);
+    frame.record = record;
+    return take_holes(holes, payload_bytes, frame);
 }
 
 std::map<std::string, std::string> host_facts() {

@@ -67,10 +67,11 @@ void store_payload_hash(std::span<std::uint8_t> record, std::uint64_t hash);
 /// XXH3, 64 bit, seed 0: the payload hash of a frame.
 [[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
 
-/// A field of the frame record in the notation of NumPy: name and type string.
+/// A field of the frame record: name and type string as NumPy has them.
 struct RecordField {
     std::string_view name;
     std::string_view type;
+    std::size_t offset = 0;  ///< of its first byte
 };
 /// All fields in order. They fill kFrameRecordBytes without gaps.
 [[nodiscard]] std::span<const RecordField> frame_record_fields();

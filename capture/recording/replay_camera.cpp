@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "capture/gap_filler.h"
 #include "capture/host_clock.h"
 #include "capture/recording/replay_source.h"
 #include "capture/setting_value.h"
@@ -20,7 +21,7 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint64_t kPeriod = std::uint64_t{1} << 32U;
 constexpr nanoseconds kFootagePeriod{5'000'000};
-constexpr nanoseconds kLongestPause{10'000'000'000};
+constexpr nanoseconds kMaxPause{10'000'000'000};
 
 struct ReplaySettings {
     std::string format;
@@ -91,9 +92,9 @@ class ReplayCamera final : public Camera {
     TransportCounts counts_;
     CapturedFrame coming_;
     bool has_coming_ = false;
-    bool first_ = true;          ///< of the file: no stamp before it
-    std::int64_t stamp_ = 0;     ///< of the frame before, as the file has it
-    std::uint64_t file_id_ = 0;  ///< of the frame before, as the file has it
+    GapFiller filler_;
+    bool first_ = true;       ///< of the file: no stamp before it
+    std::int64_t stamp_ = 0;  ///< of the frame before, as the file has it
     std::uint64_t next_id_ = 0;
     nanoseconds period_ = kFootagePeriod;
     Clock::time_point due_;
@@ -114,9 +115,11 @@ CameraDescription ReplayCamera::description() const {
 
 /// The next frame of the file, or of the next round.
 bool ReplayCamera::load() {
+    if (coming_.payload.capacity() == 0) coming_.payload = pool().take();
     if (!source_.next(coming_)) {
         if (!settings_.loop) return false;
         source_.rewind();
+        filler_ = {};
         first_ = true;
         if (!source_.next(coming_)) return false;
     }
@@ -129,9 +132,7 @@ bool ReplayCamera::load() {
 /// Ids go on from round to round; ids that the recording lacks stay lacking.
 void ReplayCamera::number_frame() {
     FrameRecord& record = coming_.record;
-    const std::uint64_t gap = first_ ? 0 : std::min(missing_after(file_id_, record), kPeriod / 4);
-    file_id_ = record.id;
-    next_id_ += gap;
+    next_id_ += std::min(filler_.next(record).held, kPeriod / 4);
     record.id = next_id_++;
     record.wire_id = record.id % kPeriod;
     record.lost_before = 0;
@@ -146,7 +147,7 @@ void ReplayCamera::schedule_frame() {
     if (!settings_.rate_hz) {
         const auto pause = nanoseconds(static_cast<std::int64_t>(
             static_cast<std::uint64_t>(stamp) - static_cast<std::uint64_t>(stamp_)));
-        if (!first_ && pause > nanoseconds{0} && pause <= kLongestPause) period_ = pause;
+        if (!first_ && pause > nanoseconds{0} && pause <= kMaxPause) period_ = pause;
     }
     if (!source_.is_recording()) {
         record.stamp_source = StampSource::kDeviceClock;

@@ -90,7 +90,8 @@ const SessionRecord* ReplaySource::session() const {
 bool ReplaySource::next(CapturedFrame& frame) {
     if (recording_) return recording_->next(frame);
     if (!footage_->read(light_)) return false;
-    frame = {};
+    frame.record = {};
+    frame.holes.clear();
     frame.record.id = next_id_++;
     frame.record.layout = layout_;
     quantise(frame.payload);

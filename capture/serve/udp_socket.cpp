@@ -13,7 +13,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::size_t kLargestDatagram = 65536;
+constexpr std::size_t kMaxDatagramBytes = 65536;
 constexpr std::size_t kBatch = 64;
 
 sockaddr_in to_system(UdpEndpoint endpoint) {
@@ -76,7 +76,7 @@ UdpEndpoint UdpSocket::local() const {
 
 std::optional<Datagram> UdpSocket::receive() const {
     Datagram datagram;
-    datagram.bytes.resize(kLargestDatagram);
+    datagram.bytes.resize(kMaxDatagramBytes);
     sockaddr_in from{};
     iovec part{datagram.bytes.data(), datagram.bytes.size()};
     alignas(cmsghdr) std::array<char, 256> control{};

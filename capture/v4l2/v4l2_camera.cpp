@@ -171,6 +171,7 @@ void V4l2Camera::count(const V4l2Buffers::Filled& filled, bool waited) {
 
 CapturedFrame V4l2Camera::frame_of(const V4l2Buffers::Filled& filled) const {
     CapturedFrame frame;
+    frame.payload = pool().take();
     FrameRecord& record = frame.record;
     record.host_monotonic_ns = monotonic_ns();
     record.host_realtime_ns = realtime_ns();

@@ -52,8 +52,8 @@ std::map<std::int64_t, std::string> menu_of(const V4l2Device& device,
     std::map<std::int64_t, std::string> menu;
     const bool numbers = about.type == V4L2_CTRL_TYPE_INTEGER_MENU;
     if (!numbers && about.type != V4L2_CTRL_TYPE_MENU) return menu;
-    constexpr std::int64_t kMost = 1000;
-    const std::int64_t last = std::min<std::int64_t>(about.maximum, about.minimum + kMost);
+    constexpr std::int64_t kMaxChoices = 1000;
+    const std::int64_t last = std::min<std::int64_t>(about.maximum, about.minimum + kMaxChoices);
     for (std::int64_t i = about.minimum; i <= last; ++i) {
         v4l2_querymenu item{};
         item.id = about.id;

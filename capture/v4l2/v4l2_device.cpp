@@ -102,9 +102,9 @@ void V4l2Device::demand(unsigned long request, void* argument, std::string_view 
 }
 
 V4l2Device::Readiness V4l2Device::wait_readable(std::chrono::milliseconds timeout) const noexcept {
-    constexpr std::int64_t kLongest = std::numeric_limits<int>::max();
+    constexpr std::int64_t kMaxMs = std::numeric_limits<int>::max();
     pollfd waiting{descriptor_, POLLIN, 0};
-    const auto at_most = std::clamp<std::int64_t>(timeout.count(), 0, kLongest);
+    const auto at_most = std::clamp<std::int64_t>(timeout.count(), 0, kMaxMs);
     const int ready = ::poll(&waiting, 1, static_cast<int>(at_most));
     if (ready <= 0) return Readiness::kTimeout;  // or a signal: the caller looks at its clock
     constexpr unsigned kBroken = POLLERR | POLLHUP | POLLNVAL;

@@ -285,9 +285,9 @@ bool is_v4l2_format_setting(const std::string& name) {
 }
 
 std::vector<std::string> v4l2_format_names(const V4l2Device& device) {
-    constexpr std::uint32_t kMost = 1000;  // a driver that never ends its list
+    constexpr std::uint32_t kMaxFormats = 1000;  // a driver that never ends its list
     std::vector<std::string> names;
-    for (std::uint32_t i = 0; i < kMost; ++i) {
+    for (std::uint32_t i = 0; i < kMaxFormats; ++i) {
         v4l2_fmtdesc entry{};
         entry.index = i;
         entry.type = device.buffer_type();

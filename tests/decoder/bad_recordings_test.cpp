@@ -143,7 +143,7 @@ TEST_P(BadRecordingsTest, AScheduleThatTheSamplesContradictCostsSlots) {
         decoded(recorded, random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 2));
     expect_light(outcome, recorded, 0);
     EXPECT_GE(outcome.report.missing_slots, 15);
-    EXPECT_NE(outcome.report.damage.at(0).cause.find("not what is due"), std::string::npos);
+    EXPECT_GE(outcome.report.undue_packets, 15U);
 }
 
 TEST_P(BadRecordingsTest, AWrongScheduleThatFitsTheCountsIsDecoded) {

@@ -54,10 +54,10 @@ TEST(NpyHeaderTest, ReadsVersion2AndAnyOrderSpacingAndQuotes) {
 }
 
 TEST(NpyHeaderTest, FormatsWhatItReadsAtAFixedLength) {
-    constexpr int kMost = std::numeric_limits<int>::max();
+    constexpr int kMax = std::numeric_limits<int>::max();
     for (const FrameShape shape :
          {FrameShape{1, 1, 1}, FrameShape{480, 640, 3}, FrameShape{4096, 65535, 1}})
-        for (const int slots : {1, 7, kMost}) {
+        for (const int slots : {1, 7, kMax}) {
             const std::string header = format_npy_header(slots, shape);
             ASSERT_EQ(header.size(), 128U);
             const auto parsed =

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"
 #include "tests/capture/fake_frame.h"
+#include "tests/capture/pooled_frames.h"
 #include "tests/support/private_network.h"
 
 namespace stipple {
@@ -78,6 +79,11 @@ TEST_F(AravisCameraTest, FramesInEveryFormatAreBitExact) {
             ASSERT_EQ(frame.payload, sent(frame.record)) << "frame " << i;
         }
     }
+}
+
+TEST_F(AravisCameraTest, FramesHaveTheMemoryOfThePool) {
+    const FakeCameraProcess camera;
+    expect_frames_from_pool(*opener()(), 20);
 }
 
 TEST_F(AravisCameraTest, StampsAreTheCamerasOwnAndTheHostsBothClocks) {

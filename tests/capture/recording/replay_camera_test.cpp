@@ -5,6 +5,7 @@
 #include "capture/host_clock.h"
 #include "core/error.h"
 #include "io/npy_writer.h"
+#include "tests/capture/pooled_frames.h"
 #include "tests/capture/recording/recordings.h"
 #include "tests/support/temporary_folder.h"
 
@@ -53,6 +54,19 @@ TEST(ReplayCameraTest, ARecordingComesAsItWasRecorded) {
         // 200 frames/s by its stamps, from when the first is waited for: never earlier.
         EXPECT_GE(played[i].record.host_monotonic_ns - begin_ns,
                   static_cast<std::int64_t>(i) * 5'000'000);
+    }
+}
+
+TEST(ReplayCameraTest, FramesHaveTheMemoryOfThePool) {
+    const TemporaryFolder folder;
+    write_recording(folder / "a.strec", test_frames(3));
+    NpyWriter writer(folder / "a.npy", "a.npy", {4, 6, 1});
+    for (int slot = 0; slot < 3; ++slot) writer.write(std::vector<float>(24, 0.5F));
+    writer.finish();
+    for (const char* const name : {"a.strec", "a.npy"}) {
+        const CameraSettings settings{{"AcquisitionFrameRate", "0"}, {"Loop", "1"}};
+        const auto camera = open_replay_camera(address(folder / name), settings, {});
+        expect_frames_from_pool(*camera, 8);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "tests/capture/emulated_camera.h"
+#include "tests/capture/pooled_frames.h"
 
 namespace stipple {
 namespace {
@@ -61,6 +62,12 @@ TEST_P(V4l2CameraOfEachApi, GivesTheBytesOfEveryFrame) {
         ASSERT_TRUE(frame.holes.empty());
     }
     EXPECT_EQ(camera->counts().underruns, 0);
+}
+
+TEST_P(V4l2CameraOfEachApi, FramesHaveTheMemoryOfThePool) {
+    EmulatedV4l2 emulated(driver());
+    for (int i = 0; i < 20; ++i) emulated.push(ramp_frame(16 * 8, i));
+    expect_frames_from_pool(*open(), 20);
 }
 
 TEST_P(V4l2CameraOfEachApi, LeavesNoStaleBytesInAShortFrame) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "capture/frame_record.h"
+
+namespace stipple {
+
+/// Frames of a camera in slots of equal length. Each used frame has one slot. So that each slot
+/// keeps its time, a missing frame and a frame that is not used (incomplete) have one too: there
+/// the used frame before it is held. Before the first used frame nothing can be held, so there
+/// are no such slots.
+class GapFiller {
+  public:
+    /// What lies between a frame and the one before it.
+    struct Gap {
+        std::uint64_t lost = 0;  ///< missing frames
+        /// Held slots: `lost`, at most 2^40 so that sums do not overflow, and 1 for the frame
+        /// itself if it is not used.
+        std::uint64_t held = 0;
+    };
+
+    /// The gap that ends with the next frame. As many frames are missing as its record says, or
+    /// as the ids say if these are more: they include frames that a damaged file has lost.
+    [[nodiscard]] Gap next(const FrameRecord& record, bool is_used = true);
+
+  private:
+    std::optional<std::uint64_t> last_id_;  ///< of the frame before, used or not
+    bool has_used_ = false;                 ///< a frame
+};
+
+}  // namespace stipple
