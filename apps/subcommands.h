@@ -33,7 +33,7 @@ void add_synth(Command& app, Action& action);     ///< a scene rendered to foota
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference
-void add_info(Command& app, Action& action);      ///< what a sample stream says and holds
+void add_info(Command& app, Action& action);      ///< what a file of any kind says and holds
 void add_recover(Command& app, Action& action);   ///< what killed runs have left
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
