@@ -47,7 +47,9 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
 
 // Those of `stipple capture`.
 
-void add_capture_list(Command& capture, Action& action);    ///< cameras that can be opened
+void add_capture_list(Command& capture, Action& action);  ///< cameras that can be opened
+/// values and ranges of a camera's features
+void add_capture_features(Command& capture, Action& action);
 void add_capture_doctor(Command& capture, Action& action);  ///< what would cost frames, its fix
 void add_capture_live(Command& capture, Action& action);    ///< a camera to a sample stream
 void add_capture_record(Command& capture, Action& action);  ///< a camera to a recording
