@@ -4,8 +4,9 @@ namespace stipple {
 
 void add_capture(Command& app, Action& action) {
     Command command = app.add_command("capture", "Cameras: find, check, record, replay, serve");
-    for (const auto add : {add_capture_list, add_capture_doctor, add_capture_record,
-                           add_capture_live, add_capture_replay, add_capture_serve})
+    for (const auto add :
+         {add_capture_list, add_capture_features, add_capture_doctor, add_capture_record,
+          add_capture_live, add_capture_replay, add_capture_serve})
         add(command, action);
     command.footer(
         "Examples:\n"

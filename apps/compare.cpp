@@ -3,20 +3,27 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
+#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
+#include "apps/report/difference_output.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/quality_json.h"
+#include "apps/report/quality_metrics.h"
+#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"
+#include "io/footage_files.h"
+#include "io/pending_output.h"
 #include "metrics/video_quality.h"
 
 namespace stipple {
@@ -27,7 +34,12 @@ struct CompareOptions {
     std::string reference;
     FootageOptions footage;  ///< of the reference
     QualityOptions quality;
-    std::int64_t until = 0;  ///< frames of each; 0: all, of which both must have as many
+    std::int64_t until = 0;            ///< frames of each; 0: as many as both have
+    std::vector<std::string> metrics;  ///< names; empty: the default ones
+    double pixels_per_degree = 60;     ///< of metric pu21-csf-psnr
+    std::string csv;                   ///< this and the following: empty: none
+    std::string chart;
+    std::string difference;
 };
 
 [[noreturn]] void fail_shape(const CompareOptions& options, FrameShape result, FrameShape wanted) {
@@ -41,29 +53,43 @@ struct CompareOptions {
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
-/// \throws InputError: the result or the reference ends after `frames`.
-[[noreturn]] void fail_length(const CompareOptions& options, bool is_result, std::int64_t frames) {
-    const auto& [shorter, longer] = is_result ? std::tie(options.result, options.reference)
-                                              : std::tie(options.reference, options.result);
-    const std::string too_early =
-        options.until > 0 ? fmt::format("--until {}", options.until)
-                          : fmt::format("\"{}\" does; --until {} compares as many", longer, frames);
-    throw InputError(shorter,
-                     fmt::format("ends after {}, before {}", counted(frames, "frame"), too_early));
+/// \throws InputError for a video that ends before --until.
+void check_length(const CompareOptions& options, bool is_result, std::int64_t frames) {
+    if (options.until == 0) return;
+    throw InputError(
+        is_result ? options.result : options.reference,
+        fmt::format("ends after {}, before --until {}", counted(frames, "frame"), options.until));
 }
 
-/// Adds up the frames. \throws InputError if one video ends before the other, or before --until.
-void compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead& reference,
-                    QualityMeter& meter, Progress& progress) {
+/// The video that goes on after the last frame of the other one.
+enum class Longer { kNone, kResult, kReference };
+
+/// Calls `add` with the frames that both have. \throws InputError if one ends before --until.
+template <typename Add>
+Longer compare_frames(const CompareOptions& options, ReadAhead& result, ReadAhead& reference,
+                      Progress& progress, const Add& add) {
     while (options.until == 0 || progress.done() < options.until) {
         throw_if_stopped();
         const auto a = result.next();
         const auto b = reference.next();
-        if (a.empty() && b.empty() && options.until == 0) return;
-        if (a.empty() || b.empty()) fail_length(options, a.empty(), progress.done());
-        meter.add(a, b);
+        if (a.empty() || b.empty()) {
+            check_length(options, a.empty(), progress.done());
+            if (a.empty() && b.empty()) return Longer::kNone;
+            return a.empty() ? Longer::kReference : Longer::kResult;
+        }
+        add(a, b);
         progress.advance();
     }
+    return Longer::kNone;
+}
+
+void say_overlap(const CompareOptions& options, Longer longer, std::int64_t frames) {
+    if (longer == Longer::kNone) return;
+    const auto [shorter_name, longer_name] = longer == Longer::kResult
+                                                 ? std::tie(options.reference, options.result)
+                                                 : std::tie(options.result, options.reference);
+    say_warning(fmt::format("{}: ends after {}, before \"{}\" does; these are compared",
+                            shorter_name, counted(frames, "frame"), longer_name));
 }
 
 /// The number of frames, if it is known.
@@ -73,11 +99,49 @@ std::optional<std::int64_t> frames_to_come(const CompareOptions& options,
     return reference.slots();
 }
 
-void compare(const CompareOptions& options, const RunOptions& run) {
-    JsonFile json(run);
-    ReadAhead result = read_footage(
+/// The outputs beside JSON, opened before the work.
+class Outputs {
+  public:
+    Outputs(const CompareOptions& options, FrameShape shape, bool force) {
+        if (!options.csv.empty()) csv_.emplace(options.csv, force);
+        if (!options.chart.empty()) chart_.emplace(options.chart, force);
+        if (!options.difference.empty())
+            difference_.emplace(options.difference, shape, force, options.quality.max_value);
+    }
+
+    void add(std::span<const float> result, std::span<const float> reference) {
+        if (difference_) difference_->add(result, reference);
+    }
+
+    void finish(const QualityMetrics& metrics, const QualityMeter& meter, std::int64_t margin) {
+        if (csv_ || chart_) {
+            const FrameTable table{metrics, meter.frame_qualities(), margin};
+            if (csv_) write_text(*csv_, table_csv(table));
+            if (chart_)
+                write_text(*chart_, table_chart(table, lower_extension(chart_->final_path())));
+        }
+        if (difference_) difference_->finish();
+    }
+
+  private:
+    std::optional<PendingOutput> csv_;
+    std::optional<PendingOutput> chart_;
+    std::optional<DifferenceOutput> difference_;
+};
+
+ReadAhead read_result(const CompareOptions& options) {
+    return read_footage(
         options.result,
         {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
+}
+
+void compare(const CompareOptions& options, const RunOptions& run) {
+    const QualityMetrics metrics = chosen_metrics(options.metrics);
+    QualityOptions quality = options.quality;
+    quality.pu21_ssim = has_metric(metrics, "pu21-ssim");
+    if (has_metric(metrics, "pu21-csf-psnr")) quality.pixels_per_degree = options.pixels_per_degree;
+    JsonFile json(run);
+    ReadAhead result = read_result(options);
     if (result.gamma_coded())
         say_warning(
             fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
@@ -85,25 +149,65 @@ void compare(const CompareOptions& options, const RunOptions& run) {
                         options.result));
     ReadAhead reference = read_footage(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
-    QualityMeter meter(reference.shape(), options.quality);
-    VideoQuality quality;
+    QualityMeter meter(reference.shape(), quality);
+    Outputs outputs(options, reference.shape(), run.force);
+    std::int64_t frames = 0;
+    Longer longer = Longer::kNone;
     {
         Progress progress(run, "comparing", frames_to_come(options, reference));
-        compare_frames(options, result, reference, meter, progress);
-        quality = meter.quality();
+        longer = compare_frames(options, result, reference, progress, [&](auto a, auto b) {
+            meter.add(a, b);
+            outputs.add(a, b);
+        });
+        frames = progress.done();
     }
-    auto figures = quality_json(quality);
-    figures["peak"] = options.quality.peak;
-    figures["cd_per_unit"] = options.quality.unit_cd_per_m2;
+    const VideoQuality found = meter.quality();
+    say_overlap(options, longer, frames);
+    outputs.finish(metrics, meter, quality.margin);
+    auto figures = metrics_json(metrics, found);
+    figures["peak"] = quality.peak;
+    figures["cd_per_unit"] = quality.unit_cd_per_m2;
+    if (quality.pixels_per_degree) figures["pixels_per_degree"] = *quality.pixels_per_degree;
+    figures["frames"] = frames;
+    figures["longer"] = nullptr;
+    if (longer != Longer::kNone)
+        figures["longer"] = longer == Longer::kResult ? "result" : "reference";
     json.write(figures);
-    run.say(fmt::format(
-        "PSNR        {:7.2f} dB  linear, peak {:g}\n"
-        "PSNR gamma  {:7.2f} dB  clamped to 0..1, power 1/2.2\n"
-        "PSNR frames {:7.2f} dB  linear, mean of the frames' values\n"
-        "PU21-PSNR   {:7.2f} dB  1.0 = {:g} cd/m2\n"
-        "SSIM        {:7.4f}     clamped to 0..1, power 1/2.2",
-        quality.psnr_db, options.quality.peak, quality.psnr_gamma_db, quality.psnr_frame_mean_db,
-        quality.pu21_psnr_db, options.quality.unit_cd_per_m2, quality.ssim));
+    run.say(metrics_text(metrics, found, quality));
+}
+
+/// `--metric` and what it needs.
+void add_metric_arguments(Command& command, CompareOptions& options) {
+    command.add_list("--metric", options.metrics, "figures to give")
+        .default_text("all but pu21-ssim and pu21-csf-psnr")
+        .split_at_commas()
+        .one_of(names_of(quality_metrics()));
+    command
+        .add_option(
+            "--pixels-per-degree", options.pixels_per_degree,
+            "pixels in a degree of visual angle, for pu21-csf-psnr; 60: an HD picture at 3.2 "
+            "times its height")
+        .shows_default()
+        .check(positive_check())
+        .type_name("P");
+}
+
+void add_compare_outputs(Command& command, CompareOptions& options) {
+    command
+        .add_option("--csv", options.csv,
+                    "table of the figures of each frame, without those left out by --margin")
+        .type_name("FILE")
+        .output(kTableName);
+    command.add_option("--chart", options.chart, "the same as a chart, .png or .svg; needs gnuplot")
+        .type_name("FILE")
+        .output(kDiagramName);
+    command
+        .add_option(
+            "--difference", options.difference,
+            "absolute difference of light: a folder of EXR or a .npy, or as .png the root of "
+            "its mean square over the frames, tone-mapped")
+        .type_name("OUT")
+        .output(kDifferenceName);
 }
 
 }  // namespace
@@ -113,8 +217,10 @@ void add_compare(Command& app, Action& action) {
     const auto options = std::make_shared<CompareOptions>();
     command.add_option("RESULT", options->result, "video in linear light").required().input();
     command.add_option("REFERENCE", options->reference, "footage").required().input();
-    command.add_option("--until", options->until, "compare the first N frames of each")
-        .default_text("all, of which both have as many")
+    command
+        .add_option("--until", options->until,
+                    "compare the first N frames of each, which both must have")
+        .default_text("all that both have")
         .check(frames_check())
         .type_name("N");
     command
@@ -139,12 +245,16 @@ void add_compare(Command& app, Action& action) {
         .shows_default()
         .check(positive_check())
         .type_name("L");
+    add_metric_arguments(command, *options);
+    add_compare_outputs(command, *options);
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple compare decoded scene --margin 4 --max-value 2\n"
         "  stipple compare preview scene --until 60\n"
-        "  stipple compare decoded.npy footage.npy --max-value 2 --peak 2 --cd-per-unit 1000");
+        "  stipple compare decoded.npy footage.npy --max-value 2 --peak 2 --cd-per-unit 1000\n"
+        "  stipple compare decoded scene --csv frames.csv --difference difference\n"
+        "  stipple compare decoded scene --metric pu21-psnr,pu21-ssim --chart frames.png");
     set_action(command, action, options, compare);
 }
 

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "apps/arguments/footage.h"
+#include "apps/info_footage.h"
 #include "apps/info_recording.h"
+#include "apps/info_settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -33,8 +38,13 @@ std::string stretched_text(const StretchedSlots& stretched, const StreamReader& 
         stretched.mean_us() ? fmt::format(", mean {:.4g} us", *stretched.mean_us()) : "");
 }
 
-void info(const std::string& file, const RunOptions& run) {
-    if (is_recording(file)) return info_recording(file, run);
+struct InfoOptions {
+    std::string file;
+    std::optional<RawFormat> raw;
+    bool header_only = false;
+};
+
+void info_stream(const std::string& file, const RunOptions& run) {
     StreamReader reader(file, ReadPolicy::kCounts);
     JsonFile json(run);
     SamplePacket packet;
@@ -43,7 +53,9 @@ void info(const std::string& file, const RunOptions& run) {
         throw_if_stopped();
         stretched.add(packet);
     }
-    auto figures = stream_json(reader.header(), reader.report());
+    nlohmann::ordered_json figures;
+    figures["kind"] = "stream";
+    figures.update(stream_json(reader.header(), reader.report()));
     const std::string command = command_of(reader.header().provenance);
     figures["stretched_slots"] = stretched.slots();
     figures["mean_stretched_us"] = nullptr;
@@ -61,20 +73,52 @@ void info(const std::string& file, const RunOptions& run) {
     run.say(fmt::format("condition    {}{}", condition_of(reader.report()), leftover_text(file)));
 }
 
+/// What may be a stream: by its extension, or because it has no other or is no file (a pipe).
+bool may_be_stream(const std::string& file) {
+    const std::filesystem::path path(file);
+    std::error_code error;
+    const auto kind = std::filesystem::status(path, error).type();
+    return path.extension() == ".stipple" || path.extension() == ".strec" ||
+           !path.has_extension() || kind != std::filesystem::file_type::regular;
+}
+
+void info(const InfoOptions& options, const RunOptions& run) {
+    const std::string& file = options.file;
+    const bool ours = !options.raw && (is_recording(file) || is_stream(file));
+    if (options.raw || (!ours && is_footage(file)))
+        return info_footage(file, options.raw, options.header_only, run);
+    if (options.header_only) throw InputError(file, "is no footage, of which --header is");
+    if (ours) return is_stream(file) ? info_stream(file, run) : info_recording(file, run);
+    if (const SettingsKind kind = settings_kind(file); kind != SettingsKind::kNone)
+        return info_settings(kind, file, run);
+    if (may_be_stream(file)) return info_stream(file, run);
+    throw InputError(file,
+                     "is nothing that stipple reads: no sample stream, recording, footage, "
+                     "sensor, schedule or scene; frames without a header need --raw");
+}
+
 }  // namespace
 
 void add_info(Command& app, Action& action) {
-    Command command =
-        app.add_command("info", "Say what a sample stream or a recording is and holds");
-    const auto file = std::make_shared<std::string>();
-    command.add_option("FILE", *file, "sample stream, or recording of a camera").required().input();
+    Command command = app.add_command("info", "Say what a file is and holds, of any kind");
+    const auto options = std::make_shared<InfoOptions>();
+    command
+        .add_option("FILE", options->file,
+                    "stream, recording, footage, sensor or schedule, or the name of one")
+        .required()
+        .input();
+    add_raw_argument(command, options->raw, "FILE");
+    command.add_flag("--header", options->header_only,
+                     "of footage what it declares; do not read its frames");
     command.footer(
         "Examples:\n"
         "  stipple info clip.stipple\n"
-        "  stipple info clip.stipple --json -\n"
-        "  stipple info clip.strec\n"
+        "  stipple info clip.strec --json -\n"
+        "  stipple info footage.cine --header\n"
+        "  stipple info frames.raw --raw 640x480:mono12p\n"
+        "  stipple info imx273\n"
         "The whole file is checked. If it is damaged, the damage is listed, the exit code is 1.");
-    set_action(command, action, file, info);
+    set_action(command, action, options, info);
 }
 
 }  // namespace stipple

@@ -33,7 +33,7 @@ void add_synth(Command& app, Action& action);     ///< a scene rendered to foota
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference
-void add_info(Command& app, Action& action);      ///< header, contents and damage of a stream
+void add_info(Command& app, Action& action);      ///< what a file of any kind says and holds
 void add_recover(Command& app, Action& action);   ///< partial outputs of killed runs
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
@@ -47,7 +47,9 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
 
 // Those of `stipple capture`.
 
-void add_capture_list(Command& capture, Action& action);    ///< cameras that can be opened
+void add_capture_list(Command& capture, Action& action);  ///< cameras that can be opened
+/// values and ranges of a camera's features
+void add_capture_features(Command& capture, Action& action);
 void add_capture_doctor(Command& capture, Action& action);  ///< faults that cost frames, with fixes
 void add_capture_live(Command& capture, Action& action);    ///< a camera to a sample stream
 void add_capture_record(Command& capture, Action& action);  ///< a camera to a recording

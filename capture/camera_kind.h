@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 #include "capture/doctor/doctor_finding.h"
 
@@ -23,6 +24,7 @@ struct CameraKind {
     std::vector<CameraListing> (*list)();
     std::vector<DoctorFinding> (*examine_machine)();  ///< for all cameras of the kind
     std::vector<DoctorFinding> (*examine_camera)(const std::string& address);
+    std::vector<CameraFeature> (*features)(const std::string& address) = nullptr;
 };
 
 /// All kinds. `list` of one kind may also find cameras of a later kind.

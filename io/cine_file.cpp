@@ -141,13 +141,26 @@ PixelFormat format_of(const Cine& cine, const std::string& name) {
     return format;
 }
 
-/// Inverse of the opto-electronic transfer function of ITU-R BT.709, from DN 63 to 1014.
-std::vector<float> light_of_10_bits() {
-    constexpr double kBlackDn = 63;
-    constexpr double kWhiteDn = 1014;
+/// Of light 0 and 1.
+struct Levels {
+    std::int32_t black_dn;
+    std::int32_t white_dn;
+};
+
+Levels levels_of(const Cine& cine, const PixelFormat& format) {
+    if (cine.packing == kPacked10) return {63, 1014};
+    const std::int32_t full_scale = (1 << format.significant_bits) - 1;
+    if (cine.black_dn >= 0 && cine.black_dn < cine.white_dn && cine.white_dn <= full_scale)
+        return {cine.black_dn, cine.white_dn};
+    return {0, full_scale};
+}
+
+/// Inverse of the opto-electronic transfer function of ITU-R BT.709.
+std::vector<float> light_of_10_bits(const Levels& levels) {
     std::vector<float> light(65536);
     for (std::size_t dn = 0; dn < light.size(); ++dn) {
-        const double value = (static_cast<double>(dn) - kBlackDn) / (kWhiteDn - kBlackDn);
+        const double value = (static_cast<double>(dn) - levels.black_dn) /
+                             (static_cast<double>(levels.white_dn) - levels.black_dn);
         light[dn] =
             static_cast<float>(value <= 0      ? 0
                                : value < 0.081 ? value / 4.5
@@ -157,11 +170,21 @@ std::vector<float> light_of_10_bits() {
 }
 
 std::vector<float> light_of(const Cine& cine, const PixelFormat& format) {
-    if (cine.packing == kPacked10) return light_of_10_bits();
-    const std::int32_t full_scale = (1 << format.significant_bits) - 1;
-    const bool declared =
-        cine.black_dn >= 0 && cine.black_dn < cine.white_dn && cine.white_dn <= full_scale;
-    return light_table(format, declared ? cine.black_dn : 0, declared ? cine.white_dn : full_scale);
+    const Levels levels = levels_of(cine, format);
+    return cine.packing == kPacked10 ? light_of_10_bits(levels)
+                                     : light_table(format, levels.black_dn, levels.white_dn);
+}
+
+SourceTraits traits_of(const Cine& cine, const PixelFormat& format) {
+    const Levels levels = levels_of(cine, format);
+    SourceTraits traits{.filter = format.filter,
+                        .bits = format.significant_bits,
+                        .black_dn = levels.black_dn,
+                        .white_dn = levels.white_dn,
+                        .curve = cine.packing == kPacked10 ? "bt709" : "linear"};
+    if (cine.frames_hz > 0) traits.frames_hz = cine.frames_hz;
+    if (cine.exposure_us > 0) traits.exposure_us = cine.exposure_us;
+    return traits;
 }
 
 }  // namespace
@@ -177,7 +200,7 @@ RawVideo open_cine(const std::filesystem::path& path) {
                    .annotated = true,
                    .bottom_up = cine.flipped == (cine.packing != kUnpacked),
                    .light_of_dn = light_of(cine, format),
-                   .traits = {.filter = format.filter}};
+                   .traits = traits_of(cine, format)};
     if (cine.images == 0) throw InputError(file.name(), "holds no frame");
     if (cine.images > file.size() / sizeof(std::uint64_t))
         throw InputError(file.name(), fmt::format("has {} bytes, but announces {} frames; it is "
@@ -190,8 +213,6 @@ RawVideo open_cine(const std::filesystem::path& path) {
     video.offsets.resize(cine.images);
     file.read(cine.offsets_at, {reinterpret_cast<std::uint8_t*>(video.offsets.data()),
                                 video.offsets.size() * sizeof(std::uint64_t)});
-    if (cine.frames_hz > 0) video.traits.frames_hz = cine.frames_hz;
-    if (cine.exposure_us > 0) video.traits.exposure_us = cine.exposure_us;
     return video;
 }
 

@@ -289,6 +289,11 @@ void read_dng(const std::filesystem::path& file, Image& image) {
     image.resize(
         {static_cast<int>(area.bottom - area.top), static_cast<int>(area.right - area.left), 1});
     image.traits.filter = page.filter;
+    image.traits.bits = page.bits;
+    if (std::ranges::count(page.black_dn, page.black_dn.front()) == std::ssize(page.black_dn))
+        image.traits.black_dn = static_cast<double>(page.black_dn.front());
+    image.traits.white_dn = page.white_dn;
+    image.traits.curve = "linear";  // by the standard, after its table
     auto* light = image.values.data();
     for (std::uint32_t row = area.top; row < area.bottom; ++row)
         for (std::uint32_t col = area.left; col < area.right; ++col) {

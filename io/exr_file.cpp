@@ -96,6 +96,8 @@ void read_planes(Imf::InputFile& input, const std::string& where, Image& image) 
     const auto names = image_channels(input.header().channels(), where);
     image.traits = {.floating = true,
                     .has_alpha = input.header().channels().findChannel("A") != nullptr};
+    const bool half = input.header().channels()[names.front().c_str()].type == Imf::HALF;
+    image.traits.sample_format = half ? "float16" : "float32";
     const FrameShape shape = checked_shape(side(window.min.y, window.max.y),
                                            side(window.min.x, window.max.x), names.size(), where);
     check_size(input.header(), names, shape, where);

@@ -183,6 +183,8 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     scale_ /= one;
     top_down_ = header.text("ROWORDER") == "TOP-DOWN";
     traits_.floating = bits_ < 0;
+    traits_.sample_format = fmt::format("BITPIX {}", bits_);
+    traits_.bits = std::max(bits_, 0);
 }
 
 std::string FitsReader::where() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <string>
 #include <utility>
 #include <variant>
@@ -40,6 +41,13 @@ class ImageSequence {
     [[nodiscard]] FrameShape shape() const { return shape_; }
     [[nodiscard]] const SourceTraits& traits() const { return traits_; }
     [[nodiscard]] const std::string& warning() const { return images_.warning; }
+    [[nodiscard]] std::string kind() const {
+        if (tiff_) return "TIFF file";
+        std::string extension = lower_extension(images_.files.front()).substr(1);
+        std::ranges::transform(extension, extension.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        return extension + (images_.files.size() == 1 ? " image" : " images");
+    }
     [[nodiscard]] int slots() const {
         return tiff_ ? tiff_->pages() : static_cast<int>(images_.files.size());
     }
@@ -120,6 +128,7 @@ Source open_source(const fs::path& source, const FootageOptions& options) {
 struct FootageReader::Impl {
     Source source;
     FootageOptions options;
+    std::string extension;
     FrameShape source_shape;
     SourceTraits traits;
     std::vector<std::string> warnings;  ///< not yet taken
@@ -135,7 +144,7 @@ struct FootageReader::Impl {
 };
 
 FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
-    : source(open_source(path, wanted)), options(wanted) {
+    : source(open_source(path, wanted)), options(wanted), extension(lower_extension(path)) {
     source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
     if (reduces()) colour.resize(source_shape.sites());
     std::visit(
@@ -180,6 +189,16 @@ std::optional<double> FootageReader::video_hz() const {
 
 ColourFilter FootageReader::filter() const {
     return impl_->traits.filter;
+}
+
+const SourceTraits& FootageReader::traits() const {
+    return impl_->traits;
+}
+
+std::string FootageReader::kind() const {
+    if (const auto* images = std::get_if<ImageSequence>(&impl_->source)) return images->kind();
+    if (std::holds_alternative<VideoReader>(impl_->source)) return "video";
+    return impl_->options.raw ? "frames without a header" : impl_->extension + " file";
 }
 
 bool FootageReader::gamma_coded() const {

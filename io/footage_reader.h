@@ -10,6 +10,7 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/light.h"
+#include "io/image.h"
 #include "io/raw_format.h"
 
 namespace stipple {
@@ -45,6 +46,10 @@ class FootageReader {
     [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.
     [[nodiscard]] bool gamma_coded() const;
+    /// All that the source tells of its numbers and of the camera.
+    [[nodiscard]] const SourceTraits& traits() const;
+    /// What the source is: "PNG images", "video", ".cine file".
+    [[nodiscard]] std::string kind() const;
     /// What the user should know of the source and of its reading that is new since the last call.
     [[nodiscard]] std::vector<std::string> take_warnings();
 

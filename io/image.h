@@ -19,6 +19,11 @@ struct SourceTraits {
     ColourFilter filter = ColourFilter::kNone;  ///< whose mosaic its one plane is
     std::optional<double> frames_hz = {};       ///< at which frames play or were taken
     std::optional<double> exposure_us = {};     ///< of a frame
+    std::string sample_format = {};       ///< as files and libraries name it: "uint16", "yuv420p"
+    int bits = 0;                         ///< significant bits of a sample; 0: unknown or floating
+    std::optional<double> black_dn = {};  ///< that the file declares, or its kind
+    std::optional<double> white_dn = {};
+    std::string curve = {};  ///< from light to numbers, declared; undone unless `gamma_coded`
 };
 
 /// One decoded image, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),

@@ -1,5 +1,7 @@
 #include "io/image_file.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <cstdint>
 #include <string>
@@ -40,6 +42,10 @@ void to_image(const TiffPixels& pixels, Image& image) {
     image.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
                     .floating = pixels.sample == Sample::kF32,
                     .has_alpha = pixels.channels > planes};
+    const auto sample_bits = 8 * static_cast<int>(pixels.sample_bytes());
+    const bool floating = image.traits.floating;
+    image.traits.sample_format = fmt::format("{}{}", floating ? "float" : "uint", sample_bits);
+    if (!floating) image.traits.bits = sample_bits;
     const auto split = [&]<typename Stored>(Stored, auto to_float) {
         split_planes<Stored>(pixels.bytes, pixels.channels, planes, image.values, to_float);
     };

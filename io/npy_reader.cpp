@@ -4,6 +4,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstdint>
@@ -58,6 +59,15 @@ NpyReader::NpyReader(const std::filesystem::path& file)
     header_ = parse_npy_header(start, file_bytes, name_);
     bytes_.resize(header_.frame_bytes());
     if (std::fseek(file_.get(), static_cast<long>(header_.data_offset), SEEK_SET) != 0) fail(name_);
+}
+
+SourceTraits NpyReader::traits() const {
+    constexpr std::array<const char*, 5> kNames{"uint8", "uint16", "float16", "float32", "float64"};
+    SourceTraits traits;
+    traits.sample_format = kNames[static_cast<std::size_t>(header_.type)];
+    if (header_.type == NpyType::kUint8) traits.bits = 8;
+    if (header_.type == NpyType::kUint16) traits.bits = 16;
+    return traits;
 }
 
 std::string NpyReader::where() const {

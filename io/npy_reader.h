@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/image.h"
 #include "io/npy_header.h"
 
 namespace stipple {
@@ -20,6 +21,8 @@ class NpyReader {
 
     [[nodiscard]] FrameShape shape() const { return header_.shape; }
     [[nodiscard]] int slots() const { return header_.slots; }
+    /// The type of the stored numbers.
+    [[nodiscard]] SourceTraits traits() const;
     /// The file and the last frame read, for messages.
     [[nodiscard]] std::string where() const;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -216,6 +217,8 @@ RawVideo open_photron(const fs::path& file) {
         throw InputError(header.name(), fmt::format("tells of packed rows of {} pixels, which end "
                                                     "within a byte; they are not read",
                                                     video.shape.cols));
+    video.traits.bits = std::popcount(static_cast<unsigned>(white_dn));
+    video.traits.white_dn = white_dn;
     video.traits.frames_hz = header.number(kRate);
     if (const auto seconds = header.number(kShutter)) video.traits.exposure_us = *seconds * 1e6;
     return video;

@@ -117,7 +117,12 @@ void read_header(png_structp png, png_infop info, Source& source) {
 SourceTraits traits_of(png_structp png, png_infop info, bool grey) {
     SourceTraits traits{.gamma_coded = !grey && png_get_bit_depth(png, info) <= 8};
     png_fixed_point gamma = 0;  // that of sRGB too
-    if (png_get_gAMA_fixed(png, info, &gamma) != 0) traits.gamma_coded = gamma != kLinear;
+    if (png_get_gAMA_fixed(png, info, &gamma) != 0) {
+        traits.gamma_coded = gamma != kLinear;
+        traits.curve = traits.gamma_coded ? fmt::format("power {:.4g}", gamma / 1e5) : "linear";
+    }
+    if (png_get_valid(png, info, PNG_INFO_sRGB) != 0) traits.curve = "srgb";
+    traits.bits = png_get_bit_depth(png, info);
     traits.has_alpha = (png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                        png_get_valid(png, info, PNG_INFO_tRNS) != 0;
     return traits;

@@ -116,7 +116,12 @@ RawVideo open_raw_file(const std::filesystem::path& file, const RawFormat& raw) 
                                file.string()),
         .first_offset = raw.offset,
         .light_of_dn = light_table(raw.format, raw.black_dn, full_scale),
-        .traits = {.filter = raw.format.filter, .frames_hz = raw.frames_hz}};
+        .traits = {.filter = raw.format.filter,
+                   .frames_hz = raw.frames_hz,
+                   .sample_format = std::string(raw.format.name),
+                   .bits = raw.format.significant_bits,
+                   .black_dn = raw.black_dn,
+                   .white_dn = full_scale}};
     const FileBytes bytes(file);
     const std::uint64_t rest = bytes.size() - std::min(raw.offset, bytes.size());
     video.slots = rest / video.frame_bytes();

@@ -129,6 +129,9 @@ SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
                              : about.comp[0].depth <= 8 || colours_of(about) == Colours::kYcbcr;
     if (curve == AVCOL_TRC_SMPTE2084 || curve == AVCOL_TRC_ARIB_STD_B67)
         traits.hdr_curve = av_color_transfer_name(curve);
+    if (is_declared) traits.curve = av_color_transfer_name(curve);
+    traits.sample_format = about.name;
+    traits.bits = about.comp[0].depth;
     traits.has_alpha =
         (about.flags & (AV_PIX_FMT_FLAG_ALPHA | AV_PIX_FMT_FLAG_PAL)) == AV_PIX_FMT_FLAG_ALPHA;
     return traits;

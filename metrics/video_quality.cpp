@@ -6,9 +6,11 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 
 #include "core/error.h"
+#include "core/light.h"
 #include "core/parallel.h"
 #include "metrics/pu21.h"
 #include "metrics/ssim.h"
@@ -53,6 +55,7 @@ QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
     if (!(options.unit_cd_per_m2 > 0))
         throw InputError("unit_cd_per_m2",
                          fmt::format("{} is not above 0", options.unit_cd_per_m2));
+    if (options.pixels_per_degree) csf_.emplace(shape, *options.pixels_per_degree);
 }
 
 QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
@@ -91,30 +94,89 @@ void QualityMeter::add(std::span<const float> result, std::span<const float> ref
         frame.ssim += ssim({result_gamma_.data() + offset, shape_.rows, shape_.cols},
                            {reference_gamma_.data() + offset, shape_.rows, shape_.cols});
     }
+    if (options_.pu21_ssim || csf_) add_luminance(result, reference, frame);
     frames_.push_back(frame);
 }
 
-VideoQuality QualityMeter::quality() const {
+std::vector<float> QualityMeter::pu21_luminance(std::span<const float> light) const {
+    const std::size_t pixels = shape_.pixels();
+    const auto most = static_cast<float>(
+        options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
+    std::vector<float> clipped(light.begin(), light.end());
+    for (float& value : clipped) value = std::min(value, most);
+    std::vector<float> luminance(pixels);
+    if (shape_.planes == 3)
+        reduce_to_luminance(clipped, luminance);
+    else
+        luminance.assign(clipped.begin(), clipped.begin() + static_cast<std::ptrdiff_t>(pixels));
+    const auto cols = static_cast<std::size_t>(shape_.cols);
+    parallel_for(0, shape_.rows, [&](int row) {
+        for (float& value :
+             std::span(luminance).subspan(static_cast<std::size_t>(row) * cols, cols))
+            value = static_cast<float>(pu21(static_cast<double>(value) * options_.unit_cd_per_m2));
+    });
+    return luminance;
+}
+
+void QualityMeter::add_luminance(std::span<const float> result, std::span<const float> reference,
+                                 FrameQuality& frame) const {
+    constexpr float kPu21Range = 256;
+    std::vector<float> a = pu21_luminance(result);
+    std::vector<float> b = pu21_luminance(reference);
+    if (csf_) {
+        std::vector<float> error(a.size());
+        std::ranges::transform(a, b, error.begin(), std::minus<>());
+        frame.csf_mean_square = csf_->mean_square(error);
+    }
+    if (!options_.pu21_ssim) return;
+    for (float& value : a) value /= kPu21Range;
+    for (float& value : b) value /= kPu21Range;
+    frame.pu21_ssim =
+        ssim({a.data(), shape_.rows, shape_.cols}, {b.data(), shape_.rows, shape_.cols});
+}
+
+auto QualityMeter::counted() const -> std::span<const FrameQuality> {
     const auto margin = static_cast<std::size_t>(options_.margin);
     if (frames_.size() <= 2 * margin)
         throw InputError("margin",
                          fmt::format("leaving out {} frames at each end leaves none of {}", margin,
                                      frames_.size()));
-    const std::span counted = std::span(frames_).subspan(margin, frames_.size() - 2 * margin);
+    return std::span(frames_).subspan(margin, frames_.size() - 2 * margin);
+}
+
+VideoQuality QualityMeter::quality_of(std::span<const FrameQuality> counted) const {
     const auto frames = static_cast<double>(counted.size());
     const auto sites = static_cast<double>(shape_.sites());
     SquaredErrors errors;
     VideoQuality quality;
+    double pu21_ssim = 0;
+    double csf_mean_square = 0;
     for (const FrameQuality& frame : counted) {
         errors += frame.errors;
         quality.psnr_frame_mean_db += psnr(options_.peak, frame.errors.linear / sites) / frames;
         quality.ssim += frame.ssim / (frames * shape_.planes);
+        pu21_ssim += frame.pu21_ssim / frames;
+        csf_mean_square += frame.csf_mean_square / frames;
     }
+    const double pu21_peak = pu21(options_.peak * options_.unit_cd_per_m2);
     quality.psnr_db = psnr(options_.peak, errors.linear / (frames * sites));
     quality.psnr_gamma_db = psnr(1, errors.gamma / (frames * sites));
-    quality.pu21_psnr_db =
-        psnr(pu21(options_.peak * options_.unit_cd_per_m2), errors.pu21 / (frames * sites));
+    quality.pu21_psnr_db = psnr(pu21_peak, errors.pu21 / (frames * sites));
+    if (options_.pu21_ssim) quality.pu21_ssim = pu21_ssim;
+    if (csf_) quality.pu21_csf_psnr_db = psnr(pu21_peak, csf_mean_square);
     return quality;
+}
+
+VideoQuality QualityMeter::quality() const {
+    return quality_of(counted());
+}
+
+std::vector<VideoQuality> QualityMeter::frame_qualities() const {
+    const auto frames = counted();
+    std::vector<VideoQuality> qualities;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        qualities.push_back(quality_of(frames.subspan(i, 1)));
+    return qualities;
 }
 
 }  // namespace stipple

@@ -220,6 +220,10 @@ std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_
     return bytes;
 }
 
+bool begins_as_stream(Bytes start) {
+    return start.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), start.begin());
+}
+
 std::size_t header_bytes(Bytes start, std::string_view where) {
     const auto magic = start.first(std::min(start.size(), kMagic.size()));
     if (start.empty()) fail_at(where, 0, "the file is empty");

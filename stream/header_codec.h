@@ -19,6 +19,9 @@ inline constexpr std::size_t kHeaderStartBytes = 16;
 [[nodiscard]] std::vector<std::uint8_t> encode_header(const StreamHeader& header,
                                                       std::string_view where);
 
+/// Whether the first bytes of a file are those of a stream of any version.
+[[nodiscard]] bool begins_as_stream(std::span<const std::uint8_t> start);
+
 /// Length of a header. `start`: the first `kHeaderStartBytes` bytes of a file, or the whole file.
 /// \throws InputError naming file and offset if it is no sample stream or of an unknown version.
 [[nodiscard]] std::size_t header_bytes(std::span<const std::uint8_t> start, std::string_view where);

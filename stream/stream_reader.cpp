@@ -316,6 +316,13 @@ void StreamReader::Impl::count_bytes_after_end() {
     }
 }
 
+bool is_stream(const std::filesystem::path& path) {
+    std::error_code error;  // the reader of the file says what it is
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    FileWindow file(path);
+    return begins_as_stream(file.peek(kHeaderStartBytes));
+}
+
 StreamReader::StreamReader(const std::filesystem::path& file, ReadPolicy policy, WaitForMore wait)
     : impl_(std::make_unique<Impl>(file, policy, std::move(wait))) {}
 

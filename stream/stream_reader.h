@@ -59,6 +59,9 @@ struct StreamReport {
 /// more bytes and returns true to read again, or false if the file ends here.
 using WaitForMore = std::function<bool(std::uint64_t bytes)>;
 
+/// True if `path` is a regular file that begins with the magic of a stream.
+[[nodiscard]] bool is_stream(const std::filesystem::path& path);
+
 /// Reads a sample stream packet by packet (docs/stream_format.md). Memory: one packet.
 class StreamReader {
   public:

@@ -18,9 +18,15 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
                                              "how the numbers of " + footage + " map to light")
         .default_text("linear, with a warning if they look gamma-coded")
         .type_name("NAME");
-    const auto take_raw = [&options](const std::string& text) {
+    add_raw_argument(command, options.raw, footage);
+    command.add_flag("--luminance", options.luminance,
+                     "reduce colour footage to Rec. 709 luminance");
+}
+
+void add_raw_argument(Command& command, std::optional<RawFormat>& raw, const std::string& footage) {
+    const auto take_raw = [&raw](const std::string& text) {
         try {
-            options.raw = parse_raw_format(text);
+            raw = parse_raw_format(text);
         } catch (const InputError& e) {
             throw UsageError("--raw", e.what());
         }
@@ -29,8 +35,6 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
         .add_parsed("--raw", take_raw,
                     "read " + footage + " as frames without a header, such as 640x480:mono12p")
         .type_name("SIZE:FORMAT[:KEY=VALUE]...");
-    command.add_flag("--luminance", options.luminance,
-                     "reduce colour footage to Rec. 709 luminance");
 }
 
 void add_max_value(Command& command, std::optional<double>& max_value) {

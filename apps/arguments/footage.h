@@ -14,6 +14,9 @@ struct SceneOptions;
 void add_footage_arguments(Command& command, FootageOptions& options,
                            const std::string& footage = "the footage");
 
+/// `--raw` alone.
+void add_raw_argument(Command& command, std::optional<RawFormat>& raw, const std::string& footage);
+
 /// `--max-value V`: positive and finite.
 void add_max_value(Command& command, std::optional<double>& max_value);
 

@@ -16,6 +16,10 @@ constexpr OutputName kRecoveredName{
 constexpr OutputName kVideoName{
     "a video is a .npy, .mp4 or .mkv, or by a name without extension a folder of EXR files",
     {".npy", ".mp4", ".mkv"}};
+constexpr OutputName kDifferenceName{
+    "a difference is a .png or a .npy, or by a name without extension a folder of EXR files",
+    {".png", ".npy"}};
+constexpr OutputName kTableName{"a table is a .csv, or has a name without extension", {".csv"}};
 constexpr OutputName kPreviewName{"a preview is a .png or a .npy", {".png", ".npy"}, false};
 constexpr OutputName kWaveformName{"a waveform is a .vcd, or has a name without extension",
                                    {".vcd"}};

@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/parallel.h"
+#include "metrics/csf_error.h"
 #include "metrics/ssim.h"
 
 namespace stipple {
@@ -45,6 +47,16 @@ void ssim_of_a_plane(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVga.pixels()));
 }
 BENCHMARK(ssim_of_a_plane)->Unit(benchmark::kMillisecond);
+
+void weighted_error_of_a_plane(benchmark::State& state) {
+    const ThreadLimit limit(1);
+    const std::vector<float> error = noise(1);
+    const CsfError meter(kVga, 60);
+    for ([[maybe_unused]] auto unused : state)
+        benchmark::DoNotOptimize(meter.mean_square(std::span(error).first(kVga.pixels())));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVga.pixels()));
+}
+BENCHMARK(weighted_error_of_a_plane)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace stipple

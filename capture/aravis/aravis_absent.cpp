@@ -14,6 +14,10 @@ std::vector<CameraListing> list_aravis_cameras() {
                       "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
 }
 
+std::vector<CameraFeature> aravis_features(const std::string& address) {
+    throw DeviceError(address, "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
+}
+
 std::vector<DoctorFinding> examine_genicam_camera(const std::string&) {
     return {{DoctorFinding::Level::kProblem, "camera", "built without Aravis",
              "configure with -DSTIPPLE_ARAVIS=ON"}};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 
 namespace stipple {
@@ -23,5 +24,9 @@ namespace stipple {
 /// GenICam cameras that answer a broadcast within 1 s or are on the USB. \throws DeviceError if
 /// built without Aravis.
 [[nodiscard]] std::vector<CameraListing> list_aravis_cameras();
+
+/// The features of the camera at an address, as far as AravisDevice::feature_names. Opens the
+/// camera for a moment; another program may control it. \throws as open_aravis_camera.
+[[nodiscard]] std::vector<CameraFeature> aravis_features(const std::string& address);
 
 }  // namespace stipple

@@ -282,7 +282,7 @@ std::string AravisDevice::nearest_feature(const std::string& name) const {
     std::vector<std::string> known;
     for (const auto& [feature, value] : features()) known.push_back(feature);
     const std::string nearest = nearest_name(name, known);
-    return nearest.empty() ? "\"stipple capture doctor ADDRESS\" lists those that it has"
+    return nearest.empty() ? "\"stipple capture features ADDRESS\" lists those that it has"
                            : fmt::format("did you mean \"{}\"?", nearest);
 }
 
@@ -301,24 +301,33 @@ void AravisDevice::set(const std::string& feature, const std::string& value) {
     impl_->set_other(where, feature.c_str(), value);
 }
 
-std::map<std::string, std::string> AravisDevice::features() const {
-    std::map<std::string, std::string> found;
+std::vector<FeatureName> AravisDevice::feature_names() const {
+    std::vector<FeatureName> found;
     std::vector<std::string> categories{"Root"};
     std::set<std::string> seen{"Root"};  // a category may name itself
-    while (!categories.empty()) {
-        ArvGcNode* category = arv_device_get_feature(impl_->device, categories.back().c_str());
-        categories.pop_back();
+    for (std::size_t next = 0; next < categories.size(); ++next) {
+        const std::string inside = categories[next];
+        ArvGcNode* category = arv_device_get_feature(impl_->device, inside.c_str());
         if (category == nullptr || !ARV_IS_GC_CATEGORY(category)) continue;
         const GSList* names = arv_gc_category_get_features(ARV_GC_CATEGORY(category));
         for (; names != nullptr; names = names->next) {
-            const std::string name(static_cast<const char*>(names->data));
+            std::string name(static_cast<const char*>(names->data));
             if (seen.size() == kMaxFeatures) return found;
             if (!seen.insert(name).second) continue;
             ArvGcNode* node = arv_device_get_feature(impl_->device, name.c_str());
-            if (node != nullptr && ARV_IS_GC_CATEGORY(node)) categories.push_back(name);
-            if (const auto value = read(name)) found.emplace(name, *value);
+            if (node != nullptr && ARV_IS_GC_CATEGORY(node))
+                categories.push_back(std::move(name));
+            else if (node != nullptr)
+                found.push_back({std::move(name), inside});
         }
     }
+    return found;
+}
+
+std::map<std::string, std::string> AravisDevice::features() const {
+    std::map<std::string, std::string> found;
+    for (const FeatureName& feature : feature_names())
+        if (const auto value = read(feature.name)) found.emplace(feature.name, *value);
     return found;
 }
 

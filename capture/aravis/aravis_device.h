@@ -5,10 +5,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "capture/camera.h"
+#include "capture/camera_feature.h"
 
 namespace stipple {
+
+/// A feature, and the category that lists it.
+struct FeatureName {
+    std::string name;
+    std::string category;
+};
 
 /// The control channel of a GenICam camera: access, features, identity.
 class AravisDevice {
@@ -37,7 +45,9 @@ class AravisDevice {
     /// \throws InputError if the feature does not exist, or the text is no value or out of range;
     /// DeviceError if the camera refuses or sets another value.
     void set(const std::string& feature, const std::string& value);
-    /// All readable features among the first 20 000 under Root.
+    /// The first 20 000 names under Root without those of categories, by category; each once.
+    [[nodiscard]] std::vector<FeatureName> feature_names() const;
+    /// Values of those that can be read.
     [[nodiscard]] std::map<std::string, std::string> features() const;
     [[nodiscard]] std::string genicam_xml() const;
 
@@ -52,6 +62,9 @@ class AravisDevice {
     std::string address_;
     std::unique_ptr<Impl> impl_;
 };
+
+/// The features of `feature_names` with types, values and ranges.
+[[nodiscard]] std::vector<CameraFeature> describe_features(const AravisDevice& device);
 
 /// Applies settings in the order that cameras accept: offsets to 0, format and size, offsets, then
 /// the others in the given order. \throws InputError, DeviceError as set.

@@ -19,6 +19,10 @@ std::vector<CameraListing> list_v4l2_cameras() {
     throw DeviceError("V4L2 cameras", kWhy);
 }
 
+std::vector<CameraFeature> v4l2_features(const std::string& address) {
+    throw DeviceError(address, kWhy);
+}
+
 std::vector<DoctorFinding> v4l2_findings() {
     return {{DoctorFinding::Level::kWarning, "V4L2", "this program cannot read V4L2 cameras",
              "configure the build with -DSTIPPLE_V4L2=ON"}};

@@ -4,7 +4,6 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -196,19 +195,6 @@ CapturedFrame V4l2Camera::frame_of(const V4l2Buffers::Filled& filled) const {
     return frame;
 }
 
-std::string node_path(const std::string& address) {
-    constexpr std::string_view kPrefix = "v4l2:";
-    std::string path =
-        address.substr(0, kPrefix.size()) == kPrefix ? address.substr(kPrefix.size()) : address;
-    const bool number = !path.empty() && std::all_of(path.begin(), path.end(), [](char c) {
-        return std::isdigit(static_cast<unsigned char>(c)) != 0;
-    });
-    if (number) path.insert(0, "/dev/video");
-    if (path.empty() || path.front() != '/')
-        throw InputError(address, "name a node, as in v4l2:/dev/video0 or v4l2:0");
-    return path;
-}
-
 V4l2Memory memory_setting(const std::string& address, const CameraSettings& settings) {
     auto memory = V4l2Memory::kDriver;
     for (const auto& [name, value] : settings) {
@@ -227,7 +213,7 @@ std::unique_ptr<Camera> open_v4l2_camera(const std::string& address, const Camer
                                          const CameraBuffers& buffers) {
     if (buffers.frames < 2 || buffers.frames > 1024)
         throw InputError(address, fmt::format("{} frame buffers: take 2 to 1024", buffers.frames));
-    return std::make_unique<V4l2Camera>(node_path(address), settings,
+    return std::make_unique<V4l2Camera>(v4l2_node_path(address), settings,
                                         memory_setting(address, settings), buffers.frames);
 }
 

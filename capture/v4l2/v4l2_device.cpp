@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -43,6 +44,19 @@ std::string text_of(const __u8 (&field)[N]) {
 }
 
 }  // namespace
+
+std::string v4l2_node_path(const std::string& address) {
+    constexpr std::string_view kPrefix = "v4l2:";
+    std::string path =
+        address.substr(0, kPrefix.size()) == kPrefix ? address.substr(kPrefix.size()) : address;
+    const bool number = !path.empty() && std::all_of(path.begin(), path.end(), [](char c) {
+        return std::isdigit(static_cast<unsigned char>(c)) != 0;
+    });
+    if (number) path.insert(0, "/dev/video");
+    if (path.empty() || path.front() != '/')
+        throw InputError(address, "name a node, as in v4l2:/dev/video0 or v4l2:0");
+    return path;
+}
 
 V4l2Device::V4l2Device(std::string path) : path_(std::move(path)) {
     // O_CLOEXEC: a child process would keep the device busy.

@@ -7,6 +7,9 @@
 
 namespace stipple {
 
+/// The node at "v4l2:/dev/video0" or "v4l2:0". \throws InputError for another address.
+[[nodiscard]] std::string v4l2_node_path(const std::string& address);
+
 /// An open V4L2 node (/dev/videoN), non-blocking; closed on destruction.
 class V4l2Device {
   public:

@@ -9,9 +9,10 @@ and values are those of the program `stipple`, whose documentation holds here to
 ValueError, errors of files OSError, both with the program's texts."""
 
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
-from ._stipple import Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
+from ._stipple import ComparedVideos, Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
 
 __all__ = [
+    "ComparedVideos",
     "Frame",
     "MaxMemory",
     "Recording",

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _stipple
-from ._stipple import Sensor, Stream, VideoQuality, decode_methods
+from ._stipple import ComparedVideos, Sensor, Stream, decode_methods
 
 __all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "load", "timing"]
 
@@ -162,10 +162,13 @@ def compare(
     until: Optional[int] = None,
     transfer: Optional[str] = None,
     luminance: bool = False,
+    pu21_ssim: bool = False,
+    pixels_per_degree: Optional[float] = None,
     threads: int = 0,
     progress: Tell = None,
-) -> VideoQuality:
-    """Quality of a video against its reference, as "stipple compare" does.
+) -> ComparedVideos:
+    """Quality of a video against its reference, as "stipple compare" does; `frames` of the result has that
+    of each frame. Of videos of unequal length the frames that both have are compared, with a warning.
 
     result, reference: videos as for `emulate`, of the same shape. `transfer` and `max_value` are those of
         "stipple compare": transfer is of the reference.
@@ -173,12 +176,16 @@ def compare(
     max_value: clip the light of both to it first.
     peak: light of which PSNR and PU21-PSNR are.
     cd_per_unit: luminance of light 1.0 for PU21, in cd/m2.
-    until: compare only so many frames.
+    until: compare only so many frames, which both must have.
     luminance: reduce colour of both to Rec. 709 luminance.
+    pu21_ssim: compute it too.
+    pixels_per_degree: pixels in a degree of visual angle, to compute pu21_csf_psnr_db too.
     """
     a = _stipple.Footage(result, "linear", luminance)
     b = _stipple.Footage(reference, transfer, luminance)
-    comparison = _stipple.Comparison(margin, max_value, peak, cd_per_unit, until)
+    comparison = _stipple.Comparison(
+        margin, max_value, peak, cd_per_unit, until, pu21_ssim, pixels_per_degree
+    )
     with _stipple.Threads(threads):
         return _stipple.compare(a, b, comparison, progress)
 

@@ -84,6 +84,21 @@ class CaptureRecordTest(ProgramTest):
         for before, record in zip(records, records[1:]):
             self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
 
+    def test_features_are_listed_with_their_ranges(self):
+        self.serve()
+        figures = self.figures("capture", "features", self.address)
+        features = {row["name"]: row for row in figures["features"]}
+        self.assertEqual(figures["address"], self.address)
+        self.assertEqual((features["Width"]["type"], features["Width"]["value"]), ("integer", "64"))
+        self.assertEqual(features["PixelFormat"]["value"], "Mono16")
+        self.assertIn("Mono16", features["PixelFormat"]["choices"])
+        said = self.succeed("capture", "features", self.address, "pixelf*")
+        self.assertRegex(said, r"^PixelFormat +r[ow] +choice +Mono16")
+        self.assertEqual(said.count("\n"), 1)
+        self.assertIn("PixelFormat", self.succeed("capture", "features", self.address, "lform"))
+        self.fails(INPUT, ['"nothing"', "matches none of"], "capture", "features", self.address, "nothing")
+        self.fails(INPUT, ["replay:light.npy: has no features"], "capture", "features", "replay:light.npy")
+
     def test_a_folder_gets_a_recording_named_by_the_time(self):
         self.serve()
         (self.folder / "clips").mkdir()

@@ -59,7 +59,7 @@ class UsageTest(ProgramTest):
 
     def test_subcommands_that_are_missing(self):
         self.fails(USAGE, ['"stipple" needs a subcommand: synth, emulate'])
-        self.fails(USAGE, ['"stipple capture" needs a subcommand: list, doctor'], "capture")
+        self.fails(USAGE, ['"stipple capture" needs a subcommand: list, features'], "capture")
 
     def test_a_full_standard_error_changes_no_exit_code(self):
         for line in (["--frmes"], ["synth", "--size", "3"], ["dance"], []):

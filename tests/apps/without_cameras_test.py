@@ -14,6 +14,7 @@ class WithoutCamerasTest(ProgramTest):
                              ("v4l2:/dev/video0", NO_V4L2)):
             self.fails(DEVICE, (address, "built without", fix),
                        "capture", "record", address, "-o", "clip.strec")
+            self.fails(DEVICE, (address, "built without", fix), "capture", "features", address)
 
     def test_the_list_and_the_doctor_say_it_too(self):
         for words in (("list",), ("doctor", "gige:127.0.0.1")):

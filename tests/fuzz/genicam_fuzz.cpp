@@ -15,8 +15,8 @@ constexpr std::string_view kDeclaration = R"(<?xml version="1.0"?>)";
 
 }  // namespace
 
-/// Input: the XML by which a camera describes itself. Its features are listed, read and set as
-/// `capture doctor` and `capture record` do.
+/// Input: the XML by which a camera describes itself. Its features are listed, described, read and
+/// set as `capture features`, `capture doctor` and `capture record` do.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace stipple;
     if (!std::string_view(reinterpret_cast<const char*>(data), size).starts_with(kDeclaration))
@@ -29,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         AravisDevice device("fake:fuzz", native);
         if (device.genicam_xml().size() > size) std::abort();
+        static_cast<void>(describe_features(device));
         for (const auto& [name, value] : device.features()) {
             static_cast<void>(device.read_number(name));
             try {

@@ -133,10 +133,53 @@ TEST(VideoQualityTest, SsimIsTheMeanOverFramesAndPlanesAfterTheCurve) {
     EXPECT_NEAR(meter.quality().ssim, expected, 1e-9);
 }
 
+TEST(VideoQualityTest, FrameQualitiesAreThoseOfTheFramesAlone) {
+    QualityMeter meter(kShape, {.margin = 1, .pu21_ssim = true, .pixels_per_degree = 60.0});
+    const Floats half(kShape.sites(), 0.5F);
+    for (const float light : {0.0F, 0.6F, 0.51F, 0.0F})
+        meter.add(Floats(kShape.sites(), light), half);
+    const auto frames = meter.frame_qualities();
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_NEAR(frames[0].psnr_db, 20, kToleranceDb);
+    EXPECT_NEAR(frames[1].psnr_db, 40, 10 * kToleranceDb);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto alone = flat_quality({i == 0 ? 0.6F : 0.51F}, {0.5F},
+                                        {.pu21_ssim = true, .pixels_per_degree = 60.0});
+        EXPECT_EQ(frames[i].psnr_gamma_db, alone.psnr_gamma_db);
+        EXPECT_EQ(frames[i].pu21_psnr_db, alone.pu21_psnr_db);
+        EXPECT_EQ(frames[i].ssim, alone.ssim);
+        EXPECT_EQ(frames[i].pu21_ssim, alone.pu21_ssim);
+        EXPECT_EQ(frames[i].pu21_csf_psnr_db, alone.pu21_csf_psnr_db);
+    }
+    EXPECT_EQ(meter.quality().psnr_frame_mean_db, (frames[0].psnr_db + frames[1].psnr_db) / 2);
+}
+
+TEST(VideoQualityTest, Pu21SsimOfFlatFramesComparesTheirLuminances) {
+    // Without variance only the means count; C1 is 0.01^2 for a range of 1, here 256.
+    const double a = pu21(60) / 256;
+    const double b = pu21(50) / 256;
+    const auto grey = flat_quality({0.6F}, {0.5F}, {.pu21_ssim = true});
+    ASSERT_TRUE(grey.pu21_ssim.has_value());
+    EXPECT_NEAR(*grey.pu21_ssim, (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-6);
+    EXPECT_FALSE(flat_quality({0.6F}, {0.5F}).pu21_ssim.has_value());
+    QualityMeter colour({12, 16, 3}, {.pu21_ssim = true});
+    Floats light(3 * kShape.sites(), 0.6F);
+    colour.add(light, Floats(light.size(), 0.5F));
+    EXPECT_NEAR(*colour.quality().pu21_ssim, *grey.pu21_ssim, 1e-6);
+}
+
+TEST(VideoQualityTest, AConstantErrorCountsInFullToTheEye) {
+    const auto quality = flat_quality({0.6F, 0.3F}, {0.5F, 0.4F}, {.pixels_per_degree = 60.0});
+    ASSERT_TRUE(quality.pu21_csf_psnr_db.has_value());
+    // PU21 values of up to 256 are rounded to 24 bits, and errors of some 10 thereby to 1e-6.
+    EXPECT_NEAR(*quality.pu21_csf_psnr_db, quality.pu21_psnr_db, 1e-4);
+    EXPECT_FALSE(flat_quality({0.6F}, {0.5F}).pu21_csf_psnr_db.has_value());
+}
+
 TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
     const auto measure = [](int threads) {
         const ThreadLimit limit(threads);
-        QualityMeter meter({40, 50, 3}, {});
+        QualityMeter meter({40, 50, 3}, {.pu21_ssim = true, .pixels_per_degree = 60.0});
         meter.add(noise(40 * 50 * 3, 1), noise(40 * 50 * 3, 2));
         return meter.quality();
     };
@@ -146,6 +189,8 @@ TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
     EXPECT_EQ(one.psnr_gamma_db, two.psnr_gamma_db);
     EXPECT_EQ(one.pu21_psnr_db, two.pu21_psnr_db);
     EXPECT_EQ(one.ssim, two.ssim);
+    EXPECT_EQ(one.pu21_ssim, two.pu21_ssim);
+    EXPECT_EQ(one.pu21_csf_psnr_db, two.pu21_csf_psnr_db);
 }
 
 TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
@@ -154,6 +199,7 @@ TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.peak = 0}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = 0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.pixels_per_degree = 0.0}), InputError);
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <map>
 
+#include "capture/v4l2/v4l2_listing.h"
 #include "core/error.h"
 #include "io/pixel_format.h"
 #include "tests/capture/emulated_camera.h"
@@ -247,6 +249,31 @@ TEST(V4l2SettingsTest, RefusesBuffersThatCannotBe) {
     EXPECT_THAT(error_of<DeviceError>({}), HasSubstr("at least 2 are needed"));
     emulated.fail(VIDIOC_REQBUFS, {EBUSY});
     EXPECT_THAT(error_of<DeviceError>({}), HasSubstr("another program streams from it"));
+}
+
+TEST(V4l2FeaturesTest, ControlsAreDescribedWithUnitRangeChoicesAndAccess) {
+    EmulatedDriver driver = driver_with_controls();
+    driver.controls[2].about.flags = V4L2_CTRL_FLAG_INACTIVE;
+    const EmulatedV4l2 emulated(driver);
+    std::map<std::string, CameraFeature> features;
+    for (const CameraFeature& feature : v4l2_features("v4l2:/dev/video0"))
+        features[feature.name] = feature;
+    ASSERT_EQ(features.size(), 5U);
+    const CameraFeature& brightness = features["brightness"];
+    EXPECT_EQ(brightness.type, "integer");
+    EXPECT_EQ(brightness.access, "rw");
+    EXPECT_EQ(brightness.value, "128");
+    EXPECT_EQ(brightness.minimum, "0");
+    EXPECT_EQ(brightness.maximum, "255");
+    EXPECT_EQ(brightness.increment, "5");
+    EXPECT_EQ(features["gain"].access, "ro");
+    EXPECT_EQ(features["gain_automatic"].type, "boolean");
+    EXPECT_EQ(features["exposure_auto"].value, "Aperture Priority Mode");
+    EXPECT_EQ(features["exposure_auto"].choices,
+              (std::vector<std::string>{"Manual Mode", "Aperture Priority Mode"}));
+    EXPECT_FALSE(features["exposure_auto"].minimum.has_value());
+    EXPECT_EQ(features["exposure_time_absolute"].unit, "100 us");
+    EXPECT_THROW(static_cast<void>(v4l2_features("v4l2:video0")), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/subcommands.h"
+#include "capture/camera_kind.h"
+#include "core/error.h"
+#include "core/joined.h"
+#include "stream/plain_text.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct FeaturesOptions {
+    std::string address;
+    std::string pattern;  ///< empty: all
+};
+
+/// Upper and lower case are equal. A pattern without wildcards matches any part of the name.
+bool matches(const std::string& name, const std::string& pattern) {
+    const bool is_part = pattern.find_first_of("*?[") == std::string::npos;
+    const std::string whole = is_part ? "*" + pattern + "*" : pattern;
+    return fnmatch(whole.c_str(), name.c_str(), FNM_CASEFOLD) == 0;
+}
+
+std::vector<CameraFeature> features_of(const FeaturesOptions& options) {
+    const CameraKind& kind = camera_kind(options.address);
+    if (kind.features == nullptr)
+        throw InputError(options.address,
+                         "has no features; gige:IP, usb:SERIAL and v4l2:/dev/videoN have");
+    std::vector<CameraFeature> features = kind.features(options.address);
+    const std::size_t all = features.size();
+    std::erase_if(features, [&](const CameraFeature& feature) {
+        return !matches(feature.name, options.pattern);
+    });
+    if (features.empty() && all > 0)
+        throw InputError(
+            fmt::format("\"{}\"", options.pattern),
+            fmt::format("matches none of the {} of {}", counted(all, "feature"), options.address));
+    return features;
+}
+
+ordered_json known(const std::optional<std::string>& text) {
+    return text ? ordered_json(*text) : ordered_json(nullptr);
+}
+
+ordered_json features_json(const FeaturesOptions& options,
+                           const std::vector<CameraFeature>& features) {
+    auto list = ordered_json::array();
+    for (const CameraFeature& feature : features)
+        list.push_back({{"name", feature.name},
+                        {"category", feature.category},
+                        {"type", feature.type},
+                        {"access", feature.access},
+                        {"value", known(feature.value)},
+                        {"unit", feature.unit},
+                        {"minimum", known(feature.minimum)},
+                        {"maximum", known(feature.maximum)},
+                        {"increment", known(feature.increment)},
+                        {"choices", feature.choices},
+                        {"text", feature.text}});
+    return {{"address", options.address}, {"features", list}};
+}
+
+/// What the feature takes: "0..255 step 5", or its choices.
+std::string range_of(const CameraFeature& feature) {
+    if (!feature.choices.empty()) return joined(feature.choices);
+    if (!feature.minimum && !feature.maximum) return {};
+    std::string text =
+        fmt::format("{}..{}", feature.minimum.value_or(""), feature.maximum.value_or(""));
+    if (feature.increment && feature.increment != "1") text += " step " + *feature.increment;
+    return text;
+}
+
+std::string value_of(const CameraFeature& feature) {
+    std::string text = feature.value.value_or("-");
+    if (!feature.unit.empty()) text += " " + feature.unit;
+    return text;
+}
+
+std::string features_text(const std::vector<CameraFeature>& features) {
+    constexpr std::size_t kMaxWidth = 40;  // longer ones shift their line
+    std::size_t name_width = 0;
+    std::size_t value_width = 0;
+    for (const CameraFeature& feature : features) {
+        name_width = std::max(name_width, std::min(feature.name.size(), kMaxWidth));
+        value_width = std::max(value_width, std::min(value_of(feature).size(), kMaxWidth));
+    }
+    std::string text;
+    for (const CameraFeature& feature : features) {
+        std::string line =
+            fmt::format("{:<{}}  {}  {:<8}  {:<{}}  {}", feature.name, name_width, feature.access,
+                        feature.type, value_of(feature), value_width, range_of(feature));
+        std::ranges::replace(line, '\n', ' ');  // one feature a line, whatever the camera says
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += (text.empty() ? "" : "\n") + line;
+    }
+    return terminal_text(text);
+}
+
+void list_features(const FeaturesOptions& options, const RunOptions& run) {
+    JsonFile json(run);
+    const std::vector<CameraFeature> features = features_of(options);
+    json.write(features_json(options, features));
+    run.say(features.empty() ? "no features" : features_text(features));
+}
+
+}  // namespace
+
+void add_capture_features(Command& capture, Action& action) {
+    Command command = capture.add_command(
+        "features", "Settings of a camera: values, units, ranges, choices, access");
+    const auto options = std::make_shared<FeaturesOptions>();
+    command.add_option("ADDRESS", options->address, "gige:IP, usb:SERIAL or v4l2:/dev/videoN")
+        .required();
+    command
+        .add_option("PATTERN", options->pattern, "part of a name, or a name with wildcards * ? []")
+        .default_text("all");
+    command.footer(
+        "Examples:\n"
+        "  stipple capture features gige:192.168.0.5\n"
+        "  stipple capture features gige:192.168.0.5 exposure\n"
+        "  stipple capture features v4l2:/dev/video0 'gain*' --json -\n"
+        "rw: can be set by --set camera.NAME=VALUE, ro: read only or locked now, wo: write only,\n"
+        "na: not available now.");
+    set_action(command, action, options, list_features);
+}
+
+}  // namespace stipple

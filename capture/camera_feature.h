@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+/// A feature of a GenICam camera or a control of a V4L2 device, as the camera describes it now:
+/// ranges and choices may depend on the values of others.
+struct CameraFeature {
+    std::string name = {};      ///< as `--set camera.NAME=VALUE` takes it
+    std::string category = {};  ///< that lists it; empty: none
+    /// integer, float, boolean, choice, text, command, mask (bits), register or unknown
+    std::string type = {};
+    std::string access = {};                    ///< "rw", "ro", "wo"; "na": not available now
+    std::optional<std::string> value = {};      ///< if it can be read
+    std::string unit = {};                      ///< empty: none
+    std::optional<std::string> minimum = {};    ///< of numbers, if the camera tells
+    std::optional<std::string> maximum = {};    ///< likewise
+    std::optional<std::string> increment = {};  ///< likewise
+    std::vector<std::string> choices = {};      ///< available now
+    std::string text = {};                      ///< one line from the camera; empty: none
+};
+
+}  // namespace stipple

@@ -1,0 +1,122 @@
+"""Comparison of videos: overlap, figures of each frame, difference, choice of figures."""
+
+import csv
+import math
+import unittest
+
+import numpy as np
+from program import INPUT, OK, USAGE, ProgramTest
+
+DEFAULT = ["psnr_db", "psnr_gamma_db", "psnr_frame_mean_db", "pu21_psnr_db", "ssim"]
+
+
+class CompareTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        random = np.random.default_rng(5)
+        self.light = 0.2 + random.random((6, 16, 20))
+        self.noisy = self.light + random.normal(0, 0.01, self.light.shape)
+        self.write_array("light.npy", self.light)
+        self.write_array("noisy.npy", self.noisy)
+
+    def table(self, name):
+        with open(self.folder / name, newline="", encoding="ascii") as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_videos_of_unequal_length_are_compared_where_both_have_frames(self):
+        same = self.figures("compare", "noisy.npy", "light.npy", "--until", 4)
+        self.assertEqual((same["frames"], same["longer"]), (4, None))
+        self.write_array("short.npy", self.noisy[:4])
+        done = self.run_program("compare", "short.npy", "light.npy", "--json", "a.json")
+        self.assertEqual(done.returncode, OK)
+        self.assertIn('short.npy: ends after 4 frames, before "light.npy" does; these are compared', done.stderr)
+        self.assertEqual(self.figures("compare", "short.npy", "light.npy"), same | {"longer": "reference"})
+        self.write_array("short.npy", self.light[:4])
+        self.assertEqual(self.figures("compare", "noisy.npy", "short.npy"), same | {"longer": "result"})
+        self.fails(INPUT, ["short.npy: ends after 4 frames, before --until 5"], "compare", "noisy.npy", "short.npy",
+                   "--until", 5)
+        self.fails(INPUT, ["margin", "none of 4"], "compare", "noisy.npy", "short.npy", "--margin", 2)
+
+    def test_the_table_has_the_figures_of_each_frame(self):
+        self.noisy[2] = self.light[2]
+        self.write_array("noisy.npy", self.noisy)
+        whole = self.figures("compare", "noisy.npy", "light.npy", "--margin", 1, "--csv", "frames.csv", "--metric",
+                             "psnr,ssim,pu21-psnr", "--metric", "psnr-frames,pu21-ssim,pu21-csf-psnr")
+        rows = self.table("frames.csv")
+        self.assertEqual([row["frame"] for row in rows], [1, 2, 3, 4])
+        self.assertEqual(list(rows[0]), ["frame", "psnr_db", "pu21_psnr_db", "ssim", "pu21_ssim", "pu21_csf_psnr_db"])
+        for row in rows:
+            frame = int(row["frame"])
+            self.write_array("a.npy", self.noisy[frame:frame + 1])
+            self.write_array("b.npy", self.light[frame:frame + 1])
+            alone = self.figures("compare", "a.npy", "b.npy", "--metric",
+                                 "psnr,ssim,pu21-psnr,pu21-ssim,pu21-csf-psnr")
+            for key in list(row)[1:]:
+                self.assertEqual(row[key], math.inf if alone[key] is None else alone[key], key)
+        self.assertEqual(rows[1]["psnr_db"], math.inf)
+        self.assertAlmostEqual(whole["ssim"], np.mean([row["ssim"] for row in rows]), 9)
+        self.assertAlmostEqual(whole["pu21_ssim"], np.mean([row["pu21_ssim"] for row in rows]), 9)
+        self.assertAlmostEqual(whole["psnr_db"],
+                               -10 * np.log10(np.mean([10 ** (-row["psnr_db"] / 10) for row in rows])), 6)
+
+    def test_noise_of_known_strength(self):
+        figures = self.figures("compare", "noisy.npy", "light.npy", "--metric", "psnr")
+        error = np.float32(self.noisy).astype(float) - np.float32(self.light)
+        self.assertAlmostEqual(figures["psnr_db"], -10 * math.log10(np.mean(error**2)), 6)
+        # sigma = 0.01 is 40 dB; of 1920 draws the mean square is off by 3 sqrt(2 / 1920) = 10 % at most.
+        self.assertAlmostEqual(figures["psnr_db"], 40, delta=0.45)
+
+    def test_noise_is_seen_less_than_a_constant_error_of_the_same_strength(self):
+        metrics = ("--metric", "pu21-psnr,pu21-csf-psnr")
+        self.write_array("flat.npy", np.full((2, 32, 32), 0.5))
+        self.write_array("brighter.npy", np.full((2, 32, 32), 0.51))
+        noise = np.random.default_rng(6).choice([-0.01, 0.01], (2, 32, 32))
+        self.write_array("grainy.npy", 0.5 + noise)
+        constant = self.figures("compare", "brighter.npy", "flat.npy", *metrics)
+        self.assertAlmostEqual(constant["pu21_csf_psnr_db"], constant["pu21_psnr_db"], 3)
+        self.assertEqual(constant["pixels_per_degree"], 60)
+        seen = [self.figures("compare", "grainy.npy", "flat.npy", *metrics, "--pixels-per-degree",
+                             pixels)["pu21_csf_psnr_db"] for pixels in (5, 30, 60, 120)]
+        self.assertAlmostEqual(seen[0], constant["pu21_psnr_db"], delta=0.1)  # near: all of it
+        self.assertEqual(seen, sorted(seen))
+        self.assertGreater(seen[2], seen[0] + 6)
+
+    def test_figures_are_chosen_by_name(self):
+        self.assertEqual(list(self.figures("compare", "noisy.npy", "light.npy")),
+                         [*DEFAULT, "peak", "cd_per_unit", "frames", "longer"])
+        figures = self.figures("compare", "noisy.npy", "light.npy", "--metric", "pu21-ssim")
+        self.assertEqual(list(figures), ["pu21_ssim", "peak", "cd_per_unit", "frames", "longer"])
+        said = self.succeed("compare", "noisy.npy", "light.npy", "--metric", "ssim,pu21-ssim")
+        self.assertEqual([line.split()[0] for line in said.splitlines()], ["SSIM", "PU21-SSIM"])
+        self.fails(USAGE, ["--metric", "vmaf"], "compare", "noisy.npy", "light.npy", "--metric", "vmaf")
+
+    def test_the_difference_is_that_of_the_light(self):
+        self.write_array("bright.npy", self.light * 2)
+        line = ("compare", "bright.npy", "light.npy", "--max-value", 1.5, "--difference")
+        expected = np.abs(np.minimum(np.float32(self.light * 2), 1.5) - np.minimum(np.float32(self.light), 1.5))
+        self.succeed(*line, "d.npy")
+        np.testing.assert_allclose(self.array("d.npy"), expected, atol=1e-6)
+        self.succeed(*line, "frames")
+        self.assertEqual(len([name for name in self.names() if name.startswith("frames/")]), 6)
+        self.assertAlmostEqual(self.figures("info", "frames")["mean_light"], expected.mean(), 5)
+        self.succeed(*line, "rms.png")
+        rms = np.sqrt((expected**2).mean(axis=0))
+        shown = rms * (1 + rms / 16) / (1 + rms)  # io/tone_map.h
+        self.assertAlmostEqual(self.figures("info", "rms.png")["mean_light"], (shown ** (1 / 2.2)).mean(),
+                               delta=0.5 / 255)
+        self.fails(INPUT, ["d.npy", "--force"], *line, "d.npy")
+        self.fails(USAGE, ["--difference", "a difference is"], *line, "d.mp4")
+
+    def test_the_chart_is_a_picture(self):
+        done = self.run_program("compare", "noisy.npy", "light.npy", "--chart", "frames.svg")
+        if "gnuplot" in done.stderr:
+            self.skipTest(done.stderr)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        content = (self.folder / "frames.svg").read_text(encoding="utf-8")
+        for part in ("<svg", "PU21-PSNR", "SSIM", "similarity"):
+            self.assertIn(part, content)
+        self.assertNotIn("PSNR frames", content)
+
+
+if __name__ == "__main__":
+    unittest.main()
