@@ -8,6 +8,7 @@
 #include "io/disk_sync.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/emulation.h"
 #include "python/errors.h"
 #include "python/footage.h"
 #include "python/schedule.h"
@@ -20,17 +21,6 @@ namespace stipple::python {
 namespace {
 
 using namespace pybind11::literals;
-
-/// A sensor with its schedule for some footage.
-SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
-                       std::uint64_t seed, const std::string& overrun) {
-    SensorChoice choice = sensor_of(sensor).choice;
-    choice.seed = seed;
-    if (overrun != "stretch" && overrun != "drop")
-        throw InputError("overrun", "\"" + overrun + "\" is none of stretch, drop");
-    choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
-    return set_up(choice, schedule, footage.shape(), footage.filter());
-}
 
 /// What the readout cost: the key `readout` of "emulate" in docs/cli.md.
 py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
@@ -58,7 +48,8 @@ py::dict readout_dict(const ReadoutAccount& account, double light_throughput) {
             static_cast<double>(account.shape().pixels()) * (slots / seconds));
 }
 
-/// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
+}  // namespace
+
 py::dict figures_of(const StreamRecorder& recorder) {
     py::dict figures("slots"_a = recorder.stats().slots, "samples"_a = recorder.samples(),
                      "payload_bits"_a = recorder.payload_bits(),
@@ -69,6 +60,23 @@ py::dict figures_of(const StreamRecorder& recorder) {
     if (const ReadoutAccount* account = recorder.account())
         figures["readout"] = readout_dict(*account, recorder.light_throughput());
     return figures;
+}
+
+OverrunPolicy overrun_policy(const std::string& name) {
+    if (name != "stretch" && name != "drop")
+        throw InputError("overrun", "\"" + name + "\" is none of stretch, drop");
+    return name == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+}
+
+namespace {
+
+/// A sensor with its schedule for some footage.
+SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
+                       std::uint64_t seed, const std::string& overrun) {
+    SensorChoice choice = sensor_of(sensor).choice;
+    choice.seed = seed;
+    choice.overrun = overrun_policy(overrun);
+    return set_up(choice, schedule, footage.shape(), footage.filter());
 }
 
 /// Makes the stream file, and returns its figures.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,18 +24,8 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 
-/// Opens the camera for its images. \throws InputError, DeviceError as open_camera; InputError if
-/// what it sends is a coded stream, whose payloads only look like images.
-[[nodiscard]] std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
-                                                        const CameraSettings& settings);
-
 /// Whether the address is that of a recording or footage.
 [[nodiscard]] bool is_replay(const CameraArguments& arguments);
-
-/// What a session may take for a fault: a replay has an end, and pauses where the recording has
-/// them.
-[[nodiscard]] SessionOptions session_options(const CameraArguments& arguments,
-                                             SessionOptions options);
 
 /// `--incomplete`.
 void add_incomplete_argument(Command& command, IncompletePolicy& policy);
