@@ -61,6 +61,7 @@ if(STIPPLE_PYTHON AND Python_EXECUTABLE MATCHES "^/usr/bin/python3")
     set(CPACK_COMPONENT_PYTHON_DEPENDS program)  # as above, and libstipple_opencv.so
     set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
         "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${stipple_next_minor}), python3-numpy")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "jupyter-notebook, python3-matplotlib")  # its examples
     set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
         ${CMAKE_SOURCE_DIR}/cmake/packages/postinst ${CMAKE_SOURCE_DIR}/cmake/packages/prerm)
     set(CPACK_COMPONENT_PYTHON_DESCRIPTION "coded-exposure image sensors in Python, on NumPy arrays

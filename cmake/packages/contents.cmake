@@ -32,3 +32,7 @@ endforeach()
 file(GLOB examples ${source}/examples/*.cpp)
 file(COPY ${source}/examples/CMakeLists.txt ${examples}
      DESTINATION ${CPACK_TEMPORARY_DIRECTORY}/libraries/usr/share/doc/libstipple-dev/examples)
+if("python" IN_LIST CPACK_COMPONENTS_ALL)
+    file(COPY ${source}/examples/notebooks
+         DESTINATION ${CPACK_TEMPORARY_DIRECTORY}/python/usr/share/doc/python3-stipple/examples)
+endif()
