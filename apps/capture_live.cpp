@@ -93,8 +93,8 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
     LiveCamera camera(
-        [&camera = arguments.camera, settings = camera_settings(arguments.camera)] {
-            return open_image_camera(camera.address, settings, camera.buffers);
+        [&chosen = arguments.camera, settings = camera_settings(arguments.camera)] {
+            return open_image_camera(chosen.address, settings, chosen.buffers);
         },
         camera_options(arguments));
     const FrameLight to_light(camera.layout(), arguments.black_level_dn);

@@ -110,8 +110,16 @@ class PackagesTest(unittest.TestCase):
         shutil.copy(sensors / "paper.toml", sensors / "packed_only.toml")
         run(program, "synth", "pan", "-o", "scene.npy", "--frames", "8", cwd=self.folder)
         run(program, "emulate", "scene.npy", "-o", "clip.stipple", "--sensor", "packed_only", cwd=self.folder)
-        symbols = run("readelf", "--wide", "--sections", program)
-        self.assertNotIn(".symtab", symbols)  # it is stripped
+
+    def test_what_is_compiled_is_hardened_and_stripped(self):
+        compiled = [self.folder / "stipple/usr/bin/stipple", *self.folder.glob("*/usr/lib/**/*.so")]
+        self.assertEqual(len(compiled), 3)
+        for file in compiled:
+            with self.subTest(file.name):
+                self.assertRegex(run("readelf", "--wide", "--dynamic", file), r"\(FLAGS_1\).*\bNOW\b")
+                sections = run("readelf", "--wide", "--sections", "--program-headers", file)
+                self.assertIn("GNU_RELRO", sections)
+                self.assertNotIn(".symtab", sections)
 
 
 if __name__ == "__main__":
