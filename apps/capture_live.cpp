@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <random>
 #include <string>
 #include <utility>
 
@@ -19,16 +17,15 @@
 #include "apps/report/number_text.h"
 #include "apps/report/preview_image.h"
 #include "apps/report/progress.h"
-#include "apps/report/rate_warning.h"
 #include "apps/report/session_report.h"
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
-#include "capture/recording/recording_reader.h"
-#include "capture/recording/replay_camera.h"
-#include "core/error.h"
+#include "capture/capture_end.h"
+#include "capture/image_camera.h"
+#include "capture/live_origin.h"
+#include "capture/rate_warning.h"
 #include "io/disk_sync.h"
-#include "readout/footage_origin.h"
 
 namespace stipple {
 namespace {
@@ -45,40 +42,11 @@ struct LiveArguments {
     double late_after_slots = 2;
 };
 
-/// A random number: packets of two recordings with the same settings are told apart by it
-/// (docs/stream_format.md, "Packet").
-std::string new_recording_name() {
-    std::random_device random;
-    return fmt::format("{:08x}{:08x}", random(), random());
-}
-
-/// The origin of the light for the provenance of the stream. It names neither address nor time, so
-/// that the same input gives the same bytes.
-FootageOrigin origin_of(const LiveArguments& arguments, const LiveCamera& camera) {
-    FootageOrigin origin{.name = camera.description().model};
-    if (is_replay(arguments.camera)) {
-        const std::string file(replayed_file(arguments.camera.address));
-        origin = origin_of(file, FootageOptions{}, [] { throw_if_stopped(); });
-        if (!is_recording(file)) origin.pixel_format = camera.layout().format->name;
-    } else {
-        origin.recording = new_recording_name();
-    }
-    origin.black_level_dn = arguments.black_level_dn;
-    return origin;
-}
-
 LiveCameraOptions camera_options(const LiveArguments& arguments) {
-    return {.session = session_options(arguments.camera, arguments.session),
+    return {.session = session_options(arguments.camera.address, arguments.session),
             .waiting_frames = arguments.queue_frames,
             .from_start = is_replay(arguments.camera),
             .tell = say_event};
-}
-
-std::string left_out_text(const std::string& address, const LeftOut& left_out) {
-    return fmt::format(
-        "{}: {} are missing before a frame, too many beside those that came: the frame before "
-        "stands in for {} of them, so slots from {} on come too early",
-        address, counted(left_out.missing, "frame"), left_out.held, left_out.first_slot);
 }
 
 LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
@@ -121,49 +89,20 @@ void say_slow_preview() {
         "does not wait");
 }
 
-/// Puts the stream in place, as far as it goes. \throws DeviceError.
-void put_in_place(StreamRecorder& recorder, LiveEmulation& emulation, const std::string& output) {
-    try {
-        if (!emulation.failure) return recorder.finish();
-    } catch (...) {
-        emulation.failure = std::current_exception();
-    }
-    if (!recorder.keep()) return;  // the message of the failure gives its name
-    say_kept(output.c_str());
-}
-
-/// \throws the reason why no frame came.
-[[noreturn]] void fail_without_frame(const LiveEmulation& emulation, const std::string& address) {
-    throw_if_stopped();
-    if (emulation.failure) std::rethrow_exception(emulation.failure);
-    const auto& end = emulation.end;
-    if (end && end->bad_file) throw InputError(*end->bad_file);
-    throw DeviceError(address, end ? end->reason : "no frame came");
-}
-
-/// \throws the fault that ended an emulation too early.
-void check_end(const LiveEmulation& emulation, const LiveArguments& arguments) {
-    if (emulation.failure) std::rethrow_exception(emulation.failure);
-    const auto& end = emulation.end;
-    if (end && end->bad_file) {
-        say_kept(arguments.output.c_str());
-        throw InputError(*end->bad_file);
-    }
-    if (end && !end->at_end) throw DeviceError(arguments.camera.address, end->reason);
-}
-
 void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
     LiveCamera camera(
-        [&arguments, settings = camera_settings(arguments.camera)] {
-            return open_image_camera(arguments.camera, settings);
+        [&chosen = arguments.camera, settings = camera_settings(arguments.camera)] {
+            return open_image_camera(chosen.address, settings, chosen.buffers);
         },
         camera_options(arguments));
     const FrameLight to_light(camera.layout(), arguments.black_level_dn);
     const SensorSetup setup = set_up_sensor(arguments.sensor, to_light.shape(), to_light.filter());
-    StreamRecorder recorder =
-        open_stream_output(arguments.output, run, setup, origin_of(arguments, camera));
+    const std::string& address = arguments.camera.address;
+    const FootageOrigin origin =
+        live_origin(address, camera, arguments.black_level_dn, [] { throw_if_stopped(); });
+    StreamRecorder recorder = open_stream_output(arguments.output, run, setup, origin);
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
     std::optional<LivePreview> preview;
@@ -172,19 +111,23 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
         preview.emplace(
             PreviewDecoder(stream_header_of(setup, {}), preview_options(arguments.preview)),
             show_in(preview_file));
-    LiveEmulatorOptions options{.limits = arguments.limits,
-                                .late_after_slots = arguments.late_after_slots,
-                                .tell = [&](const LeftOut& left_out) {
-                                    say_warning(left_out_text(arguments.camera.address, left_out));
-                                }};
+    LiveEmulatorOptions options{
+        .limits = arguments.limits,
+        .late_after_slots = arguments.late_after_slots,
+        .tell = [&](const LeftOut& left_out) { say_warning(left_out_text(address, left_out)); }};
     if (preview)
         options.show = [&](auto packets, auto arrival_ns) { preview->add(packets, arrival_ns); };
     LiveEmulation emulation = emulate(camera, to_light, recorder, options, run);
     emulation.totals.repeated = camera.stop().repeated;
-    if (emulation.latencies.count() == 0) fail_without_frame(emulation, arguments.camera.address);
-    put_in_place(recorder, emulation, arguments.output);
+    if (emulation.latencies.count() == 0) {
+        throw_if_stopped();
+        throw_early_end(emulation, address);
+    }
+    if (put_in_place(recorder, emulation)) say_kept(arguments.output.c_str());
     if (preview) preview->finish(say_slow_preview);
-    check_end(emulation, arguments);
+    if (!emulation.failure && emulation.end && emulation.end->bad_file)
+        say_kept(arguments.output.c_str());
+    throw_early_end(emulation, address);
     const LiveReport report{emulation, recorder, camera};
     auto figures = live_json(report);
     if (preview) figures["preview"] = preview_json(preview_file, *preview);

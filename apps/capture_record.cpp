@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,10 +19,11 @@
 #include "apps/report/session_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
+#include "capture/capture_end.h"
+#include "capture/image_camera.h"
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"
-#include "core/error.h"
 
 namespace stipple {
 namespace {
@@ -82,23 +82,20 @@ void check_end(const CameraRecording& recording, const std::string& file,
     const auto& lost = recording.lost;
     if (recording.kept && (recording.failure || (lost && lost->bad_file)))
         say_kept(file.c_str(), [&] { return counted(recording.end.frames, "frame"); });
-    if (recording.failure) std::rethrow_exception(recording.failure);
-    if (lost && lost->bad_file) throw InputError(*lost->bad_file);
-    if (lost && !lost->at_end) throw DeviceError(address, "camera lost: " + lost->reason);
-    if (!recording.kept)
-        throw DeviceError(address,
-                          "no frame came; record for longer, or see \"stipple capture doctor\"");
+    throw_early_end(recording, address);
 }
 
 void record_camera(const RecordArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     const CameraSettings settings = camera_settings(arguments.camera);
-    CameraRecorder recorder([&] { return open_image_camera(arguments.camera, settings); }, settings,
-                            file_for(arguments.output),
-                            {.session = session_options(arguments.camera, arguments.session),
-                             .limits = arguments.limits,
-                             .force = run.force,
-                             .tell = say_event});
+    const std::string& address = arguments.camera.address;
+    CameraRecorder recorder(
+        [&] { return open_image_camera(address, settings, arguments.camera.buffers); }, settings,
+        file_for(arguments.output),
+        {.session = session_options(address, arguments.session),
+         .limits = arguments.limits,
+         .force = run.force,
+         .tell = say_event});
     say_warnings(recorder.description());
     say_leftover(recorder.file());
     const CameraRecording recording = [&] {
@@ -110,7 +107,7 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
         });
     }();
     const std::string file = recorder.file().string();
-    check_end(recording, file, arguments.camera.address);
+    check_end(recording, file, address);
     json.write(recording_json(file, recording));
     run.say(recording_text(file, recording));
 }
@@ -130,13 +127,8 @@ void record_coded_stream(const RecordArguments& arguments, const RunOptions& run
         });
     }();
     if ((recording.failure || recording.lost) && recording.kept) say_kept(arguments.output.c_str());
-    if (recording.failure) std::rethrow_exception(recording.failure);
-    if (recording.lost && recording.lost->bad_file) throw InputError(*recording.lost->bad_file);
-    if (recording.lost) throw DeviceError(address, "camera lost: " + recording.lost->reason);
-    if (!recording.kept) {
-        throw_if_stopped();
-        throw DeviceError(address, "no slot of the coded stream arrived");
-    }
+    if (!recording.failure && !recording.lost && !recording.kept) throw_if_stopped();
+    throw_early_end(recording, address);
     json.write({{"slots", recording.slots},
                 {"missing_slots", recording.missing_slots},
                 {"damaged_frames", recording.damaged_frames}});

@@ -30,6 +30,7 @@
 #include "metrics/emva1288/series_evaluation.h"
 #include "readout/flat_field.h"
 #include "readout/sensor_file.h"
+#include "sensor_model/configured_figures.h"
 
 namespace stipple {
 namespace {
@@ -132,7 +133,7 @@ void report(const CameraReport& camera, const std::optional<DeviceError>& failur
             const RunOptions& run) {
     json.write(camera_json(camera));
     run.say(camera_text(camera));
-    say_warning(bias_warning(camera.evaluation));
+    say_warning(emva1288::bias_warning(camera.evaluation));
     if (failure) throw DeviceError(*failure);
 }
 

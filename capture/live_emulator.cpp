@@ -1,5 +1,7 @@
 #include "capture/live_emulator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -14,6 +16,13 @@ namespace {
 constexpr std::chrono::milliseconds kPollInterval{50};
 
 }  // namespace
+
+std::string left_out_text(const std::string& address, const LeftOut& left_out) {
+    return fmt::format(
+        "{}: {} frames are missing before a frame, too many beside those that came: the frame "
+        "before stands in for {} of them, so slots from {} on come too early",
+        address, left_out.missing, left_out.held, left_out.first_slot);
+}
 
 LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
                            LiveEmulatorOptions options)

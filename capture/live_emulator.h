@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "capture/capture_limits.h"
@@ -23,6 +24,9 @@ struct LeftOut {
     std::uint64_t held = 0;       ///< of these
     std::int64_t first_slot = 0;  ///< from which on slots come too early
 };
+
+/// The same as a warning; `address` is that of the camera.
+[[nodiscard]] std::string left_out_text(const std::string& address, const LeftOut& left_out);
 
 struct LiveEmulatorOptions {
     CaptureLimits limits = {};

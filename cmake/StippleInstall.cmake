@@ -1,7 +1,7 @@
 # cmake --install: the program, its configurations, and each module as a library with its headers for other
 # projects (docs/library.md): find_package(stipple COMPONENTS decoder), stipple::decoder; pkg-config stipple.
 include(CMakePackageConfigHelpers)
-include(StipplePackages)
+include(StippleDependencies)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stipple)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/stipple)

@@ -1,85 +1,73 @@
-# What a project needs that uses an installed module, from what the module links: stipple_module() and
-# target_link_libraries() are the only places that name packages of a module. A library that a module links
-# needs a line here: the target or library; what find_dependency() is told, or for a target of
-# pkg_check_modules() nothing; the pkg-config module, or a flag for the linker, or nothing.
-set(stipple_libraries_known
-    "Threads::Threads | Threads | -pthread"
-    "dl | | -ldl"
-    "fmt::fmt | fmt | fmt"
-    "TBB::tbb | TBB | tbb"
-    "tomlplusplus::tomlplusplus | tomlplusplus | tomlplusplus"
-    "PNG::PNG | PNG | libpng"
-    "TIFF::TIFF | TIFF | libtiff-4"
-    "PkgConfig::OpenEXR | | OpenEXR"
-    "tinyxml2::tinyxml2 | tinyxml2 | tinyxml2"
-    "hwy::hwy | hwy | libhwy"
-    "OpenSSL::Crypto | OpenSSL | libcrypto"
-    "Eigen3::Eigen | Eigen3 |"
-    "nlohmann_json::nlohmann_json | nlohmann_json |"
-    "opencv_core | OpenCV 4.6 COMPONENTS core imgproc | -lopencv_core"
-    "opencv_imgproc | OpenCV 4.6 COMPONENTS core imgproc | -lopencv_imgproc"
-    "PkgConfig::Aravis | | aravis-0.8")
+# Debian packages by CPack (scripts/package): one for each component of the installation. Their documents
+# and compressed manual pages are added by packages/contents.cmake.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME stipple)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+# Older than the 0.1.0-1 that Debian itself may have one day.
+set(CPACK_DEBIAN_PACKAGE_RELEASE 0stipple1)
+set(CPACK_PACKAGE_CONTACT "Stipple authors <stipple@example.org>")  # DEBFULLNAME, DEBEMAIL take its place
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL program libraries)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/cmake/packages/settings.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/cmake/packages/contents.cmake)
+set(CPACK_STIPPLE_SOURCE_DIR ${CMAKE_SOURCE_DIR})
+set(CPACK_STIPPLE_LATE_LIBRARIES ${FFmpeg_LINK_LIBRARIES})  # dpkg-shlibdeps does not see them
 
-# stipple_line_of(OUT LIBRARY MODULE): sets OUT_find and OUT_link to the second and third part of the line of
-# the library.
-function(stipple_line_of out library module)
-    foreach(line IN LISTS stipple_libraries_known)
-        string(REGEX MATCH "^([^ ]+) [|] ?(.*) ?[|] ?(.*)$" matched "${line}")
-        if(CMAKE_MATCH_1 STREQUAL library)
-            string(STRIP "${CMAKE_MATCH_2}" find)
-            string(STRIP "${CMAKE_MATCH_3}" link)
-            set(${out}_find "${find}" PARENT_SCOPE)
-            set(${out}_link "${link}" PARENT_SCOPE)
-            return()
-        endif()
-    endforeach()
-    message(FATAL_ERROR "stipple_${module} links ${library}, of which cmake/StipplePackages.cmake has no line")
-endfunction()
+set(stipple_about "In a coded-exposure sensor each pixel opens and closes at its own times.
+Stipple emulates such a sensor on footage, writes its packed sample stream,
+and decodes the stream to high-speed, high-dynamic-range video.")
 
-# stipple_dependencies(MODULES PKGCONFIG FLAGS module ...): sets MODULES to lines of CMake for stippleConfig.cmake
-# that set, for each module, stipple_modules_of_X, stipple_packages_of_X (arguments of find_dependency, joined by
-# blanks) and stipple_pkgconfig_of_X (TARGET=MODULE); PKGCONFIG to the pkg-config modules of all, FLAGS to the
-# linker flags of all.
-function(stipple_dependencies out_modules out_pkgconfig out_flags)
-    set(text "")
-    set(all_pkgconfig)
-    set(all_flags)
-    foreach(module IN LISTS ARGN)
-        set(modules)
-        set(packages)
-        set(pkgconfig)
-        get_target_property(libraries stipple_${module} LINK_LIBRARIES)
-        foreach(library IN LISTS libraries)
-            if(library MATCHES "^stipple_(.+)$")
-                list(APPEND modules ${CMAKE_MATCH_1})
-                continue()
-            endif()
-            stipple_line_of(line ${library} ${module})
-            if(line_find)
-                list(APPEND packages "${line_find}")
-            elseif(library MATCHES "^PkgConfig::(.+)$")
-                list(APPEND pkgconfig "${CMAKE_MATCH_1}=${line_link}")
-            endif()
-            if(line_link MATCHES "^-")
-                list(APPEND all_flags ${line_link})
-            elseif(line_link)
-                list(APPEND all_pkgconfig ${line_link})
-            endif()
-        endforeach()
-        foreach(kind modules packages pkgconfig)
-            list(REMOVE_DUPLICATES ${kind})
-            set(quoted "")
-            foreach(word IN LISTS ${kind})
-                string(APPEND quoted " \"${word}\"")
-            endforeach()
-            string(APPEND text "set(stipple_${kind}_of_${module}${quoted})\n")
-        endforeach()
-    endforeach()
-    list(REMOVE_DUPLICATES all_pkgconfig)
-    list(REMOVE_DUPLICATES all_flags)
-    list(JOIN all_pkgconfig " " all_pkgconfig)
-    list(JOIN all_flags " " all_flags)
-    set(${out_modules} "${text}" PARENT_SCOPE)
-    set(${out_pkgconfig} "${all_pkgconfig}" PARENT_SCOPE)
-    set(${out_flags} "${all_flags}" PARENT_SCOPE)
-endfunction()
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stipple)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "emulator and decoder of coded-exposure image sensors
+${stipple_about}
+It also records cameras (GigE Vision, USB3 Vision, V4L2) and measures sensors
+by EMVA 1288.
+
+This package contains the program with its sensors and schedules.")
+
+set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libstipple-dev)
+set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_LIBRARIES_DEPENDS program)  # its sensors and schedules
+set(stipple_needs
+    libeigen3-dev libfmt-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev libpng-dev libssl-dev
+    libtbb-dev libtiff-dev libtinyxml2-dev libtomlplusplus-dev nlohmann-json3-dev)
+if(STIPPLE_ARAVIS)
+    list(APPEND stipple_needs libaravis-dev libusb-1.0-0-dev libxml2-dev zlib1g-dev)
+endif()
+list(JOIN stipple_needs ", " CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS)
+set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "coded-exposure image sensors in C++: static libraries
+${stipple_about}
+
+This package contains the static libraries and headers, their configuration
+for CMake and pkg-config, and examples.")
+
+# A module of another Python than Debian's has no package.
+if(STIPPLE_PYTHON AND Python_EXECUTABLE MATCHES "^/usr/bin/python3")
+    list(APPEND CPACK_COMPONENTS_ALL python)
+    math(EXPR stipple_next_minor "${Python_VERSION_MINOR} + 1")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stipple)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+    set(CPACK_COMPONENT_PYTHON_DEPENDS program)  # as above, and libstipple_opencv.so
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+        "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${stipple_next_minor}), python3-numpy")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "jupyter-notebook, python3-matplotlib")  # its examples
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+        ${CMAKE_SOURCE_DIR}/cmake/packages/postinst ${CMAKE_SOURCE_DIR}/cmake/packages/prerm)
+    set(CPACK_COMPONENT_PYTHON_DESCRIPTION "coded-exposure image sensors in Python, on NumPy arrays
+${stipple_about}
+
+This package contains the Python module stipple: arrays in, arrays out.")
+endif()
+
+include(CPack)

@@ -21,8 +21,8 @@ std::vector<fs::path> config_folders() {
         folders.push_back((own / "../share/stipple/config").lexically_normal());
         folders.push_back((own / "../../config").lexically_normal());  // build/release/stipple
         folders.push_back(own / "config");                             // the Python package
+        if (lies_in(own, STIPPLE_BUILD_DIR)) folders.emplace_back(STIPPLE_SOURCE_CONFIG_DIR);
     }
-    folders.emplace_back(STIPPLE_SOURCE_CONFIG_DIR);
     folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);
     return folders;
 }

@@ -11,14 +11,23 @@ std::vector<fs::path> own_folders() {
     std::vector<fs::path> folders;
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    if (!program.empty()) folders.push_back(program.parent_path());
     Dl_info info{};
-    // Of a program the name is what it was called by, which may be relative, or of another file.
-    if (dladdr(reinterpret_cast<const void*>(&own_folders), &info) == 0) return folders;
-    const fs::path file(info.dli_fname);
-    if (file.is_absolute() && !fs::equivalent(file, program, error))
-        folders.push_back(file.parent_path());
+    if (dladdr(reinterpret_cast<const void*>(&own_folders), &info) != 0) {
+        // Of a program the name is what it was called by, which may be relative, or of another
+        // file.
+        const fs::path file(info.dli_fname);
+        if (file.is_absolute() && !fs::equivalent(file, program, error))
+            folders.push_back(file.parent_path());
+    }
+    if (!program.empty()) folders.push_back(program.parent_path());
     return folders;
+}
+
+bool lies_in(const fs::path& folder, const fs::path& above) {
+    std::error_code error;
+    const fs::path way =
+        fs::weakly_canonical(folder, error).lexically_relative(fs::weakly_canonical(above, error));
+    return !way.empty() && *way.begin() != "..";
 }
 
 }  // namespace stipple

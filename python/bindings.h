@@ -18,5 +18,10 @@ void bind_decode(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_timing(py::module_& module);
 void bind_recording(py::module_& module);
+void bind_characterize(py::module_& module);
+void bind_camera(py::module_& module);
+void bind_camera_frames(py::module_& module);
+void bind_record(py::module_& module);
+void bind_live(py::module_& module);
 
 }  // namespace stipple::python

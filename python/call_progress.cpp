@@ -12,14 +12,17 @@ constexpr std::chrono::milliseconds kPause{100};
 
 }  // namespace
 
-CallProgress::CallProgress(py::object tell, std::optional<std::int64_t> slots)
-    : tell_(std::move(tell)), slots_(slots), next_(std::chrono::steady_clock::now() + kPause) {}
+CallProgress::CallProgress(py::object tell, std::optional<std::int64_t> slots, Early early)
+    : tell_(std::move(tell)),
+      slots_(slots),
+      early_(early),
+      next_(std::chrono::steady_clock::now() + kPause) {}
 
 bool CallProgress::reach(double slots) noexcept {
     done_ =
         slots_ ? std::min(slots, static_cast<double>(*slots_)) : slots;  // blocks go beyond `until`
     const auto now = std::chrono::steady_clock::now();
-    if (raised_ || now < next_) return !raised_;
+    if (raised_ || enough_ || now < next_) return !raised_ && !enough_;
     next_ = now + kPause;
     const py::gil_scoped_acquire gil;
     try {
@@ -28,7 +31,7 @@ bool CallProgress::reach(double slots) noexcept {
     } catch (...) {
         raised_ = std::current_exception();
     }
-    return !raised_;
+    return !raised_ && !enough_;
 }
 
 void CallProgress::finish() {
@@ -38,7 +41,9 @@ void CallProgress::finish() {
 }
 
 void CallProgress::say() {
-    if (!tell_.is_none()) tell_(done_, slots_);
+    if (tell_.is_none()) return;
+    const py::object answer = tell_(done_, slots_);
+    if (early_ == Early::kYes && answer.is(py::bool_(false))) enough_ = true;
 }
 
 }  // namespace stipple::python

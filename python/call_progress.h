@@ -12,9 +12,13 @@ namespace stipple::python {
 /// Tells Python how far a long call has come, some ten times a second, and lets Ctrl-C end it.
 class CallProgress {
   public:
+    /// Whether a call can end early, with what it has so far, when `tell` returns False.
+    enum class Early : std::uint8_t { kNo, kYes };
+
     /// `tell` is None or called as tell(slots done, slots in all or None); what it raises ends the
     /// call. With the GIL.
-    CallProgress(pybind11::object tell, std::optional<std::int64_t> slots);
+    CallProgress(pybind11::object tell, std::optional<std::int64_t> slots,
+                 Early early = Early::kNo);
 
     /// Without the GIL. False if the call is to end.
     [[nodiscard]] bool reach(double slots) noexcept;
@@ -26,6 +30,8 @@ class CallProgress {
 
     pybind11::object tell_;
     std::optional<std::int64_t> slots_;
+    Early early_;
+    bool enough_ = false;
     double done_ = 0;
     std::chrono::steady_clock::time_point next_;
     std::exception_ptr raised_;

@@ -8,6 +8,7 @@
 #include "io/disk_sync.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/emulation.h"
 #include "python/errors.h"
 #include "python/figures_dict.h"
 #include "python/footage.h"
@@ -19,6 +20,21 @@
 #include "readout/timing/readout_figures.h"
 
 namespace stipple::python {
+
+py::dict figures_of(const StreamRecorder& recorder) {
+    py::dict figures = dict_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
+    if (const ReadoutCost* cost = recorder.readout_cost())
+        figures["readout"] = dict_of(
+            [&](const auto& add) { visit_cost_figures(*cost, recorder.light_throughput(), add); });
+    return figures;
+}
+
+OverrunPolicy overrun_policy(const std::string& name) {
+    if (name != "stretch" && name != "drop")
+        throw InputError("overrun", "\"" + name + "\" is none of stretch, drop");
+    return name == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+}
+
 namespace {
 
 /// A sensor with its schedule for some footage.
@@ -26,19 +42,8 @@ SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const p
                        std::uint64_t seed, const std::string& overrun) {
     ChosenSensor chosen = sensor_of(sensor);
     chosen.choice.seed = seed;
-    if (overrun != "stretch" && overrun != "drop")
-        throw InputError("overrun", "\"" + overrun + "\" is none of stretch, drop");
-    chosen.choice.overrun = overrun == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+    chosen.choice.overrun = overrun_policy(overrun);
     return set_up(chosen, schedule, footage.shape(), footage.filter());
-}
-
-/// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
-py::dict figures_of(const StreamRecorder& recorder) {
-    py::dict figures = dict_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
-    if (const ReadoutCost* cost = recorder.readout_cost())
-        figures["readout"] = dict_of(
-            [&](const auto& add) { visit_cost_figures(*cost, recorder.light_throughput(), add); });
-    return figures;
 }
 
 /// Makes the stream file, and returns its figures.

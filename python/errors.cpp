@@ -21,10 +21,11 @@ PyObject* class_of(int number) {
     return number == EEXIST ? PyExc_FileExistsError : PyExc_OSError;
 }
 
-/// A message of the program as Python's users know its options: as arguments.
-std::string in_python(const char* message) {
+}  // namespace
+
+std::string in_python(const std::string& message) {
     const std::pair<const char*, const char*> arguments[] = {
-        {"--set (sensor|schedule|decoder)[.]", "$1 setting "},
+        {"--set (sensor|schedule|decoder|camera)[.]", "$1 setting "},
         {"--force", "force=True"},
         {"--fill-gaps", "fill_gaps=True"},
         {"--overrun drop", "overrun=\"drop\""},
@@ -35,6 +36,8 @@ std::string in_python(const char* message) {
         text = std::regex_replace(text, std::regex(option), argument);
     return text;
 }
+
+namespace {
 
 void translate(std::exception_ptr thrown) {
     try {

@@ -12,6 +12,9 @@
 /// raises.
 namespace stipple::python {
 
+/// A message of the program as Python's users know its options: as arguments.
+[[nodiscard]] std::string in_python(const std::string& message);
+
 /// A file that cannot be opened or created.
 class FileError : public std::runtime_error {
   public:

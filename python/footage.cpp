@@ -70,7 +70,7 @@ py::array as_array(std::unique_ptr<std::vector<float>> frames, FrameShape shape)
 }
 
 void warn(const std::string& text, int level) {
-    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), level) != 0)
+    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, in_python(text).c_str(), level) != 0)
         throw py::error_already_set();
 }
 

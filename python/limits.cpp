@@ -46,7 +46,7 @@ class MaxMemory {
 void bind_limits(py::module_& module) {
     py::class_<MaxMemory>(
         module, "MaxMemory",
-        R"(with MaxMemory("2G"): what calls may take of memory, instead of half of the
+        R"(with MaxMemory("2G"): what calls may take of memory, instead of a quarter of the
 machine's; K, M, G and T are powers of 1024. One at a time, for all threads.)")
         .def(py::init<const std::string&>(), py::arg("size"))
         .def("__enter__", &MaxMemory::enter)

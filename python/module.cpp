@@ -16,4 +16,9 @@ PYBIND11_MODULE(_stipple, module) {
     bind_compare(module);
     bind_timing(module);
     bind_recording(module);
+    bind_characterize(module);
+    bind_camera(module);
+    bind_camera_frames(module);
+    bind_record(module);
+    bind_live(module);
 }

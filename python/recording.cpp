@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
+#include <bit>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,18 +17,14 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/footage.h"
+#include "python/recording.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
+using namespace pybind11::literals;
 namespace {
 
 constexpr std::array kStatusNames{"complete", "missing_packets", "size_mismatch", "device_error"};
-
-/// A recording, which can be gone through again and again.
-struct RecordingFile {
-    fs::path path;
-    SessionRecord session;
-};
 
 /// One way through the frames of a recording.
 struct RecordingFrames {
@@ -53,9 +50,35 @@ std::unique_ptr<CapturedFrame> next_frame(RecordingFrames& frames) {
     throw py::stop_iteration();
 }
 
-/// Digital numbers: (row, col), of interleaved colour (row, col, plane).
-py::array dn_of(const CapturedFrame& frame) {
+/// The array, which Python must not write to: it may be the frame itself.
+py::array read_only(py::array array) {
+    array.attr("setflags")("write"_a = false);
+    return array;
+}
+
+/// Whether the payload holds all samples as words of this machine.
+bool holds_words(const CapturedFrame& frame) {
     const FrameLayout& layout = frame.record.layout;
+    return std::endian::native == std::endian::little &&
+           layout.format->packing == Packing::kBytes && layout.format->significant_bits > 8 &&
+           frame.payload.size() >= layout.payload_bytes();
+}
+
+/// Digital numbers: (row, col), of interleaved colour (row, col, plane).
+py::array dn_of(const py::object& self) {
+    const auto& frame = self.cast<const CapturedFrame&>();
+    const FrameLayout& layout = frame.record.layout;
+    const py::ssize_t planes = layout.format->planes;
+    if (holds_words(frame)) {
+        std::vector<py::ssize_t> shape{layout.height, layout.width};
+        std::vector<py::ssize_t> strides{static_cast<py::ssize_t>(layout.stride_bytes), 2 * planes};
+        if (planes > 1) {
+            shape.push_back(planes);
+            strides.push_back(2);
+        }
+        return read_only(
+            py::array(py::dtype::of<std::uint16_t>(), shape, strides, frame.payload.data(), self));
+    }
     auto samples = std::make_unique<std::vector<std::uint16_t>>();
     unpack_frame(layout, frame.payload, *samples);
     std::vector<py::ssize_t> shape{layout.height, layout.width};
@@ -64,12 +87,19 @@ py::array dn_of(const CapturedFrame& frame) {
         delete static_cast<std::vector<std::uint16_t>*>(memory);
     });
     const std::uint16_t* const dn = samples.release()->data();
-    return py::array_t<std::uint16_t>(shape, dn, owner);
+    return read_only(py::array_t<std::uint16_t>(shape, dn, owner));
+}
+
+/// The bytes of the frame, without a copy.
+py::array payload_of(const py::object& self) {
+    const auto& payload = self.cast<const CapturedFrame&>().payload;
+    return read_only(
+        py::array_t<std::uint8_t>(static_cast<py::ssize_t>(payload.size()), payload.data(), self));
 }
 
 void bind_frame(py::module_& module) {
     py::class_<CapturedFrame> frame(module, "Frame",
-                                    "A frame of a recording, as the camera sent it.");
+                                    "A frame as the camera sent it, of a recording or live.");
     const auto add = [&](const char* name, auto FrameRecord::*field, const char* text) {
         frame.def_property_readonly(
             name, [field](const CapturedFrame& self) { return self.record.*field; }, text);
@@ -112,10 +142,19 @@ void bind_frame(py::module_& module) {
         },
         "Colour filter array: \"none\", \"rggb\" ...");
     frame.def_property_readonly("dn", &dn_of,
-                                "Digital numbers, uint16: (row, col), of RGB (row, col, plane).");
+                                "Digital numbers, uint16, read-only: (row, col), of RGB (row, col, "
+                                "plane). Formats of 16-bit\n"
+                                "words (Mono10, Mono16 ...) are not copied.");
+    frame.def_property_readonly("payload", &payload_of,
+                                "Bytes of the frame in its wire format, uint8, read-only, not "
+                                "copied. Missing bytes are 0.");
 }
 
 }  // namespace
+
+RecordingFile open_recording(const fs::path& path, py::object figures) {
+    return {path, frames_of(path).reader.session(), std::move(figures)};
+}
 
 void bind_recording(py::module_& module) {
     bind_frame(module);
@@ -128,14 +167,14 @@ void bind_recording(py::module_& module) {
 Iterating reads frame by frame; damage costs its own frames and is a UserWarning at the end. It is
 footage, too: stipple.emulate(recording).)")
         .def_static(
-            "open",
-            [](const fs::path& path) {
-                return RecordingFile{path, frames_of(path).reader.session()};
-            },
+            "open", [](const fs::path& path) { return open_recording(path, py::none()); },
             py::arg("path"),
             "Opens a .strec file. Raises OSError if it cannot be read, ValueError if it is no\n"
             "recording.")
         .def_readonly("path", &RecordingFile::path, "Its file.")
+        .def_readonly(
+            "figures", &RecordingFile::figures,
+            "The keys of \"capture record --json\", of a recording that was just made; else None.")
         .def("__fspath__", [](const RecordingFile& self) { return self.path.string(); })
         .def_property_readonly(
             "camera",

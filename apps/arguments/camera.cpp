@@ -1,15 +1,11 @@
 #include "apps/arguments/camera.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <string>
 
 #include "apps/arguments/checks.h"
 #include "capture/camera_kind.h"
-#include "capture/open_camera.h"
 #include "core/config.h"
-#include "core/error.h"
 
 namespace stipple {
 
@@ -33,30 +29,8 @@ CameraSettings camera_settings(const CameraArguments& arguments) {
     return config.entries();
 }
 
-std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
-                                          const CameraSettings& settings) {
-    auto camera = open_camera(arguments.address, settings, arguments.buffers);
-    if (!camera->description().features.contains("CodedStreamHeader")) return camera;
-    const std::string where = arguments.address + ": CodedStreamHeader";
-    if (is_replay(arguments))
-        throw InputError(where,
-                         "what was recorded is a coded stream, not images; record the camera "
-                         "anew with \"stipple capture record --coded\"");
-    throw InputError(where,
-                     fmt::format("the camera sends a coded stream, not images; write it "
-                                 "with \"stipple capture record --coded {} -o FILE.stipple\"",
-                                 arguments.address));
-}
-
 bool is_replay(const CameraArguments& arguments) {
     return camera_kind(arguments.address).is_replay;
-}
-
-SessionOptions session_options(const CameraArguments& arguments, SessionOptions options) {
-    if (!is_replay(arguments)) return options;
-    options.reconnect = false;
-    options.stall = std::chrono::milliseconds(0);
-    return options;
 }
 
 void add_incomplete_argument(Command& command, IncompletePolicy& policy) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,18 +24,8 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 
-/// Opens a camera of images. \throws InputError, DeviceError as open_camera; InputError if the
-/// camera sends a coded stream, whose payloads have the form of images.
-[[nodiscard]] std::unique_ptr<Camera> open_image_camera(const CameraArguments& arguments,
-                                                        const CameraSettings& settings);
-
-/// True if the address is that of a recording or footage.
+/// Whether the address is that of a recording or footage.
 [[nodiscard]] bool is_replay(const CameraArguments& arguments);
-
-/// `options` without the reactions to faults of a camera if the address is a replay: a replay ends,
-/// and pauses like its recording.
-[[nodiscard]] SessionOptions session_options(const CameraArguments& arguments,
-                                             SessionOptions options);
 
 /// `--incomplete`.
 void add_incomplete_argument(Command& command, IncompletePolicy& policy);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "metrics/emva1288/camera_figures.h"
-#include "sensor_model/sensor_params.h"
 
 namespace stipple {
 
@@ -16,18 +15,11 @@ struct CameraReport {
     std::optional<emva1288::CameraFigures> configured;
 };
 
-/// The figures that an evaluation of this sensor would find without noise of its own. Defects
-/// count: dead pixels lower the quantum efficiency and raise the PRNU, hot ones raise the DSNU.
-[[nodiscard]] emva1288::CameraFigures configured_figures(const SensorParams& params);
-
 /// The keys of `characterize` in docs/cli.md.
 [[nodiscard]] nlohmann::ordered_json camera_json(const CameraReport& report);
 
 /// A table of the figures.
 [[nodiscard]] std::string camera_text(const CameraReport& report);
-
-/// Says how the figures are biased; empty if they are not.
-[[nodiscard]] std::string bias_warning(const emva1288::Evaluation& evaluation);
 
 /// A chart as the content of a file.
 struct PhotonTransferChart {

@@ -4,25 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "core/emva1288_figures.h"
 #include "metrics/emva1288/image_statistics.h"
 #include "metrics/emva1288/series.h"
 
 namespace stipple::emva1288 {
-
-/// Figures of a camera from a series, in the terms of EMVA 1288 (linear cameras); formulas in
-/// docs/characterize.md.
-struct CameraFigures {
-    double gain_dn_per_e = 0;            ///< K
-    double quantum_efficiency = 0;       ///< eta
-    double dark_noise_e = 0;             ///< sigma_d, temporal
-    double saturation_e = 0;             ///< mu_e.sat
-    double dsnu_e = 0;                   ///< DSNU1288
-    double prnu = 0;                     ///< PRNU1288, a fraction
-    double snr_max = 0;                  ///< sqrt(mu_e.sat)
-    double sensitivity_threshold_p = 0;  ///< mu_p.min, photons with SNR 1
-    double dynamic_range = 0;            ///< mu_p.sat / mu_p.min
-    double linearity_error = 0;          ///< LE, a fraction; NaN from less than two points
-};
 
 /// One exposure of the photon transfer curve.
 struct TransferPoint {
@@ -55,5 +41,12 @@ struct GroupStatistics {
 [[nodiscard]] Evaluation evaluate(const Series& series,
                                   const std::vector<GroupStatistics>& statistics,
                                   const std::string& where);
+
+/// Whether the black level is too low, so that the dark noise is cut off and all figures are
+/// biased.
+[[nodiscard]] bool is_biased(const Evaluation& evaluation);
+
+/// How the figures are biased; empty if they are not.
+[[nodiscard]] std::string bias_warning(const Evaluation& evaluation);
 
 }  // namespace stipple::emva1288

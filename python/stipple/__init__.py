@@ -8,6 +8,8 @@ Light 1.0 is the sensor's `photons_per_unit` photons per site and time slot; a f
 and values are those of the program `stipple`, whose documentation holds here too. Errors of values are
 ValueError, errors of files OSError, both with the program's texts."""
 
+from . import capture
+from ._characterize import characterize, characterize_images
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import ComparedVideos, Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
 
@@ -21,6 +23,9 @@ __all__ = [
     "Stream",
     "VideoQuality",
     "__version__",
+    "capture",
+    "characterize",
+    "characterize_images",
     "compare",
     "decode",
     "decode_methods",

@@ -23,6 +23,13 @@ stream = stipple.emulate(video, sensor, schedule, seed=2, output=Path("clip.stip
 result = stipple.decode(stream, "fast", {"rounds": 1}, until=3)
 db: float = stipple.compare(result, video, margin=1).psnr_db
 rows: int = stream.samples(0)["row"].size + stream.header["rows"]
+series = [(5e6, 0.0, np.zeros((2, 4, 4), np.uint16))]
+figures = [stipple.characterize(sensor, progress=print), stipple.characterize_images(series, bits=12)]
+settings = {"PixelFormat": "Mono12", "ExposureTime": 2000}
+recording = stipple.capture.record("replay:a.npy", Path("a.strec"), settings=settings, seconds=1.5)
+live = stipple.capture.live("replay:a.npy", sensor, schedule, frames=5, progress=lambda done, frames: done < 4)
+with stipple.capture.frames("replay:a.npy") as frames:
+    dn = [frame.dn.mean() for frame in frames]
 '''
 
 
@@ -62,6 +69,8 @@ class TypingTest(unittest.TestCase):
             if name == "__version__":
                 continue
             self.assertTrue(value.__doc__, name)
+        for name in stipple.capture.__all__:
+            self.assertTrue(getattr(stipple.capture, name).__doc__, name)
 
 
 if __name__ == "__main__":

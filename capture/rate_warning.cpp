@@ -1,4 +1,4 @@
-#include "apps/report/rate_warning.h"
+#include "capture/rate_warning.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,36 @@
+#include "capture/image_camera.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "capture/camera_kind.h"
+#include "capture/open_camera.h"
+#include "core/error.h"
+
+namespace stipple {
+
+std::unique_ptr<Camera> open_image_camera(const std::string& address,
+                                          const CameraSettings& settings,
+                                          const CameraBuffers& buffers) {
+    auto camera = open_camera(address, settings, buffers);
+    if (!camera->description().features.contains("CodedStreamHeader")) return camera;
+    const std::string where = address + ": CodedStreamHeader";
+    if (camera_kind(address).is_replay)
+        throw InputError(where,
+                         "what was recorded is a coded stream, not images; record the camera "
+                         "anew with \"stipple capture record --coded\"");
+    throw InputError(where,
+                     fmt::format("the camera sends a coded stream, not images; write it "
+                                 "with \"stipple capture record --coded {} -o FILE.stipple\"",
+                                 address));
+}
+
+SessionOptions session_options(const std::string& address, SessionOptions options) {
+    if (!camera_kind(address).is_replay) return options;
+    options.reconnect = false;
+    options.stall = std::chrono::milliseconds(0);
+    return options;
+}
+
+}  // namespace stipple

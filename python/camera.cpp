@@ -1,0 +1,124 @@
+#include "python/camera.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "capture/camera_kind.h"
+#include "capture/image_camera.h"
+#include "core/config.h"
+#include "core/error.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "python/footage.h"
+#include "python/sensor.h"
+
+namespace stipple::python {
+namespace {
+
+using namespace pybind11::literals;
+
+CameraSettings settings_for(const py::dict& settings,
+                            const std::optional<std::filesystem::path>& config) {
+    const auto texts = settings_of(settings);
+    if (!config) return Config(texts, "camera").entries();
+    return reading(*config, [&] { return Config(*config, texts, "camera").entries(); });
+}
+
+IncompletePolicy incomplete_policy(const std::string& name) {
+    if (name == "drop") return IncompletePolicy::kDrop;
+    if (name == "keep") return IncompletePolicy::kKeep;
+    if (name == "mask") return IncompletePolicy::kMask;
+    throw InputError("incomplete", fmt::format("\"{}\" is none of drop, keep, mask", name));
+}
+
+CaptureLimits limits_of(std::optional<std::int64_t> frames, std::optional<double> seconds) {
+    if (frames && *frames < 1)
+        throw InputError("frames", fmt::format("{} is not above 0", *frames));
+    if (seconds && !(*seconds > 0))
+        throw InputError("seconds", fmt::format("{} is not above 0", *seconds));
+    return {.frames = static_cast<std::uint64_t>(frames.value_or(0)),
+            .seconds = seconds.value_or(0)};
+}
+
+SessionOptions session_of(const std::string& address, const std::string& incomplete,
+                          std::int64_t stall_ms, bool reconnect) {
+    if (stall_ms < 0 || stall_ms > 3'600'000)
+        throw InputError("stall_ms", fmt::format("{} is outside 0..3600000", stall_ms));
+    return session_options(address, {.incomplete = incomplete_policy(incomplete),
+                                     .stall = std::chrono::milliseconds(stall_ms),
+                                     .reconnect = reconnect});
+}
+
+CameraTask camera_task(
+    const std::string& address, const py::dict& settings,
+    const std::optional<std::filesystem::path>& config, int buffers,
+    const std::tuple<std::string, std::int64_t, bool>& session,
+    const std::tuple<std::optional<std::int64_t>, std::optional<double>>& limits) {
+    const auto& [incomplete, stall_ms, reconnect] = session;
+    const auto& [frames, seconds] = limits;
+    return {.address = address,
+            .settings = settings_for(settings, config),
+            .buffers = {.frames = buffers},
+            .session = session_of(address, incomplete, stall_ms, reconnect),
+            .limits = limits_of(frames, seconds)};
+}
+
+}  // namespace
+
+CaptureSession::Opener CameraTask::opener() const {
+    return [address = address, settings = settings, buffers = buffers] {
+        return open_image_camera(address, settings, buffers);
+    };
+}
+
+bool CameraTask::is_replay() const {
+    return camera_kind(address).is_replay;
+}
+
+void SessionWarnings::take(const SessionEvent& event) {
+    if (const auto* const outage = std::get_if<Outage>(&event))
+        take(fmt::format("the camera is gone ({}); opening it anew", outage->reason));
+    if (const auto* const recovery = std::get_if<Recovery>(&event))
+        take(fmt::format("the camera is back after {:.1f} s", recovery->gone_s));
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) take(lost->warning);
+}
+
+void SessionWarnings::take(std::string text) {
+    const std::lock_guard lock(mutex_);
+    texts_.push_back(std::move(text));
+}
+
+void SessionWarnings::pass_on() {
+    std::vector<std::string> texts;
+    {
+        const std::lock_guard lock(mutex_);
+        texts.swap(texts_);
+    }
+    for (const std::string& text : texts) warn(text);
+}
+
+py::dict lost_dict(const SessionTotals& totals) {
+    py::dict dict;
+    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+        dict[py::str(std::string(kGapCauseNames[i]))] = totals.lost[i];
+    return dict;
+}
+
+py::dict transport_dict(const TransportCounts& counts) {
+    return py::dict("underruns"_a = counts.underruns, "packets_resent"_a = counts.packets_resent,
+                    "packets_missing"_a = counts.packets_missing,
+                    "socket_drops"_a = counts.socket_drops, "link_faults"_a = counts.link_faults,
+                    "size_mismatches"_a = counts.size_mismatches);
+}
+
+void bind_camera(py::module_& module) {
+    py::class_<CameraTask>(module, "CameraTask").def(py::init(&camera_task));
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,85 @@
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "capture/live_camera.h"
+#include "core/error.h"
+#include "python/bindings.h"
+#include "python/camera.h"
+#include "python/footage.h"
+
+namespace stipple::python {
+namespace {
+
+/// How often a wait looks for Ctrl-C.
+constexpr std::chrono::milliseconds kPatience{100};
+
+/// The frames of a camera that runs, handed over without a copy.
+class CameraFrames {
+  public:
+    CameraFrames(CameraTask task, std::size_t queue_frames) : task_(std::move(task)) {
+        if (queue_frames < 1 || queue_frames > 4096)
+            throw InputError("queue", "give 1 to 4096 frames");
+        const py::gil_scoped_release released;
+        LiveCameraOptions options{.session = task_.session,
+                                  .waiting_frames = queue_frames,
+                                  .from_start = task_.is_replay(),
+                                  .tell = {}};
+        options.tell = [this](const SessionEvent& event) { warnings_.take(event); };
+        opening(task_, [&] { return &camera_.emplace(task_.opener(), std::move(options)); });
+        camera_->begin();
+    }
+
+    /// The next frame. \throws stop_iteration at the end, DeviceError if the camera is lost.
+    std::unique_ptr<CapturedFrame> next() {
+        while (camera_) {
+            std::optional<CapturedFrame> frame;
+            {
+                const py::gil_scoped_release released;
+                frame = camera_->next(kPatience);
+            }
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            warnings_.pass_on();
+            if (frame) return std::make_unique<CapturedFrame>(std::move(*frame));
+            if (const auto end = camera_->end()) {
+                close();
+                throw_end(*end);
+                break;
+            }
+        }
+        throw py::stop_iteration();
+    }
+
+    void close() {
+        const py::gil_scoped_release released;
+        camera_.reset();
+    }
+
+  private:
+    void throw_end(const DeviceLost& end) const {
+        if (end.bad_file) throw InputError(*end.bad_file);
+        if (!end.at_end) throw DeviceError(task_.address, "camera lost: " + end.reason);
+    }
+
+    CameraTask task_;
+    SessionWarnings warnings_;
+    std::optional<LiveCamera> camera_;
+};
+
+}  // namespace
+
+void bind_camera_frames(py::module_& module) {
+    py::class_<CameraFrames>(module, "CameraFrames")
+        .def(py::init<CameraTask, std::size_t>())
+        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", &CameraFrames::next)
+        .def("__enter__", [](const py::object& self) { return self; })
+        .def("__exit__", [](CameraFrames& self, const py::args& /*exception*/) { self.close(); })
+        .def("close", &CameraFrames::close, "Stops the camera and closes it.");
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "capture/capture_end.h"
+#include "capture/live_origin.h"
+#include "capture/rate_warning.h"
+#include "core/error.h"
+#include "io/disk_sync.h"
+#include "python/bindings.h"
+#include "python/call_progress.h"
+#include "python/camera.h"
+#include "python/emulation.h"
+#include "python/errors.h"
+#include "python/footage.h"
+#include "python/schedule.h"
+#include "python/sensor.h"
+#include "python/stream.h"
+
+namespace stipple::python {
+namespace fs = std::filesystem;
+namespace {
+
+using namespace pybind11::literals;
+
+/// The sensor behind a camera, and how late it may be.
+struct LiveTask {
+    SensorChoice choice;
+    py::object schedule;
+    double black_level_dn;
+    std::size_t queue_frames;
+    double late_after_slots;
+};
+
+LiveTask live_task(const py::object& sensor, const py::object& schedule, std::uint64_t seed,
+                   const std::string& overrun, double black_level_dn, std::size_t queue_frames,
+                   double late_after_slots) {
+    if (queue_frames < 1 || queue_frames > 4096)
+        throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
+    if (!(late_after_slots > 0))
+        throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
+    LiveTask task{sensor_of(sensor).choice, schedule, black_level_dn, queue_frames,
+                  late_after_slots};
+    task.choice.seed = seed;
+    task.choice.overrun = overrun_policy(overrun);
+    return task;
+}
+
+/// The keys of "capture live" in docs/cli.md, without its preview.
+py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
+                   const LiveCamera& camera) {
+    py::dict dict = figures_of(recorder);
+    const ReadoutStats& stats = recorder.stats();
+    const auto& hz = live.slots_per_s;
+    dict["slots_per_second"] = hz;
+    dict["samples_per_second"] = hz ? std::optional(*hz * static_cast<double>(stats.samples) /
+                                                    static_cast<double>(stats.slots))
+                                    : std::nullopt;
+    py::list late;
+    for (const LateSlot& slot : live.late)
+        late.append(py::dict("slot"_a = slot.slot, "arrival_monotonic_ns"_a = slot.arrival_ns,
+                             "latency_us"_a = slot.latency_us));
+    dict.attr("update")(py::dict(
+        "frames"_a = live.latencies.count(), "frames_hz"_a = live.rate.hz(),
+        "slots_hz"_a = 1e6 / recorder.setup().params.slot_us,
+        "incomplete"_a = live.totals.incomplete, "repeated"_a = live.totals.repeated,
+        "lost"_a = lost_dict(live.totals), "transport"_a = transport_dict(camera.transport()),
+        "held_slots"_a = live.held_slots, "unheld_slots"_a = live.unheld_slots,
+        "late_slots"_a = live.late_slots, "late"_a = late, "queue_peak_frames"_a = camera.peak(),
+        "latency_us"_a = py::dict("median"_a = live.latencies.quantile_us(0.5),
+                                  "p99"_a = live.latencies.quantile_us(0.99),
+                                  "max"_a = live.latencies.longest_us())));
+    return dict;
+}
+
+/// A camera that is opened for a live emulation, and the sensor behind it.
+struct LiveSetup {
+    LiveSetup(const CameraTask& task, const LiveTask& live, SessionWarnings& warnings)
+        : camera(task.opener(),
+                 {.session = task.session,
+                  .waiting_frames = live.queue_frames,
+                  .from_start = task.is_replay(),
+                  .tell = [&warnings](const SessionEvent& event) { warnings.take(event); }}),
+          to_light(camera.layout(), live.black_level_dn) {}
+
+    LiveCamera camera;
+    FrameLight to_light;
+};
+
+/// Emulates until the camera, a limit or Python ends it, and puts the stream in place.
+LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSetup& setup,
+                           StreamRecorder& recorder, CallProgress& progress,
+                           SessionWarnings& warnings) {
+    const py::gil_scoped_release released;
+    LiveEmulatorOptions options{.limits = task.limits, .late_after_slots = live.late_after_slots};
+    options.tell = [&](const LeftOut& left_out) {
+        warnings.take(left_out_text(task.address, left_out));
+    };
+    LiveEmulator emulator(setup.camera, setup.to_light, recorder, std::move(options));
+    LiveEmulation result = emulator.run([&](const LiveEmulation& now) {
+        return progress.reach(static_cast<double>(now.latencies.count()));
+    });
+    static_cast<void>(progress.reach(static_cast<double>(result.latencies.count())));
+    result.totals.repeated = setup.camera.stop().repeated;
+    if (result.latencies.count() == 0) return result;
+    warnings.take(camera_rate_warning(result.rate, recorder.setup().params));
+    put_in_place(recorder, result);
+    return result;
+}
+
+py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path& file, bool force,
+                    const py::object& tell) {
+    SessionWarnings warnings;
+    std::unique_ptr<LiveSetup> camera;
+    FootageOrigin origin;
+    {
+        const py::gil_scoped_release released;
+        camera = opening(task, [&] { return std::make_unique<LiveSetup>(task, live, warnings); });
+        origin = live_origin(task.address, camera->camera, live.black_level_dn, [] {});
+    }
+    const FrameLight& to_light = camera->to_light;
+    const SensorSetup setup =
+        set_up(live.choice, live.schedule, to_light.shape(), to_light.filter());
+    const auto recorder = creating(file, [&] {
+        return std::make_unique<StreamRecorder>(file, force, setup, provenance_of(setup, origin));
+    });
+    for (const std::string& text : camera->camera.description().warnings) warn(text);
+    warn(mosaic_warning(setup, to_light.filter()));
+    CallProgress progress(tell, task.limits.total(), CallProgress::Early::kYes);
+    const LiveEmulation result = emulate_live(task, live, *camera, *recorder, progress, warnings);
+    warnings.pass_on();
+    progress.finish();
+    throw_early_end(result, task.address);
+    return live_dict(result, *recorder, camera->camera);
+}
+
+std::unique_ptr<StreamFile> live(const CameraTask& task, const LiveTask& live,
+                                 const std::optional<fs::path>& output, bool force,
+                                 const py::object& tell) {
+    if (output)
+        return std::make_unique<StreamFile>(*output, write_live(task, live, *output, force, tell));
+    const NoSync no_sync;
+    auto file = std::make_unique<TemporaryFile>();
+    const py::dict figures = write_live(task, live, file->path(), false, tell);
+    file->unname();
+    return std::make_unique<StreamFile>(std::move(file), figures);
+}
+
+}  // namespace
+
+void bind_live(py::module_& module) {
+    py::class_<LiveTask>(module, "LiveTask").def(py::init(&live_task));
+    module.def("live", &live);
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,33 @@
+#include "sensor_model/configured_figures.h"
+
+#include <cmath>
+
+namespace stipple {
+
+emva1288::CameraFigures configured_figures(const SensorParams& params) {
+    const PhysicalTerms& terms = params.physical;
+    const double alive = 1 - terms.dead_pixel_fraction;
+    SensorParams hot = params;
+    hot.physical.dark_current_e_per_s = terms.hot_pixel_dark_current;
+    const double dark_e = params.dark_e_per_slot();
+    const double hot_e = hot.dark_e_per_slot();
+    const double share = terms.hot_pixel_fraction;
+    const double read_e = params.temporal_read_noise_e();
+
+    emva1288::CameraFigures f;
+    f.gain_dn_per_e = 1 / params.gain_e_per_dn();
+    f.quantum_efficiency = terms.quantum_efficiency * alive;
+    f.dark_noise_e = std::sqrt(read_e * read_e + dark_e + share * hot_e);
+    f.saturation_e = params.saturation_e();
+    f.dsnu_e = std::sqrt(terms.dsnu_e * terms.dsnu_e + terms.column_noise_e * terms.column_noise_e +
+                         share * (1 - share) * hot_e * hot_e);
+    f.prnu = std::sqrt((1 + terms.prnu * terms.prnu) / alive - 1);
+    f.snr_max = std::sqrt(f.saturation_e);
+    const double noise2_e2 =
+        f.dark_noise_e * f.dark_noise_e + params.gain_e_per_dn() * params.gain_e_per_dn() / 12;
+    f.sensitivity_threshold_p = (std::sqrt(noise2_e2 + 0.25) + 0.5) / f.quantum_efficiency;
+    f.dynamic_range = f.saturation_e / f.quantum_efficiency / f.sensitivity_threshold_p;
+    return f;
+}
+
+}  // namespace stipple
