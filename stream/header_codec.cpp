@@ -25,6 +25,7 @@ constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kMaxProvenanceBytes = std::size_t{1} << 20U;
+constexpr std::size_t kMinHeaderBytes = kFixedBytes + 1 + kCrcBytes;  ///< a schedule of a byte
 constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
 constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;
 constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes +
@@ -42,7 +43,7 @@ struct Field {
     double most;
 };
 
-constexpr Field kHeaderLength{12, "header bytes", kFixedBytes + kCrcBytes, kMaxHeaderBytes};
+constexpr Field kHeaderLength{12, "header bytes", kMinHeaderBytes, kMaxHeaderBytes};
 constexpr Field kRows{16, "rows", 1, 65535};
 constexpr Field kCols{18, "columns", 1, 65535};
 constexpr Field kPlanes{20, "planes", 1, 4};
