@@ -29,10 +29,11 @@ def png(pixels):
     """The bytes of a PNG file of 8-bit RGB (row, column, 3)."""
     rows, cols, _ = pixels.shape
     lines = np.concatenate([np.zeros((rows, 1), np.uint8), pixels.reshape(rows, -1)], axis=1)
-    chunks = ((b"IHDR", struct.pack(">2I5B", cols, rows, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(lines.tobytes(), 9)),
-              (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks)
+    chunks = ((b"IHDR", struct.pack(">2I5B", cols, rows, 8, 2, 0, 0, 0)),
+              (b"IDAT", zlib.compress(lines.tobytes(), 9)), (b"IEND", b""))
+    framed = (struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+              for name, data in chunks)
+    return b"\x89PNG\r\n\x1a\n" + b"".join(framed)
 
 
 def side_by_side(panels):
@@ -57,7 +58,8 @@ class Gallery:
         self.stipple, self.folder = stipple, folder
         (folder / "gallery").mkdir()
         scene = folder / "gallery/scene.npy"
-        subprocess.run([program, "synth", "pan", "-o", scene, "--size", SIZE, "--frames", str(FRAMES), "-q"], check=True)
+        command = [program, "synth", "pan", "-o", scene, "--size", SIZE, "--frames", str(FRAMES), "-q"]
+        subprocess.run(command, check=True)
         self.truth = np.load(scene)
         scene.unlink()
 
@@ -77,10 +79,10 @@ class Gallery:
     def write_tutorial(self, program, figures):
         """The pictures of docs/tutorial.md."""
         stream = self.stipple.emulate(self.truth, "paper", "random")
+        videos = [self.stipple.decode(stream, method) for method in ("naive", "fast")] + [self.truth]
         pictures = {"scene": [tone_mapped(self.truth[slot]) for slot in (4, SHOWN, 20)],
                     "samples": [samples_of(stream, self.truth, slot) for slot in (SHOWN - 1, SHOWN, SHOWN + 1)],
-                    "decoded": [tone_mapped(self.stipple.decode(stream, method)[SHOWN]) for method in ("naive", "fast")]
-                    + [tone_mapped(self.truth[SHOWN])]}
+                    "decoded": [tone_mapped(video[SHOWN]) for video in videos]}
         for name, panels in pictures.items():
             (figures / f"tutorial_{name}.png").write_bytes(side_by_side(panels))
         subprocess.run([program, "schedule", "show", "random", "--pixels", "8", "-q", "--force",
@@ -95,7 +97,8 @@ class Gallery:
         lines.append("\n## Schedules\n\nEach schedule is explained on [its page](docs/schedules.md).\n")
         for schedule in schedules:
             stores = self.stipple.Schedule(schedule, size=self.truth.shape[1:3]).charge_stores
-            sensor = self.stipple.Sensor(SENSORS.get(schedule, "paper"), {"charge_stores": stores} if stores > 1 else {})
+            settings = {"charge_stores": stores} if stores > 1 else {}
+            sensor = self.stipple.Sensor(SENSORS.get(schedule, "paper"), settings)
             stream = self.stipple.emulate(self.truth, sensor, schedule)
             lines.append(f"\n### {schedule}\n\n" + self.picture(schedule, stream, ("naive", "fast")))
         (self.folder / "gallery.md").write_text("".join(lines))

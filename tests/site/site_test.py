@@ -39,7 +39,8 @@ class SiteTest(unittest.TestCase):
 
     def test_a_dead_link_is_found(self):
         page = self.html / "dead.html"
-        page.write_text('<a href="docs/concept.html#nothing">a</a><a href="nothing.html">b</a><a href="gallery.html">c</a>')
+        links = ("docs/concept.html#nothing", "nothing.html", "gallery.html")
+        page.write_text("".join(f'<a href="{link}">a</a>' for link in links))
         self.addCleanup(page.unlink)
         self.assertEqual(len(list(dead_links(self.html))), 2)
 

@@ -2,7 +2,6 @@
 // intended change: STIPPLE_UPDATE_GOLDEN=1 build/release/capture_test --gtest_filter='GoldenRec*'
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
