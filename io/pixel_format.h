@@ -10,16 +10,17 @@
 
 namespace stipple {
 
-/// How the samples of a row lie in memory.
+/// How the samples of a row lie in memory. The numbers are those of docs/recording_format.md.
 enum class Packing : std::uint8_t {
-    kBytes,             ///< 1 byte a sample, or 2, little-endian, significant bits lowest
-    kBytesBigEndian,    ///< 2 bytes a sample, big-endian (V4L2 Y16_BE)
-    kLsbPacked,         ///< PFNC "p": a bit string, each sample from its lowest bit on, no padding
-    kGigEVisionPacked,  ///< GigE Vision "Packed": two samples in 3 bytes, their low bits in the
-                        ///< middle
-    kMsbPacked,         ///< a bit string, each sample from its highest bit on, as in TIFF
-    kMipiPacked,        ///< MIPI CSI-2, V4L2 "P": the high 8 bits of 4 (10, 14 bit) or 2 (12 bit)
-                        ///< samples, then their low bits as a bit string
+    kBytes = 0,             ///< 1 byte a sample, or 2, little-endian, significant bits lowest
+    kBytesBigEndian = 1,    ///< 2 bytes a sample, big-endian (V4L2 Y16_BE)
+    kLsbPacked = 2,         ///< PFNC "p": a bit string, each sample from its lowest bit on
+    kGigEVisionPacked = 3,  ///< GigE Vision "Packed": two samples in 3 bytes, their low bits in the
+                            ///< middle
+    kMipiPacked = 4,        ///< MIPI CSI-2, V4L2 "P": the high 8 bits of 4 (10, 14 bit) or 2 (12
+                            ///< bit) samples, then their low bits as a bit string
+    kMsbPacked = 5,         ///< a bit string, each sample from its highest bit on, as in TIFF; of
+                            ///< files only, cameras have no such format
 };
 
 /// A pixel format as cameras send it. Everything that is not in `pixel_formats()` is refused:

@@ -26,6 +26,7 @@ constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kMaxProvenanceBytes = std::size_t{1} << 20U;
+constexpr std::size_t kMinHeaderBytes = kFixedBytes + 1 + kCrcBytes;  ///< a schedule of a byte
 constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
 constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;
 constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes +
@@ -43,7 +44,7 @@ struct Field {
     double most;
 };
 
-constexpr Field kHeaderLength{12, "header bytes", kFixedBytes + kCrcBytes, kMaxHeaderBytes};
+constexpr Field kHeaderLength{12, "header bytes", kMinHeaderBytes, kMaxHeaderBytes};
 constexpr Field kRows{16, "rows", 1, kMaxFrameSide};
 constexpr Field kCols{18, "columns", 1, kMaxFrameSide};
 constexpr Field kPlanes{20, "planes", 1, 4};

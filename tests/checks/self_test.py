@@ -5,6 +5,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import citation
 import config_comments
 import extending
 import headers
@@ -187,6 +188,13 @@ class ChecksTest(unittest.TestCase):
         self.assertEqual(len(self.findings(packages.check, sound | {"core/a.cpp": ""})), 1)
         sound["CMakeLists.txt"] = "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n"
         self.assertEqual(len(self.findings(packages.check, sound)), 2)
+
+    def test_the_citation_has_its_keys_and_the_version_of_the_project(self):
+        keys = "cff-version: 1.2.0\nmessage: m\ntitle: t\nauthors:\n  - name: a\nlicense: l\n"
+        files = {"CMakeLists.txt": "project(p VERSION 0.2.0)\n", citation.FILE: keys + "version: 0.2.0\n"}
+        self.assertEqual(self.findings(citation.check, files), [])
+        for text in (keys + "version: 0.1.0\n", files[citation.FILE].replace("title", "name")):
+            self.assertEqual(len(self.findings(citation.check, files | {citation.FILE: text})), 1)
 
 
 if __name__ == "__main__":

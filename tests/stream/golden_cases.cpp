@@ -43,6 +43,15 @@ std::string calibrated_mosaic() {
     return feature(header, 4, 4);
 }
 
+/// Lengths that do not rise, two of them equal.
+std::string random_order() {
+    StreamHeader header = random_header({3, 4, 1}, 7);
+    const std::vector<int> lengths{8, 1, 1, 4};
+    header.schedule = random_schedule(3, 4, lengths, 7);
+    header.schedule_source.exposure_slots = lengths;
+    return feature(header, 16, 3);
+}
+
 std::vector<GoldenCase> features() {
     return {{"example", example_stream()},
             {"mono_10_bits", feature(varied_header({4, 5, 1}, 10), 6, 4)},
@@ -51,6 +60,9 @@ std::vector<GoldenCase> features() {
             {"colour_12_bits", feature(varied_header({3, 4, 3}, 12), 6, 3)},
             {"bands_of_rows", feature(varied_header({5, 4, 1}), 3, 2)},
             {"random_schedule", feature(random_header({3, 4, 1}, 20260101), 16, 3)},
+            {"random_order", random_order()},
+            {"two_planes", feature(varied_header({4, 4, 2}), 3, 4)},
+            {"tile_larger_than_array", feature(varied_header({1, 2, 1}), 6, 1)},
             {"no_slots", feature(varied_header(), 0, 4)},
             {"calibrated_mosaic", calibrated_mosaic()},
             {"flags", flags()},
@@ -111,6 +123,72 @@ std::vector<GoldenCase> damages() {
             {"bytes_after_end", whole.bytes + "more"}};
 }
 
+/// What is left of a stream of three bands a slot if the writer or the file ends within a slot.
+std::vector<GoldenCase> ends_within_a_slot() {
+    const StreamHeader header = varied_header({5, 4, 1});
+    auto packets = random_packets(header, 3, 2);
+    const StreamBytes whole = bytes_of(header, packets);
+    packets.pop_back();
+    std::string without_last = whole.bytes;
+    without_last.erase(whole.begins[8], whole.begins[9] - whole.begins[8]);
+    return {{"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
+            {"partial_last_slot_with_index", without_last},
+            {"stopped_within_slot", bytes_of(header, packets).bytes}};
+}
+
+PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
+    std::string copy = bytes.substr(at, kPacketHeaderBytes);
+    return decode_packet_header(as_numbers(copy));
+}
+
+void flip(std::string& bytes, std::size_t at) {
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+}
+
+/// An index that leads to another place than a slot, and an end marker that leads elsewhere.
+std::vector<GoldenCase> wrong_offsets(const StreamBytes& whole) {
+    const auto [index, marker] = std::pair{whole.begins[3], whole.begins[4]};
+    std::string entry = whole.bytes;
+    flip(entry, index + kPacketHeaderBytes + 8);
+    entry.replace(
+        index, marker - index,
+        framed(packet_header_at(entry, index),
+               entry.substr(index + kPacketHeaderBytes, marker - index - kPacketHeaderBytes),
+               whole.seed()));
+    std::string offset = whole.bytes;
+    const auto numbers = as_numbers(offset);
+    store(&numbers[marker + 4], std::uint64_t{whole.begins[2]});
+    store(&numbers[marker + 16], crc32c(numbers.subspan(marker, 16), whole.seed()));
+    return {{"wrong_index_entry", entry}, {"wrong_end_marker", offset}};
+}
+
+/// Rules of docs/stream_format.md that the cases above leave out.
+std::vector<GoldenCase> rules() {
+    const StreamHeader header = varied_header({4, 4, 1});
+    const StreamBytes whole = bytes_of(header, random_packets(header, 3, 4));
+    const auto& begins = whole.begins;
+    const auto packet = [&](std::size_t i) {
+        return whole.bytes.substr(begins[i], begins[i + 1] - begins[i]);
+    };
+    std::string reserved = whole.bytes;
+    PacketHeader fields = packet_header_at(reserved, begins[1]);
+    fields.reserved = 1;
+    reserved.replace(begins[1], begins[2] - begins[1],
+                     framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
+    std::string after_index = whole.bytes;
+    after_index.insert(begins[4], packet(2));
+    std::string no_start = whole.bytes.substr(0, begins[3] + 10);
+    flip(no_start, begins[2] + kPacketHeaderBytes);
+    std::vector<GoldenCase> cases{
+        {"reserved_not_zero", reserved},
+        {"packet_after_index", after_index},
+        {"no_start_after_damage", no_start},
+        {"cut_in_end_marker", whole.bytes.substr(0, whole.bytes.size() - 1)}};
+    for (auto& more : {wrong_offsets(whole), ends_within_a_slot()})
+        cases.insert(cases.end(), more.begin(), more.end());
+    return cases;
+}
+
 }  // namespace
 
 std::string example_stream() {
@@ -122,7 +200,8 @@ std::string example_stream() {
 
 std::vector<GoldenCase> golden_cases() {
     std::vector<GoldenCase> cases = features();
-    for (GoldenCase& damage : damages()) cases.push_back(std::move(damage));
+    for (const auto& more : {damages(), rules()})
+        cases.insert(cases.end(), more.begin(), more.end());
     return cases;
 }
 

@@ -1,0 +1,75 @@
+"""Gathers the pages of the site in one folder: those of the project as they are, and one for each C++ module."""
+
+import re
+import shutil
+from pathlib import Path
+
+LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#]+)((?:#[^)\s]*)?)\)")
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "docs/*.md", "docs/notes/*.md")
+HEADERS = {  # to begin with, of each module
+    "core": ("error.h", "exposure_schedule.h", "flux_video.h"),
+    "io": ("footage_reader.h", "image_file.h", "npy_reader.h", "npy_writer.h"),
+    "stream": ("stream_header.h", "sample_packet.h", "stream_reader.h", "stream_writer.h"),
+    "sensor_model": ("pixel_array.h",),
+    "readout": ("sensor_file.h", "emulator.h", "stream_recorder.h", "schedules/schedule_catalogue.h"),
+    "decoder": ("reconstruct.h", "decode_method.h"),
+    "capture": ("camera.h", "capture_session.h", "frame_record.h", "recording/recording_reader.h",
+                "recording/recording_writer.h"),
+    "metrics": ("video_quality.h",),
+    "scenes": ("scene.h",),
+}
+
+
+def gather(root, target):
+    """Copies the pages of the project to the folder `target`, and all files that they link to."""
+    for pattern in PAGES:
+        for page in root.glob(pattern):
+            place = target / page.relative_to(root)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(with_files(page, root, target))
+    for page in (root / "docs/site").glob("*.rst"):
+        shutil.copy(page, target)
+    (target / "_static").mkdir()
+    shutil.copy(root / "docs/site/stipple.css", target / "_static")
+    shutil.copy(root / "docs/site/conf.py", target)
+    shutil.copytree(root / "docs/figures", target / "docs/figures", dirs_exist_ok=True)
+    write_cpp_pages(target / "cpp")
+
+
+def with_files(page, root, target):
+    """The text of a page. A site has no folders to look into, so a link to a folder becomes plain text."""
+
+    def link(match):
+        if re.match(r"\w+:", match[2]):
+            return match[0]
+        linked = (page.parent / match[2]).resolve()
+        if linked.is_dir():
+            return match[1]
+        place = target / linked.relative_to(root)
+        if linked.suffix != ".md" and linked.is_file() and not place.exists():
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(linked, place)
+        return match[0]
+
+    return LINK.sub(link, page.read_text())
+
+
+def write_cpp_pages(folder):
+    folder.mkdir()
+    for module, headers in HEADERS.items():
+        lines = [module, "=" * len(module), ""]
+        for header in headers:
+            title = f"``<stipple/{module}/{header}>``"
+            lines += [title, "-" * len(title), "", f".. doxygenfile:: {module}/{header}", ""]
+        (folder / f"{module}.rst").write_text("\n".join(lines))
+
+
+def doxygen_configuration(root, output):
+    """For doxygen's standard input: XML of all headers."""
+    folders = " ".join(str(root / module) for module in HEADERS)
+    return "\n".join((
+        "PROJECT_NAME = Stipple", f"INPUT = {folders}", "FILE_PATTERNS = *.h", "RECURSIVE = YES",
+        "EXCLUDE_PATTERNS = *-inl.h", f"OUTPUT_DIRECTORY = {output}", "GENERATE_HTML = NO", "GENERATE_LATEX = NO",
+        "GENERATE_XML = YES", "XML_PROGRAMLISTING = NO", f"STRIP_FROM_PATH = {root}", "EXTRACT_ALL = YES",
+        "HIDE_FRIEND_COMPOUNDS = YES", "QUIET = YES", "WARNINGS = NO",
+        f'INPUT_FILTER = "sed -E -f {root / "docs/site/header_filter.sed"}"', ""))
