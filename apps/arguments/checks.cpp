@@ -63,9 +63,9 @@ void parse_size(const std::string& option, const std::string& text, SideRange si
     if (cols.ec != std::errc() || rows.ec != std::errc() || rows.ptr != end)
         throw UsageError(option, "\"" + text + "\" is not a size like 640x480");
     for (const int side : {shape.cols, shape.rows})
-        if (side < sides.least || side > sides.most)
-            throw UsageError(option, fmt::format("{}: sides are {} to {} pixels", text, sides.least,
-                                                 sides.most));
+        if (side < sides.min || side > sides.max)
+            throw UsageError(
+                option, fmt::format("{}: sides are {} to {} pixels", text, sides.min, sides.max));
 }
 
 CommandOption add_size(Command& command, const std::string& name, FrameShape& shape,

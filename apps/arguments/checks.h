@@ -27,8 +27,8 @@ namespace stipple {
 
 /// The sides that an image may have, in pixels.
 struct SideRange {
-    int least;
-    int most;
+    int min;
+    int max;
 };
 
 /// Takes "640x480", width and height, into `shape`. \throws UsageError naming `option` if
