@@ -217,7 +217,7 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
                 if (!bytes) throw UsageError("--max-size", "\"" + text + "\" is not 1M or more");
                 options->page.max_bytes = *bytes;
             },
-            "bound of the file, as 64M; beyond it pictures of slots are left out (64M)")
+            "bound of the file, as 64M; beyond it pictures of slots are left out (96M)")
         .type_name("SIZE");
 }
 

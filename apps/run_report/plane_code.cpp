@@ -42,7 +42,8 @@ std::vector<unsigned char> deflated(const std::vector<unsigned char>& bytes) {
 std::uint16_t light_code(float light) noexcept {
     constexpr auto kDarkest = static_cast<float>(kDarkestCodedLight);
     if (!(light >= kDarkest)) return 0;
-    const float steps = std::log2(light / kDarkest) * static_cast<float>(kCodesPerStop);
+    const float stops = std::log2(light) - std::log2(kDarkest);  // a quotient might overflow
+    const float steps = stops * static_cast<float>(kCodesPerStop);
     return static_cast<std::uint16_t>(1 + std::lround(std::min(steps, 65534.0F)));
 }
 

@@ -8,11 +8,11 @@ namespace stipple {
 
 /// Code 1 stands for this light; less is code 0, no light.
 inline constexpr double kDarkestCodedLight = 1.0 / 16384;
-/// Neighbouring codes differ by 2^(1/256), 0.27 %.
-inline constexpr int kCodesPerStop = 256;
+/// Neighbouring codes differ by 2^(1/128), 0.54 %.
+inline constexpr int kCodesPerStop = 128;
 
-/// Light on a logarithmic scale: 1 + round(256 log2(light / kDarkestCodedLight)), 0 for less light
-/// and for NaN. The light of a code is within 0.14 % of what was coded.
+/// Light on a logarithmic scale: 1 + round(128 log2(light / kDarkestCodedLight)), 0 for less light
+/// and for NaN. The light of a code is within 0.27 % of what was coded.
 [[nodiscard]] std::uint16_t light_code(float light) noexcept;
 /// The light of a code.
 [[nodiscard]] double light_of_code(std::uint16_t code) noexcept;

@@ -36,7 +36,7 @@ void ReportVideos::put(std::size_t video, std::int64_t slot, std::span<const flo
     if (slot % step_ == 0) {
         to.slots.push_back(slot);
         to.pictures.push_back(packed_light(cropped(frame, shape_, area_)));
-        bytes_ += to.pictures.back().size();
+        bytes_ += bytes_of_last(to, to.pictures.size());
     }
     if (truth_ == nullptr || slot >= truth_->slots()) return;
     const auto reference = truth_->frame(static_cast<int>(slot));
@@ -49,6 +49,13 @@ void ReportVideos::put(std::size_t video, std::int64_t slot, std::span<const flo
     to.frames.push_back(one.quality());
 }
 
+/// Of the last one of the first `pictures`.
+std::size_t ReportVideos::bytes_of_last(const Video& video, std::size_t pictures) {
+    const std::string& last = video.pictures[pictures - 1];
+    return pictures > 1 && video.pictures[pictures - 2] == last ? kPlaneTagBytes
+                                                                : last.size() + kPlaneTagBytes;
+}
+
 void ReportVideos::halve() {
     step_ *= 2;
     bytes_ = 0;
@@ -56,9 +63,9 @@ void ReportVideos::halve() {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < video.slots.size(); ++i) {
             if (video.slots[i] % step_ != 0) continue;
-            bytes_ += video.pictures[i].size();
             video.slots[kept] = video.slots[i];
             std::swap(video.pictures[kept++], video.pictures[i]);
+            bytes_ += bytes_of_last(video, kept);
         }
         video.slots.resize(kept);
         video.pictures.resize(kept);
@@ -91,10 +98,16 @@ ordered_json ReportVideos::json() const {
 
 std::vector<PackedPlane> ReportVideos::take_planes() {
     std::vector<PackedPlane> planes;
-    for (std::size_t v = 0; v < videos_.size(); ++v)
-        for (std::size_t i = 0; i < videos_[v].slots.size(); ++i)
-            planes.push_back(
-                {fmt::format("v{}-{}", v, videos_[v].slots[i]), std::move(videos_[v].pictures[i])});
+    for (std::size_t v = 0; v < videos_.size(); ++v) {
+        std::size_t same = 0;  // the plane that the present picture may equal
+        for (std::size_t i = 0; i < videos_[v].slots.size(); ++i) {
+            std::string& picture = videos_[v].pictures[i];
+            const bool is_same = i > 0 && planes[same].text == picture;
+            if (!is_same) same = planes.size();
+            planes.push_back({fmt::format("v{}-{}", v, videos_[v].slots[i]),
+                              is_same ? "=" + planes[same].id : std::move(picture)});
+        }
+    }
     return planes;
 }
 

@@ -36,7 +36,7 @@ class ReportVideos {
     /// is kept if the slot is a multiple of `step`.
     void put(std::size_t video, std::int64_t slot, std::span<const float> frame);
 
-    /// Bytes of the pictures.
+    /// Bytes of the pictures in the page; one that equals that before it has its element only.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     [[nodiscard]] std::int64_t step() const { return step_; }
     /// Leaves out the pictures of every second slot of those that are kept, now and later. Quality
@@ -46,7 +46,8 @@ class ReportVideos {
     /// For each video `name`, `text`, `run`, and with a truth `quality` with the keys of `compare`
     /// and their values by frame under `frames`.
     [[nodiscard]] nlohmann::ordered_json json() const;
-    /// "v0-12" is slot 12 of video 0; light codes, order (plane, row, col).
+    /// "v0-12" is slot 12 of video 0; light codes, order (plane, row, col). A picture that equals
+    /// that before it is "=" and the id of that one.
     [[nodiscard]] std::vector<PackedPlane> take_planes();
 
   private:
@@ -57,6 +58,7 @@ class ReportVideos {
         std::vector<std::int64_t> slots;
         std::vector<std::string> pictures;  ///< of `slots`
     };
+    [[nodiscard]] static std::size_t bytes_of_last(const Video& video, std::size_t pictures);
     [[nodiscard]] nlohmann::ordered_json quality_of(const Video& video) const;
 
     FrameShape shape_;

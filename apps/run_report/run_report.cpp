@@ -26,9 +26,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kLanes = 12;                                   ///< pixels of the schedule's diagram
-constexpr std::int64_t kLaneSlots = 64;                      ///< the most slots of it
-constexpr std::size_t kBytesBeside = std::size_t{1} << 19U;  ///< program, style, charts
+constexpr int kLanes = 12;               ///< pixels of the schedule's diagram
+constexpr std::int64_t kLaneSlots = 64;  ///< the most slots of it
 
 [[noreturn]] void fail_size(std::uint64_t most, std::string_view content) {
     throw InputError(
@@ -62,17 +61,14 @@ struct RunReport::Run {
     std::string name;
     StreamSamples samples;
     StreamLoads loads;
-    std::size_t bytes = 0;  ///< of the samples
 };
 
 void RunReport::Run::read(const RunReportOptions& options) {
-    std::size_t counted_planes = 0;
     for (SamplePacket packet; reader.next(packet) && packet.slot < options.slots;) {
         samples.add(packet);
         loads.add(packet);
-        for (; counted_planes < samples.planes().size(); ++counted_planes)
-            bytes += samples.planes()[counted_planes].text.size();
-        if (bytes > options.max_bytes) fail_size(options.max_bytes, "the samples of " + name);
+        if (samples.bytes() > options.max_bytes)
+            fail_size(options.max_bytes, "the samples of " + name);
     }
     samples.finish();
 }
@@ -141,8 +137,8 @@ void RunReport::set_camera(const ordered_json& camera) {
 }
 
 void RunReport::fit() {
-    std::size_t beside = kBytesBeside;
-    for (const auto& run : runs_) beside += run->bytes + run->json().dump().size();
+    std::size_t beside = report_page(options_.title, json(), {}).size();
+    for (const auto& run : runs_) beside += run->samples.bytes();
     while (beside + videos_.bytes() > options_.max_bytes && videos_.step() < slots_)
         videos_.halve();
     if (beside + videos_.bytes() > options_.max_bytes)

@@ -22,7 +22,7 @@
 namespace stipple {
 
 /// Default bound of a report's file.
-inline constexpr std::uint64_t kReportBytes = std::uint64_t{64} << 20U;
+inline constexpr std::uint64_t kReportBytes = std::uint64_t{96} << 20U;
 
 struct RunReportOptions {
     std::string title = "Stipple report";

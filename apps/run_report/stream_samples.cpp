@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string>
 
 #include "apps/run_report/plane_code.h"
@@ -104,6 +105,8 @@ void StreamSamples::finish() {
     if (dn_.empty()) return;
     planes_.push_back({fmt::format("k-{}", slot_), packed_plane(kinds_)});
     planes_.push_back({fmt::format("d-{}", slot_), packed_plane(dn_)});
+    for (const PackedPlane& plane : std::span(planes_).last(2))
+        bytes_ += plane.text.size() + kPlaneTagBytes;
     std::ranges::fill(kinds_, std::uint16_t{0});
     dn_.clear();
 }

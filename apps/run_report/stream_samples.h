@@ -36,6 +36,8 @@ class StreamSamples {
     /// is read at the end of the slot; and "d-SLOT": the DN of these pixels, pixel by pixel and
     /// plane by plane.
     [[nodiscard]] const std::vector<PackedPlane>& planes() const { return planes_; }
+    /// Of the planes in the page.
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   private:
     void add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn);
@@ -49,6 +51,7 @@ class StreamSamples {
     std::vector<std::uint16_t> kinds_;
     std::vector<std::uint16_t> dn_;
     std::vector<PackedPlane> planes_;
+    std::size_t bytes_ = 0;
 };
 
 /// The coefficients of light and noise of a pixel whose exposure was open for `light_slots`:

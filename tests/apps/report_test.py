@@ -72,7 +72,7 @@ class ReportTest(ProgramTest):
         self.assertIsNone(report["videos"][0]["quality"])  # no truth
 
     def test_pictures_are_left_out_where_the_page_would_be_too_large(self):
-        self.write_array("noise.npy", np.random.default_rng(1).random((40, 128, 128)))
+        self.write_array("noise.npy", np.random.default_rng(1).random((40, 192, 192)))
         self.succeed("emulate", "noise.npy", "-o", "noise.stipple")
         done = self.run_program("report", "noise.stipple", "--max-size", "3M", "--json", "figures.json")
         self.assertEqual(done.returncode, OK, done.stderr)

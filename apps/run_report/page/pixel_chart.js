@@ -69,8 +69,10 @@ function pixelChart(lines) {
                               : axis('light', {beginAtZero: true, suggestedMax: highest * 1.05});
   return () => ({
     type: 'line',
-    data: {datasets: lines.map(({video, points}) => slotLine(
-      data.videos[video].name, points, videoColour(video), {borderWidth: video === data.truth ? 2.5 : 1.75}))},
+    data: {datasets: [
+      ...lines.map(({video, points}) => slotLine(
+        data.videos[video].name, points, videoColour(video), {borderWidth: video === data.truth ? 2.5 : 1.75})),
+      ...(shownSamples.length ? [slotLine('samples ± 1 σ', [], styleColour('sample'))] : [])]},
     options: chartOptions({x: slotAxis(), y: lightAxis}, {showSlot: true}),
     plugins: [sampleBars],
   });

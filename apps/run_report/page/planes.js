@@ -32,8 +32,9 @@ function valuesOf(bytes) {
 }
 
 async function unpacked(id) {
-  const element = document.getElementById(id);
-  return element ? valuesOf(await inflated(bytesOfBase64(element.textContent))) : null;
+  const text = document.getElementById(id)?.textContent;
+  if (text?.startsWith('=')) return plane(text.slice(1)); // equals that one
+  return text ? valuesOf(await inflated(bytesOfBase64(text))) : null;
 }
 
 /** Each new plane may push out the one that was not used for longest. */

@@ -17,6 +17,7 @@ function loadChart() {
   const run = data.runs[loadRun];
   const points = run.loads.payload_bits.map((bits, slot) => ({x: slot + 0.5, y: rateOf(bits, run)}));
   const full = rateOf(run.loads.full_bits, run);
+  const highest = Math.max(full, ...points.map(({y}) => y));
   return {
     type: 'bar',
     data: {datasets: [
@@ -24,7 +25,7 @@ function loadChart() {
                {type: 'line', borderDash: [6, 4], stepped: false}),
       {label: 'samples', data: points, backgroundColor: styleColour('series-1'), barPercentage: 1,
        categoryPercentage: 0.9}]},
-    options: chartOptions({x: slotAxis(), y: axis('Mbit/s of a slot', {beginAtZero: true})}, {showSlot: true}),
+    options: chartOptions({x: slotAxis(), y: axis('Mbit/s of a slot', {beginAtZero: true, suggestedMax: 1.05 * highest})}, {showSlot: true}),
   };
 }
 
@@ -40,7 +41,7 @@ function clocksChart() {
       slotLine('link', us(clocks.link), styleColour('series-4')),
       slotLine('slot', [[-1, slotUs], [data.slots, slotUs]], styleColour('series-2'),
                {borderDash: [6, 4], stepped: false})]},
-    options: chartOptions({x: slotAxis(), y: axis('time, µs', {beginAtZero: true})}, {showSlot: true}),
+    options: chartOptions({x: slotAxis(), y: axis('time, µs', {beginAtZero: true, suggestedMax: 1.05 * slotUs})}, {showSlot: true}),
   };
 }
 

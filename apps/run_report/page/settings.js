@@ -12,8 +12,8 @@ function factsOf() {
     facts.push(['Slot', `${shown(slot / 1000)} ms`], ['Schedule', schedule.name],
                ['Light values per sample', shown(1 / schedule.samples_per_pixel_slot, 3)]);
   }
-  const best = data.videos.map((video) => video.quality?.psnr_db).filter((db) => db !== undefined && db !== null);
-  if (best.length) facts.push(['PSNR', `${Math.max(...best).toFixed(1)} dB`]);
+  const featured = data.videos[data.featured];
+  if (featured?.quality?.psnr_db) facts.push([`PSNR, ${featured.name}`, `${featured.quality.psnr_db.toFixed(1)} dB`]);
   if (data.camera) facts.push(['System gain', `${shown(data.camera.measured.gain_dn_per_e)} DN/e`],
                               ['Dynamic range', `${shown(data.camera.measured.dynamic_range)} : 1`]);
   return facts;
@@ -24,8 +24,11 @@ function showHeader() {
   element('subtitle').textContent = data.runs.map((run) => run.name).join(' · ');
   element('program').textContent = data.program;
   element('facts').replaceWith(termList(factsOf(), 'facts'));
-  element('notes').hidden = data.notes.length === 0;
-  element('notes').replaceChildren(...data.notes.map((note) => made('li', {}, note)));
+  const notes = [...data.notes];
+  if (typeof DecompressionStream === 'undefined')
+    notes.push('This browser cannot unpack the pictures (DecompressionStream); use one of 2023 or later.');
+  element('notes').hidden = notes.length === 0;
+  element('notes').replaceChildren(...notes.map((note) => made('li', {}, note)));
 }
 
 function calibrationOf({stream}) {

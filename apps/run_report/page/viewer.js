@@ -13,7 +13,7 @@ async function drawSide(side) {
   const number = ++drawing[side];
   const image = await viewOf(side).image(state.slot, state.stops);
   if (number !== drawing[side] || !image) return;
-  element(`picture-${side}`).getContext('2d').putImageData(image, 0, 0);
+  element(`picture-${side}`).getContext('2d', {willReadFrequently: true}).putImageData(image, 0, 0);
   element(`picture-${side}`).dataset.slot = state.slot;
 }
 

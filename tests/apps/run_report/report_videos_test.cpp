@@ -77,6 +77,18 @@ TEST(ReportVideosTest, PicturesOfSlotsCanBeLeftOut) {
     EXPECT_EQ(two.videos.json()[1]["quality"]["frames"]["ssim"].size(), kSlots);
 }
 
+TEST(ReportVideosTest, APictureThatEqualsTheOneBeforeIsAReference) {
+    ReportVideos videos(kShape, kArea, kQuality, nullptr);
+    const FluxVideo video = ramp(2, kShape);
+    videos.add({"a"});
+    for (const int slot : {0, 1, 2, 3}) videos.put(0, slot, video.frame(slot == 3 ? 1 : 0));
+    const std::size_t bytes = videos.bytes();
+    const auto planes = videos.take_planes();
+    EXPECT_EQ(planes[1].text, "=v0-0");
+    EXPECT_EQ(planes[2].text, "=v0-0");
+    EXPECT_EQ(bytes, planes[0].text.size() + planes[3].text.size() + 4 * kPlaneTagBytes);
+}
+
 TEST(ReportVideosTest, WithoutATruthThereIsNoQuality) {
     ReportVideos videos(kShape, kArea, kQuality, nullptr);
     const FluxVideo video = ramp(1, kShape);
