@@ -179,12 +179,18 @@ class ReportPageTest(ProgramTest):
             brightness = self.script("return getComputedStyle(document.body).backgroundColor.match(/\\d+/g)"
                                      ".slice(0, 3).reduce((sum, part) => sum + Number(part), 0)")
             self.assertEqual(brightness < 200, scheme == "dark", brightness)
+            self.expect_charts_as_wide_as_their_cards()
             for width in (390, 1400):
                 self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
                     "width": width, "height": 844, "deviceScaleFactor": 1, "mobile": False})
                 self.wait(lambda: self.script("return window.innerWidth") == width)
                 self.wait(lambda: self.script("return document.documentElement.scrollWidth") <= width)
         self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def expect_charts_as_wide_as_their_cards(self):
+        self.wait(lambda: self.script(
+            "return [...document.querySelectorAll('.chart canvas')].filter((c) => c.parentElement.clientWidth > 0)"
+            ".every((c) => Math.abs(c.clientWidth - c.parentElement.clientWidth) < 2)"))
 
     def test_every_control_has_a_name_and_can_be_reached_by_tab(self):
         self.open_page()

@@ -27,7 +27,7 @@ function cameraChart() {
            {borderDash: [5, 4], borderWidth: 1.5})]},
     options: chartOptions(
       {x: axis('mean less dark, DN', {type: 'linear', beginAtZero: true}),
-       y: axis('variance less dark, DN²', {beginAtZero: true})},
+       y: axis('variance less dark, DN²', {min: 0})},
       {interaction: {mode: 'nearest', intersect: true}}),
   };
 }

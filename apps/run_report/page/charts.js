@@ -35,8 +35,13 @@ function slotAxis() {
 
 /** A line of values that hold for a whole slot each: `points` are [slot, value]. */
 function slotLine(label, points, colour, more = {}) {
+  const line = points.map(([slot, y]) => ({x: slot + 0.5, y}));
+  if (line.length) {
+    line.unshift({...line[0], x: points[0][0]});
+    line.push({...line.at(-1), x: points.at(-1)[0] + 1});
+  }
   return {
-    label, data: points.map(([slot, y]) => ({x: slot + 0.5, y})), borderColor: colour, backgroundColor: colour,
+    label, data: line, borderColor: colour, backgroundColor: colour,
     borderWidth: 2, pointRadius: 0, pointHitRadius: 6, stepped: 'middle', ...more,
   };
 }
@@ -63,8 +68,13 @@ function showChart(id, make) {
       'install the package libjs-chart.js, and configure and build again.'));
     return;
   }
-  charts.get(id)?.chart.destroy();
-  charts.set(id, {make, chart: new Chart(element(id), make())});
+  const known = charts.get(id)?.chart;
+  if (known) {
+    const {data: points, options} = make();
+    Object.assign(known, {data: points, options});
+    known.update('none');
+  }
+  charts.set(id, {make, chart: known ?? new Chart(element(id), make())});
 }
 
 function markSlots() {

@@ -65,15 +65,15 @@ const sampleBars = {
 function pixelChart(lines) {
   const highest = Math.max(1e-3, ...shownSamples.map((s) => s.light + s.deviation),
                            ...lines.flatMap((line) => line.points.map(([, y]) => y)));
-  const lightAxis = state.log ? axis('light', {type: 'logarithmic', min: highest / 3000})
-                              : axis('light', {beginAtZero: true, suggestedMax: highest * 1.05});
+  const lightAxis = () => (state.log ? axis('light', {type: 'logarithmic', min: highest / 3000})
+                                     : axis('light', {type: 'linear', beginAtZero: true, suggestedMax: highest * 1.05}));
   return () => ({
     type: 'line',
     data: {datasets: [
       ...lines.map(({video, points}) => slotLine(
         data.videos[video].name, points, videoColour(video), {borderWidth: video === data.truth ? 2.5 : 1.75})),
       ...(shownSamples.length ? [slotLine('samples ± 1 σ', [], styleColour('sample'))] : [])]},
-    options: chartOptions({x: slotAxis(), y: lightAxis}, {showSlot: true}),
+    options: chartOptions({x: slotAxis(), y: lightAxis()}, {showSlot: true}),
     plugins: [sampleBars],
   });
 }

@@ -4,9 +4,9 @@
 
 const kLaneHeight = 24;
 const kLaneLeft = 74;
-// viridis, from few slots of light to many
-const kLengthColours = ['#fde725', '#addc30', '#5ec962', '#28ae80', '#21918c', '#2c728e', '#3b528b', '#472d7b',
-                        '#440154'];
+// From few slots of light to many: viridis with a lighter end, for dark pages
+const kLengthColours = ['#fde725', '#addc30', '#5ec962', '#28ae80', '#21918c', '#2c728e', '#3b6aa0', '#4b55a5',
+                        '#5f3fa0'];
 let scheduleRun = featuredRun;
 let scheduleRequest = 0;
 
