@@ -24,7 +24,7 @@ function axis(title, more = {}) {
   return {
     title: {display: true, text: title, color: styleColour('quiet')},
     ticks: {color: styleColour('quiet'), maxRotation: 0, autoSkipPadding: 12},
-    grid: {color: styleColour('line'), borderColor: styleColour('line')},
+    grid: {color: styleColour('line'), borderColor: styleColour('line'), offset: false},
     ...more,
   };
 }

@@ -125,6 +125,6 @@ function setUpPixel() {
   element('run').addEventListener('change', (event) => choose({run: Number(event.target.value)}));
   element('log-light').addEventListener('change', (event) => choose({log: event.target.checked}));
   choose({colour: area.planes === 3 ? 1 : 0});
-  choosePixel(Math.floor(area.rows / 2), Math.floor(area.cols / 2));
+  choosePixel(Math.floor(area.rows / 2), Math.floor(area.cols / 3)); // beside the divider
   whenever(['pixel', 'colour', 'run', 'log'], showPixel);
 }
