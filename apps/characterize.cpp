@@ -19,8 +19,11 @@
 #include "apps/report/chart.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
+#include "apps/report/own_command.h"
 #include "apps/report/progress.h"
 #include "apps/report/text_file.h"
+#include "apps/run_report/report_page.h"
+#include "apps/run_report/run_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -43,6 +46,7 @@ struct CharacterizeOptions {
 
 /// Name of the descriptor in the folder of a series.
 constexpr auto kDescriptorName = "emva1288_data.txt";
+constexpr auto kPageName = "report.html";
 
 std::string image_name(int number) {
     return fmt::format("image_{:04}.png", number);
@@ -56,12 +60,13 @@ bool is_image_name(std::string_view name) {
     return error == std::errc() && name == image_name(number);
 }
 
-bool is_chart_name(std::string_view name) {
-    return name == "photon_transfer.png" || name == "photon_transfer.svg";
+/// Of the charts and the page of them.
+bool is_result_name(std::string_view name) {
+    return name == "photon_transfer.png" || name == "photon_transfer.svg" || name == kPageName;
 }
 
 bool is_series_name(std::string_view name) {
-    return is_chart_name(name) || name == kDescriptorName || is_image_name(name);
+    return is_result_name(name) || name == kDescriptorName || is_image_name(name);
 }
 
 /// Writes images of the emulated sensor, DN as 16-bit PNG, and their descriptor.
@@ -110,21 +115,40 @@ emva1288::Evaluation evaluate(const std::filesystem::path& descriptor, const std
     return emva1288::evaluate(series, descriptor.parent_path(), read, where);
 }
 
-/// Draws the charts into the folder and returns their number. `failure` is the reason for a missing
-/// chart; a missing gnuplot is a warning instead.
-std::size_t draw_charts(const emva1288::Evaluation& evaluation, const PendingOutput& folder,
-                        std::optional<DeviceError>& failure) {
+/// A chart or page of the folder. False if it cannot be written; `failure` is then why, unless
+/// another one failed before.
+bool write_result(const PendingOutput& folder, const std::string& name, std::string_view content,
+                  std::optional<DeviceError>& failure) {
+    try {
+        write_whole(folder.partial() / name, (folder.final_path() / name).string(), content);
+    } catch (const DeviceError& e) {
+        if (!failure) failure = e;
+        return false;
+    }
+    return true;
+}
+
+std::string page_of(const CameraReport& camera, const std::string& title) {
+    auto data = empty_report_json(title, own_command());
+    data["camera"] = camera_json(camera);
+    return report_page(title, data, {});
+}
+
+/// Draws the charts into the folder, and a page of them, as far as they can be. Returns how many
+/// files there are; `failure` is why there are not more, unless that is that there is no gnuplot,
+/// which is a warning.
+std::size_t draw_charts(const CameraReport& camera, const std::string& title,
+                        const PendingOutput& folder, std::optional<DeviceError>& failure) {
     std::size_t drawn = 0;
     try {
-        for (const auto& [name, content] : photon_transfer_charts(evaluation)) {
-            write_whole(folder.partial() / name, (folder.final_path() / name).string(), content);
-            ++drawn;
-        }
+        for (const auto& [name, content] : photon_transfer_charts(camera.evaluation))
+            if (write_result(folder, name, content, failure)) ++drawn;
     } catch (const NoGnuplot& e) {
         say_error("{}: no charts are drawn: {}", folder.final_path().string(), e.what());
     } catch (const DeviceError& e) {
         failure = e;
     }
+    if (write_result(folder, kPageName, page_of(camera, title), failure)) ++drawn;
     return drawn;
 }
 
@@ -147,7 +171,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, where, run),
                               configured_figures(params)};
     std::optional<DeviceError> failure;
-    draw_charts(camera.evaluation, folder, failure);
+    draw_charts(camera, fmt::format("Sensor {}", params.name), folder, failure);
     folder.commit();
     report(camera, failure, json, run);
 }
@@ -156,10 +180,10 @@ void characterize_images(const CharacterizeOptions& options, const RunOptions& r
     JsonFile json(run);
     std::optional<PendingOutput> folder;
     if (!options.output.empty())
-        folder.emplace(options.output, run.force, OutputKind::kFolder, is_chart_name);
+        folder.emplace(options.output, run.force, OutputKind::kFolder, is_result_name);
     const CameraReport camera{evaluate(options.descriptor, options.descriptor, run), {}};
     std::optional<DeviceError> failure;
-    if (folder && draw_charts(camera.evaluation, *folder, failure) > 0) folder->commit();
+    if (folder && draw_charts(camera, options.descriptor, *folder, failure) > 0) folder->commit();
     report(camera, failure, json, run);
 }
 
@@ -195,7 +219,9 @@ void add_characterize(Command& app, Action& action) {
         .excludes(seed)
         .excludes(threads)
         .input();
-    command.add_option("-o,--output", options->output, "folder for images, descriptor and charts")
+    command
+        .add_option("-o,--output", options->output,
+                    "folder for images, descriptor, charts and page")
         .type_name("DIR")
         .output();
     command.footer(

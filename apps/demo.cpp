@@ -9,6 +9,9 @@
 #include "apps/demo_trial.h"
 #include "apps/demo_trials.h"
 #include "apps/report/json_file.h"
+#include "apps/report/own_command.h"
+#include "apps/report/text_file.h"
+#include "apps/run_report/run_report.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
@@ -55,6 +58,14 @@ DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
     sync_to_disk(folder / "..");
 }
 
+RunReportOptions page_options(const DemoOptions& options, const FluxVideo& truth) {
+    RunReportOptions page;
+    page.title = fmt::format("Stipple demo: scene {}", options.scene);
+    page.command = own_command();
+    page.quality = demo_quality(truth.slots());
+    return page;
+}
+
 void demo(const DemoOptions& options, const RunOptions& run) {
     const auto start = std::chrono::steady_clock::now();
     const Scene scene(scene_from_name(options.scene), options.rendering);
@@ -62,7 +73,10 @@ void demo(const DemoOptions& options, const RunOptions& run) {
     const DemoFolder made(options.folder, run.force);
     const fs::path& folder = made.path();
     const FluxVideo truth = render_video(scene, run);
-    const auto results = run_trials(truth, folder, run);
+    RunReport report(page_options(options, truth), truth.shape(), &truth);
+    const auto results = run_trials(truth, folder, report, run);
+    report.fit();
+    write_text_file(folder / "report.html", run.force, report.page());
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     json.write({{"scene", options.scene},
                 {"slots", truth.slots()},
@@ -75,6 +89,7 @@ void demo(const DemoOptions& options, const RunOptions& run) {
         fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
                     "In {}:\n"
                     "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
+                    "  report.html             all of it, to look into with a browser\n"
                     "  decoded.mp4             decoded video, tone-mapped\n"
                     "  decoded/                the same as EXR, linear light\n"
                     "  random.stipple          the recording it was made of",

@@ -11,6 +11,10 @@
 
 namespace stipple {
 
+QualityOptions demo_quality(int slots) {
+    return {.margin = std::min(4, (slots - 1) / 2), .max_value = kBrightestLight};
+}
+
 FluxVideo render_video(const Scene& scene, const RunOptions& run) {
     const SceneOptions& options = scene.options();
     FluxVideo video(options.slots, options.shape);
@@ -43,8 +47,7 @@ VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod 
                                 const FluxVideo& truth, const FrameSink& take,
                                 const RunOptions& run) {
     StreamReader reader(file);
-    QualityMeter meter(truth.shape(), {.margin = std::min(4, (truth.slots() - 1) / 2),
-                                       .max_value = kBrightestLight});
+    QualityMeter meter(truth.shape(), demo_quality(truth.slots()));
     Progress progress(run, fmt::format("decoding {}", file.filename().string()), truth.slots());
     decode(
         reader, method,

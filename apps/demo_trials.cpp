@@ -54,18 +54,22 @@ std::vector<ShownSlot> shown_slots(const FluxVideo& truth) {
 }  // namespace
 
 std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& folder,
-                                    const RunOptions& run) {
+                                    RunReport& report, const RunOptions& run) {
     std::vector<ShownSlot> shown = shown_slots(truth);
     FrameWriter frames(folder / "decoded", truth.shape(), {.force = run.force});
     FrameWriter video(folder / "decoded.mp4", truth.shape(), {.force = run.force});
     std::vector<TrialResult> results;
+    std::size_t reported_run = 0;
     for (std::size_t i = 0; i < kTrials.size(); ++i) {
         const auto& [name, schedule, method, text] = kTrials[i];
         const fs::path file = folder / fmt::format("{}.stipple", schedule);
         const bool recorded = i > 0 && results.back().schedule == schedule;
         const RecordingSize size =
             recorded ? results.back().size : record_video(truth, schedule, file, run);
+        if (!recorded) reported_run = report.add_run(file, schedule);
+        const std::size_t reported = report.add_video({name, text, reported_run});
         const auto take = [&](std::int64_t slot, std::span<const float> frame) {
+            report.put(reported, slot, frame);
             for (ShownSlot& where : shown)
                 if (where.slot == slot) where.versions.put(i, frame);
             if (i + 1 < kTrials.size()) return true;

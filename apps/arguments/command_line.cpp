@@ -226,6 +226,7 @@ template CommandOption Command::add_option(Text, std::uint16_t&, Text);
 template CommandOption Command::add_option(Text, std::int64_t&, Text);
 template CommandOption Command::add_option(Text, std::uint64_t&, Text);
 template CommandOption Command::add_option(Text, double&, Text);
+template CommandOption Command::add_option(Text, std::vector<std::string>&, Text);
 template CommandOption Command::add_option(Text, std::optional<double>&, Text);
 template CommandOption Command::add_option(Text, std::optional<std::uint64_t>&, Text);
 

@@ -109,7 +109,7 @@ class Command {
     void callback(std::function<void()> action);
 
     /// `names` as "-o,--output", without a dash a positional argument. Values are texts, paths and
-    /// numbers: those that command_line.cpp lists.
+    /// numbers, or for the last argument a list of texts: those that command_line.cpp lists.
     template <typename Value>
     CommandOption add_option(const std::string& names, Value& value, const std::string& text);
     /// An option that parses its value itself.

@@ -26,6 +26,7 @@ constexpr OutputName kWaveformName{"a waveform is a .vcd, or has a name without 
 constexpr OutputName kScheduleName{"a schedule is a .toml, or has a name without extension",
                                    {".toml"}};
 constexpr OutputName kProgramName{"a memory image is a .mem or a .hex", {".mem", ".hex"}, false};
+constexpr OutputName kPageName{"a report is a .html", {".html", ".htm"}, false};
 constexpr OutputName kDiagramName{"a diagram is a .png or a .svg", {".png", ".svg"}, false};
 
 }  // namespace stipple

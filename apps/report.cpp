@@ -1,0 +1,260 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/arguments/checks.h"
+#include "apps/arguments/footage.h"
+#include "apps/arguments/output_names.h"
+#include "apps/interrupt.h"
+#include "apps/report/camera_file.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/own_command.h"
+#include "apps/report/progress.h"
+#include "apps/standard_error.h"
+#include "apps/report/stream_text.h"
+#include "apps/report/text_file.h"
+#include "apps/run_report/report_page.h"
+#include "apps/run_report/run_report.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+#include "core/memory_limit.h"
+#include "decoder/decode_options.h"
+#include "decoder/measurements.h"
+#include "decoder/reconstruct.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+struct ReportArguments {
+    std::vector<std::string> runs;
+    std::string output = "report.html";
+    std::string truth;   ///< empty: none
+    std::string camera;  ///< figures of `characterize`; empty: none
+    std::string method = "fast";
+    FootageOptions footage;  ///< of the truth
+    RunReportOptions page;
+};
+
+bool exposes_alike(const fs::path& stream) {
+    const StreamReader reader(stream);
+    const ExposureSchedule& schedule = reader.header().schedule;
+    return schedule.tile_rows() == 1 && schedule.tile_cols() == 1;
+}
+
+/// The streams in a folder, by name, those of conventional cameras last.
+std::vector<fs::path> streams_in(const fs::path& folder) {
+    std::vector<fs::path> streams;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".stipple" && entry.is_regular_file() &&
+            !entry.path().filename().string().starts_with('.'))
+            streams.push_back(entry.path());
+    if (streams.empty()) throw InputError(folder.string(), "holds no sample stream (.stipple)");
+    std::ranges::sort(streams);
+    std::ranges::stable_partition(streams, [](const fs::path& s) { return !exposes_alike(s); });
+    return streams;
+}
+
+std::vector<fs::path> streams_of(const std::vector<std::string>& runs) {
+    std::vector<fs::path> streams;
+    for (const std::string& run : runs) {
+        if (!fs::is_directory(run)) {
+            if (fs::exists(run) && !fs::is_regular_file(run))
+                throw InputError(run,
+                                 "cannot be read several times, as a report needs; record to a "
+                                 "file first");
+            streams.emplace_back(run);
+            continue;
+        }
+        const auto inside = streams_in(run);
+        streams.insert(streams.end(), inside.begin(), inside.end());
+    }
+    return streams;
+}
+
+/// The first frames of the truth. \throws InputError if they have another shape.
+FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
+    ReadAhead footage = read_footage(arguments.truth, arguments.footage);
+    if (footage.shape() != shape)
+        throw InputError(
+            arguments.truth,
+            fmt::format("has frames of {} x {} x {} (rows x columns x planes), the runs "
+                        "have {} x {} x {}",
+                        footage.shape().rows, footage.shape().cols, footage.shape().planes,
+                        shape.rows, shape.cols, shape.planes));
+    const auto most = static_cast<std::size_t>(arguments.page.slots);
+    check_memory(2 * most * shape.sites() * sizeof(float), arguments.truth, "the truth of a report",
+                 input_bytes(arguments.truth));
+    std::vector<float> light;
+    std::size_t slots = 0;
+    for (auto frame = footage.next(); !frame.empty() && slots < most; frame = footage.next()) {
+        throw_if_stopped();
+        light.insert(light.end(), frame.begin(), frame.end());
+        ++slots;
+    }
+    FluxVideo truth(static_cast<int>(slots), shape);
+    std::ranges::copy(light, truth.data().begin());
+    return truth;
+}
+
+/// Decodes the shown slots of a stream into a video of the report.
+void decode_into(RunReport& report, std::size_t video, const fs::path& stream, DecodeMethod method,
+                 std::int64_t slots, const RunOptions& run) {
+    StreamReader reader(stream);
+    DecodeOptions options;
+    options.method = method;
+    options.where = stream.string();
+    options.input_bytes = input_bytes(stream);
+    Progress progress(run, fmt::format("{}, {}", stream.filename().string(), named(method).name),
+                      std::min(reader.slots().value_or(slots), slots));
+    decode(
+        reader, options,
+        [&](std::int64_t slot, std::span<const float> frame) {
+            report.put(video, slot, frame);
+            return slot + 1 < slots && stop_signal() == 0;
+        },
+        [&](double done) {
+            progress.reach(done);
+            return stop_signal() == 0;
+        });
+    throw_if_stopped();
+}
+
+/// A stream by the naive method, which shows what the samples are, and by the chosen one, whose
+/// video it returns.
+std::size_t add_stream(RunReport& report, const fs::path& stream, const ReportArguments& arguments,
+                       const RunOptions& run) {
+    const std::string name = stream.stem().string();
+    const std::size_t number = report.add_run(stream, name);
+    const DecodeMethod chosen = decode_method_from_name(arguments.method);
+    std::vector<DecodeMethod> methods{DecodeMethod::kNaive};
+    if (chosen != DecodeMethod::kNaive) methods.push_back(chosen);
+    std::size_t video = 0;
+    for (const DecodeMethod method : methods) {
+        const std::string by(named(method).name);
+        video = report.add_video(
+            {fmt::format("{}, {}", name, by), fmt::format("{} decoded by {}", name, by), number});
+        decode_into(report, video, stream, method, arguments.page.slots, run);
+    }
+    return video;
+}
+
+RunReportOptions page_options(const ReportArguments& arguments,
+                              const std::vector<fs::path>& streams,
+                              const std::optional<FluxVideo>& truth) {
+    RunReportOptions options = arguments.page;
+    options.command = own_command();
+    if (!options.quality.max_value) {
+        double brightest = 0;
+        for (const fs::path& stream : streams)
+            brightest = std::max(brightest, brightest_light(StreamReader(stream).header()));
+        if (brightest > 0) options.quality.max_value = brightest;
+    }
+    if (truth) options.quality.margin = std::min(4, (truth->slots() - 1) / 2);
+    return options;
+}
+
+void make_report(const ReportArguments& arguments, const RunOptions& run) {
+    JsonFile json(run);
+    PendingOutput output(arguments.output, run.force);
+    const auto streams = streams_of(arguments.runs);
+    const FrameShape shape = decoded_shape(StreamReader(streams.front()).header());
+    std::optional<FluxVideo> truth;
+    if (!arguments.truth.empty()) truth = read_truth(arguments, shape);
+    RunReport report(page_options(arguments, streams, truth), shape, truth ? &*truth : nullptr);
+    if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera));
+    std::vector<std::size_t> decoded;
+    for (const fs::path& stream : streams)
+        decoded.push_back(add_stream(report, stream, arguments, run));
+    report.feature(decoded.front());
+    report.fit();
+    const auto data = report.json();
+    const std::string page = report.page();
+    write_text(output, page);
+    json.write({{"file", arguments.output},
+                {"bytes", page.size()},
+                {"slots", data["slots"]},
+                {"picture_step", data["picture_step"]},
+                {"area", data["area"]},
+                {"quality_options", data["quality_options"]},
+                {"videos", data["videos"]},
+                {"notes", report.notes()}});
+    for (const std::string& note : report.notes()) say_warning(note);
+    say_warning(chart_warning());
+    run.say(fmt::format("{}: {} of {}, {:.1f} MB", arguments.output,
+                        counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
+                        1e-6 * static_cast<double>(page.size())));
+    if (const std::string damage = report.damage(); !damage.empty())
+        throw InputError(arguments.output, "shows what is left of damaged streams: " + damage);
+}
+
+void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {
+    command.add_option("--until", options->page.slots, "only the first N slots (64)")
+        .check(whole_check(std::int64_t{1}, std::int64_t{100'000}))
+        .type_name("N");
+    command
+        .add_parsed(
+            "--crop",
+            [options](const std::string& text) {
+                options->page.area = parse_area(text);
+                if (!options->page.area)
+                    throw UsageError("--crop", "\"" + text + "\" is not WxH or WxH+X+Y in pixels");
+            },
+            "area of the pictures (all, or 640x480 of the middle)")
+        .type_name("WxH+X+Y");
+    command
+        .add_parsed(
+            "--max-size",
+            [options](const std::string& text) {
+                const auto bytes = parse_memory(text);
+                if (!bytes) throw UsageError("--max-size", "\"" + text + "\" is not 1M or more");
+                options->page.max_bytes = *bytes;
+            },
+            "bound of the file, as 64M; beyond it pictures of slots are left out (96M)")
+        .type_name("SIZE");
+}
+
+}  // namespace
+
+void add_report(Command& app, Action& action) {
+    Command command = app.add_command("report", "A run as an HTML page to look into");
+    const auto options = std::make_shared<ReportArguments>();
+    command.add_option("RUN", options->runs, "sample streams, or folders of them")
+        .required()
+        .input();
+    command.add_option("-o,--output", options->output, "page (report.html)")
+        .type_name("FILE")
+        .output(kPageName);
+    command.add_option("--truth", options->truth, "footage that the sensor saw")
+        .type_name("FOOTAGE")
+        .input();
+    add_footage_arguments(command, options->footage, "the truth");
+    add_max_value(command, options->page.quality.max_value);
+    command.add_option("--method", options->method, "decoding method beside naive (fast)")
+        .one_of(names_of(decode_methods()))
+        .type_name("NAME");
+    command
+        .add_option("--characterization", options->camera,
+                    "figures of the sensor: what \"characterize --json\" wrote")
+        .type_name("FILE")
+        .input();
+    command.add_option("--title", options->page.title, "heading of the page").type_name("TEXT");
+    add_limits(command, options);
+    add_threads(command, action.options);
+    command.footer(
+        "Examples:\n"
+        "  stipple report clip.stipple --truth scene -o clip.html\n"
+        "  stipple report coded.stipple full4x.stipple --truth scene --method best\n"
+        "  stipple report stipple_demo -o demo.html --crop 160x120+80+60\n"
+        "The page needs no network and no other file.");
+    set_action(command, action, options, make_report);
+}
+
+}  // namespace stipple

@@ -1,0 +1,104 @@
+'use strict';
+
+// Pictures of light, of samples and of errors, as pixels of a canvas.
+
+const kErrorRange = 0.25; // light, at exposure 0
+const kNoSample = [22, 25, 32];
+
+/** As io/tone_map.h: Reinhard's curve with a white point, then the power 1/2.2. */
+function toneMapped(light) {
+  const white = data.white_light;
+  const x = Math.min(light, white);
+  return 255 * ((x * (1 + x / (white * white))) / (1 + x)) ** (1 / 2.2);
+}
+
+let toneTable = {stops: null, display: new Uint8ClampedArray(65536)};
+
+/** Display value of each code at an exposure. */
+function displayOfCode(stops) {
+  if (toneTable.stops === stops) return toneTable.display;
+  const gain = 2 ** stops;
+  const display = new Uint8ClampedArray(65536).fill(255);
+  for (let code = 0; code < display.length; ++code) {
+    display[code] = toneMapped(lightOfCode[code] * gain);
+    if (lightOfCode[code] * gain > data.white_light) break;
+  }
+  toneTable = {stops, display};
+  return display;
+}
+
+async function lightImage(video, slot, stops) {
+  const codes = await picture(video, slot);
+  if (!codes) return null;
+  const display = displayOfCode(stops);
+  const image = new ImageData(area.cols, area.rows);
+  const second = area.planes === 3 ? pixelCount : 0;
+  for (let i = 0; i < pixelCount; ++i) {
+    image.data[4 * i] = display[codes[i]];
+    image.data[4 * i + 1] = display[codes[i + second]];
+    image.data[4 * i + 2] = display[codes[i + 2 * second]];
+    image.data[4 * i + 3] = 255;
+  }
+  return image;
+}
+
+/** What the chip delivers at the end of a slot; other pixels go on exposing. */
+async function sampleImage(runIndex, slot, stops) {
+  const run = data.runs[runIndex];
+  const image = new ImageData(area.cols, area.rows);
+  const kinds = await plane(`r${runIndex}k-${slot}`);
+  const dn = await plane(`r${runIndex}d-${slot}`);
+  const planes = dnPlanes(run);
+  const gain = 2 ** stops;
+  for (let i = 0, next = 0; i < pixelCount; ++i) {
+    image.data.set([...kNoSample, 255], 4 * i);
+    if (!kinds || kinds[i] === 0) continue;
+    const lightSlots = run.samples.exposures[kinds[i] - 1].light_slots;
+    const response = responseOf(run, {row: Math.floor(i / area.cols), col: i % area.cols}, lightSlots);
+    for (let colour = 0; colour < 3; ++colour) {
+      const value = dn[next + Math.min(colour, planes - 1)];
+      const {light} = lightOfSample(response, value, lightSlots);
+      image.data[4 * i + colour] = toneMapped(Math.max(light, 0) * gain);
+    }
+    next += planes;
+  }
+  return image;
+}
+
+/** Blue where the video is too dark, orange where it is too bright; `x` is -1..1. */
+function errorColour(x) {
+  const stops = x < 0 ? [[0, 0, 0], [26, 95, 180], [90, 200, 255]] : [[0, 0, 0], [194, 65, 12], [255, 195, 107]];
+  const at = Math.min(Math.abs(x), 1) * 2;
+  const low = Math.min(Math.floor(at), 1);
+  return stops[low].map((from, i) => from + (at - low) * (stops[low + 1][i] - from));
+}
+
+const errorTable = Array.from({length: 513}, (_, i) => errorColour((i - 256) / 256));
+
+async function errorImage(video, slot, stops) {
+  const codes = await picture(video, slot);
+  const truth = await picture(data.truth, slot);
+  if (!codes || !truth) return null;
+  const gain = 2 ** stops / kErrorRange / area.planes;
+  const image = new ImageData(area.cols, area.rows);
+  for (let i = 0; i < pixelCount; ++i) {
+    let error = 0;
+    for (let at = i; at < codes.length; at += pixelCount) error += lightOfCode[codes[at]] - lightOfCode[truth[at]];
+    const x = Math.max(-1, Math.min(1, error * gain));
+    image.data.set([...errorTable[Math.round(256 + 256 * x)], 255], 4 * i);
+  }
+  return image;
+}
+
+/** All that a picture can show: {id, name, image(slot, stops), kind}. */
+function allViews() {
+  const lights = data.videos.map((video, i) => (
+    {id: `light-${i}`, name: video.name, kind: 'light', image: (slot, stops) => lightImage(i, slot, stops)}));
+  const samples = data.runs.map((run, i) => (
+    {id: `samples-${i}`, name: `samples, ${run.name}`, kind: 'samples',
+     image: (slot, stops) => sampleImage(i, slot, stops)}));
+  const errors = data.truth === null ? [] : data.videos.map((video, i) => (
+    {id: `error-${i}`, name: `error, ${video.name}`, kind: 'error',
+     image: (slot, stops) => errorImage(i, slot, stops)})).filter((_, i) => i !== data.truth);
+  return [...lights, ...samples, ...errors];
+}

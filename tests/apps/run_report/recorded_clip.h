@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/flux_video.h"
+#include "readout/provenance.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
+
+namespace stipple {
+
+/// Light from 0 to 3 that differs from site to site and from slot to slot.
+inline FluxVideo ramp(int slots, FrameShape shape) {
+    FluxVideo video(slots, shape);
+    float light = 0;
+    for (float& value : video.data()) value = light = std::fmod(light + 0.37F, 3.0F);
+    return video;
+}
+
+/// A stream of `light` with its provenance.
+inline void record_clip(const std::filesystem::path& file, const SensorChoice& choice,
+                        const FluxVideo& light) {
+    const SensorSetup setup = set_up_sensor(choice, light.shape());
+    StreamRecorder recorder(file, false, setup, provenance_of(setup, {.name = "ramp"}));
+    for (int slot = 0; slot < light.slots(); ++slot) recorder.expose(light.frame(slot));
+    recorder.finish();
+}
+
+/// The values that packed_plane has packed: of zlib's and OpenSSL's readers, and a sum.
+[[nodiscard]] std::vector<std::uint16_t> unpacked_plane(const std::string& text);
+
+}  // namespace stipple
