@@ -7,6 +7,7 @@
 #include "apps/arguments/checks.h"
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
+#include "apps/arguments/video_output.h"
 #include "apps/decode_file.h"
 #include "apps/subcommands.h"
 #include "core/joined.h"
@@ -27,7 +28,7 @@ void add_decode(Command& app, Action& action) {
     command.add_option("STREAM", options->stream, "sample stream").required().input();
     command
         .add_option("-o,--output", options->output,
-                    "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
+                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video)")
         .type_name("OUT")
         .required()
         .output(kVideoName);
@@ -64,6 +65,7 @@ void add_decode(Command& app, Action& action) {
                   "=fix goes on with that shift")
         .type_name("[=fix]")
         .one_of({"true", "fix"});
+    add_video_arguments(command, options->video, options->images);
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
@@ -71,10 +73,12 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o decoded.mp4 --method naive --threads 1\n"
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
+        "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
     set_action(command, action, options, decode_file, [command, options] {
         if (!options->follow)
             command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
+        check_video_arguments(command, options->video, options->images, options->output);
     });
 }
 

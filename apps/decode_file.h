@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/arguments/run_options.h"
+#include "io/image_coding.h"
+#include "io/video_coding.h"
 
 namespace stipple {
 
@@ -22,6 +24,8 @@ struct DecodeArguments {
     bool follow = false;         ///< the stream is still being written
     double timeout_s = 10;       ///< with `follow`: without growth
     std::string check_schedule;  ///< empty: no; "true"; "fix"
+    VideoCoding video;           ///< of .mp4 and .mkv
+    ImageCoding images;          ///< of folders and .tif
 };
 
 /// Decodes a stream to video and says how it went. \throws InputError, DeviceError, Interrupted.

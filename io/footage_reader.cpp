@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/hdr_curves.h"
 #include "core/light.h"
 #include "io/cine_file.h"
 #include "io/fits_reader.h"
@@ -122,6 +123,7 @@ struct FootageReader::Impl {
     FootageOptions options;
     FrameShape source_shape;
     SourceTraits traits;
+    Transfer transfer = Transfer::kLinear;
     std::vector<std::string> warnings;  ///< not yet taken
     bool looked_at_brightness = false;
     bool at_end = false;
@@ -129,6 +131,7 @@ struct FootageReader::Impl {
 
     Impl(const fs::path& path, const FootageOptions& wanted);
     [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
+    void make_linear(std::span<float> light) const;
     void warn(std::string text) {
         if (!text.empty()) warnings.push_back(std::move(text));
     }
@@ -149,8 +152,17 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         throw InputError(path.string(),
                          "is the mosaic of a colour filter array, of which there is "
                          "no --luminance");
+    transfer =
+        transfer_of(options, traits, std::holds_alternative<VideoReader>(source), path.string());
     for (std::string& text : reading_warnings(traits, options, path.string()))
         warn(std::move(text));
+}
+
+/// Light of HDR video has the primaries of BT.709 afterwards, as all other.
+void FootageReader::Impl::make_linear(std::span<float> light) const {
+    linearise(light, transfer);
+    const bool hdr = transfer == Transfer::kPq || transfer == Transfer::kHlg;
+    if (hdr && traits.bt2020 && source_shape.planes == 3) bt2020_to_bt709(light);
 }
 
 FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
@@ -195,7 +207,7 @@ bool FootageReader::read(std::span<float> frame) {
     const auto light = impl_->reduces() ? std::span<float>(impl_->colour) : frame;
     const auto read = [&](auto& source) {
         if (!source.read(light)) return false;
-        linearise(light, impl_->options.transfer.value_or(Transfer::kLinear));
+        impl_->make_linear(light);
         check_light(light, impl_->source_shape, source.where());
         if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value)
             impl_->warn(brightness_warning(light, source.where()));

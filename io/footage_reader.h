@@ -16,9 +16,10 @@ namespace stipple {
 
 struct FootageOptions {
     std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
-    bool luminance = false;             ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
-    std::optional<double> max_value;    ///< clip light to this value
-    std::optional<RawFormat> raw = {};  ///< read a file without a header so, whatever its name
+    bool luminance = false;                ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
+    std::optional<double> max_value;       ///< clip light to this value
+    std::optional<RawFormat> raw = {};     ///< read a file without a header so, whatever its name
+};  ///< frame rate, instead of that of the source
 };
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are

@@ -51,15 +51,11 @@ std::string file_name(const std::string& name) {
     return std::filesystem::path(name).filename().string();
 }
 
-const char* name_of(Transfer transfer) {
-    if (transfer == Transfer::kGamma22) return "gamma22";
-    return transfer == Transfer::kSrgb ? "srgb" : "linear";
-}
-
 toml::table footage_table(const FootageOrigin& footage) {
-    toml::table table{{"name", footage.name},
-                      {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
-                      {"luminance", footage.reading.luminance}};
+    toml::table table{
+        {"name", footage.name},
+        {"transfer", transfer_name(footage.reading.transfer.value_or(Transfer::kLinear))},
+        {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);

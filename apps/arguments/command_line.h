@@ -41,7 +41,7 @@ class UsageError : public std::runtime_error {
 /// What an output may be called: any name, or one by the `rule` for its extension.
 struct OutputName {
     std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
-    std::array<std::string_view, 3> extensions = {};  ///< in lower case; names may be in upper case
+    std::array<std::string_view, 5> extensions = {};  ///< in lower case; names may be in upper case
     bool may_have_none = true;
 };
 

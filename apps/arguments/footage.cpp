@@ -15,9 +15,13 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
             "--transfer", options.transfer,
             {{"linear", Transfer::kLinear},
              {"gamma22", Transfer::kGamma22},
-             {"srgb", Transfer::kSrgb}},
-            "how the numbers of " + footage + " map to light (linear)")
-        .type_name("linear|gamma22|srgb");
+             {"srgb", Transfer::kSrgb},
+             {"bt709", Transfer::kBt709},
+             {"pq", Transfer::kPq},
+             {"hlg", Transfer::kHlg},
+             {"auto", Transfer::kAuto}},
+            "how the numbers of " + footage + " map to light; auto: as it declares (linear)")
+        .type_name("NAME");
     const auto take_raw = [&options](const std::string& text) {
         try {
             options.raw = parse_raw_format(text);

@@ -14,8 +14,8 @@ constexpr OutputName kRecoveredName{
     "a stream is a .stipple, a recording a .strec, or either has a name without extension",
     {".stipple", ".strec"}};
 constexpr OutputName kVideoName{
-    "a video is a .npy, .mp4 or .mkv, or by a name without extension a folder of EXR files",
-    {".npy", ".mp4", ".mkv"}};
+    "a video is a .npy, .mp4, .mkv or .tif, or by a name without extension a folder of images",
+    {".npy", ".mp4", ".mkv", ".tif", ".tiff"}};
 constexpr OutputName kPreviewName{"a preview is a .png or a .npy", {".png", ".npy"}, false};
 constexpr OutputName kWaveformName{"a waveform is a .vcd, or has a name without extension",
                                    {".vcd"}};

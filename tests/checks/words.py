@@ -8,7 +8,7 @@ from tree import report
 MACHINE_PATH = re.compile(r"(?<![\w.$}/-])/(?:home|root|work|mnt|media|srv|opt|Users)/\w+")
 ADDRESS = re.compile(r"\bhttps?://([\w.-]+)")
 HOSTS = {"www.apache.org", "www.genicam.org", "doi.org", "arxiv.org",
-         "www.w3.org"}  # the last one is the name space of SVG
+         "www.w3.org", "www.openmicroscopy.org"}  # the last ones are the name spaces of SVG and OME-XML
 VAGUE = r"(?:manager|helper|util(?:s|ity|ities)?|base)"
 BANNED = (  # pattern, why; in the sources and the build of the modules
     (re.compile(rf"\b(?:class|struct|enum|union) +(?:class +)?\w*{VAGUE}\b", re.I), "a vague name"),
