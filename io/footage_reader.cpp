@@ -148,6 +148,7 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
     if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->video_hz();
+    if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
                          "is the mosaic of a colour filter array, of which there is "
@@ -163,6 +164,8 @@ void FootageReader::Impl::make_linear(std::span<float> light) const {
     linearise(light, transfer);
     const bool hdr = transfer == Transfer::kPq || transfer == Transfer::kHlg;
     if (hdr && traits.bt2020 && source_shape.planes == 3) bt2020_to_bt709(light);
+    if (options.scale != 1)
+        for (float& value : light) value *= static_cast<float>(options.scale);
 }
 
 FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
@@ -190,6 +193,10 @@ std::optional<double> FootageReader::video_hz() const {
     return impl_->traits.frames_hz;
 }
 
+std::optional<double> FootageReader::exposure_us() const {
+    return impl_->traits.exposure_us;
+}
+
 ColourFilter FootageReader::filter() const {
     return impl_->traits.filter;
 }
@@ -209,7 +216,8 @@ bool FootageReader::read(std::span<float> frame) {
         if (!source.read(light)) return false;
         impl_->make_linear(light);
         check_light(light, impl_->source_shape, source.where());
-        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value)
+        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
+            impl_->options.scale == 1)
             impl_->warn(brightness_warning(light, source.where()));
         return true;
     };

@@ -61,6 +61,9 @@ toml::table footage_table(const FootageOrigin& footage) {
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
     if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
+    if (footage.reading.scale != 1) table.insert("scale", footage.reading.scale);
+    if (!footage.resample.empty()) table.insert("resample", footage.resample);
+    if (footage.reading.frames_hz) table.insert("frames_hz", *footage.reading.frames_hz);
     if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
     return table;
 }
@@ -110,6 +113,11 @@ std::string options_of(const toml::table& provenance) {
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
     if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
+    if (const auto scale = footage["scale"].value<double>())
+        add("--scale", fmt::format("{}", *scale));
+    if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
+    if (const auto hz = footage["frames_hz"].value<double>())
+        add("--footage-hz", fmt::format("{}", *hz));
     if (const auto most = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *most));
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
