@@ -4,6 +4,7 @@
 #include "apps/arguments/checks.h"
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
+#include "apps/arguments/video_output.h"
 #include "apps/decode_file.h"
 #include "apps/subcommands.h"
 #include "decoder/reconstruct.h"
@@ -46,7 +47,7 @@ void add_decode(Command& app, Action& action) {
     command.add_option("STREAM", options->stream, "sample stream").required().input();
     command
         .add_option("-o,--output", options->output,
-                    "folder (EXR, linear), .npy (linear), .mp4 or .mkv (tone-mapped)")
+                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video)")
         .type_name("OUT")
         .required()
         .output(kVideoName);
@@ -68,6 +69,7 @@ void add_decode(Command& app, Action& action) {
         .output();
     const auto check_schedule = std::make_shared<std::string>();
     add_reading(command, *options, *check_schedule);
+    add_video_arguments(command, options->video, options->images);
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
@@ -75,6 +77,7 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o decoded.mp4 --method naive --threads 1\n"
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
+        "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
     set_action(command, action, options, decode_file, [command, options, check_schedule] {
         if (!check_schedule->empty())
@@ -82,6 +85,7 @@ void add_decode(Command& app, Action& action) {
                 *check_schedule == "fix" ? CheckSchedule::kFixShift : CheckSchedule::kRefuseShift;
         if (!options->follow)
             command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
+        check_video_arguments(command, options->video, options->images, options->output);
     });
 }
 

@@ -68,6 +68,16 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
     }
 }
 
+FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
+                                  const StreamHeader& header) {
+    FrameWriterOptions options{.video = arguments.video,
+                               .images = arguments.images,
+                               .force = run.force,
+                               .live = arguments.follow && !arguments.strict};
+    options.images.slot_s = header.slot_us * 1e-6;
+    return options;
+}
+
 DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, FrameWriter& writer,
                            const DecodeArguments& arguments, const RunOptions& run) {
     std::optional<std::int64_t> total = reader.slots();
@@ -131,6 +141,18 @@ nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string&
             {"threads", thread_count()}};
 }
 
+nlohmann::ordered_json light_levels_json(const LightLevels& levels) {
+    return {{"max_cll", levels.max_cll},
+            {"max_fall", levels.max_fall},
+            {"clipped_fraction", levels.clipped_fraction}};
+}
+
+std::string light_levels_text(const LightLevels& levels) {
+    return fmt::format("PQ: MaxCLL {:.0f}, MaxFALL {:.0f} cd/m2, {:.2g} % of the values clipped",
+                       levels.max_cll, levels.max_fall, 100 * levels.clipped_fraction);
+}
+
+/// What packets of a wrong size may mean.
 std::string_view schedule_hint(const StreamReport& report) {
     return report.undue_packets == 0
                ? ""
@@ -156,7 +178,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
-                       {.force = run.force, .live = arguments.follow && !arguments.strict});
+                       writer_options(arguments, run, reader.header()));
     say_leftover(arguments.output);
     StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
     options.stages = stages.sink();
@@ -170,6 +192,8 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     auto figures = figures_of(report, arguments.method, end);
     if (check) figures["schedule_check"] = check_json(*check);
     if (!stages.figures().empty()) figures["convergence"] = stages.figures();
+    const auto levels = writer.light_levels();
+    if (levels) figures["light_levels"] = light_levels_json(*levels);
     json.write(figures);
     warn(end, report, arguments, growing);
     run.say(fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments.output,
@@ -179,6 +203,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
                         report.samples == 0 ? ""
                                             : fmt::format(", {:.2f} % of the samples saturated",
                                                           100 * saturated_fraction(report))));
+    if (levels) run.say(light_levels_text(*levels));
     StreamReport found = reader.report();
     if (found.samples == 0)
         say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/arguments/run_options.h"
+#include "io/image_coding.h"
+#include "io/video_coding.h"
 
 namespace stipple {
 
@@ -29,6 +31,8 @@ struct DecodeArguments {
     bool follow = false;     ///< the stream is still being written
     double timeout_s = 10;   ///< with `follow`: without growth
     CheckSchedule check_schedule = CheckSchedule::kNo;
+    VideoCoding video;   ///< of .mp4 and .mkv
+    ImageCoding images;  ///< of folders and .tif
 };
 
 /// Decodes a stream to video and says how it went. \throws InputError, DeviceError, Interrupted.

@@ -19,6 +19,7 @@
 #include "apps/subcommands.h"
 #include "capture/rate_warning.h"
 #include "capture/recording/read_ahead.h"
+#include "core/error.h"
 #include "core/joined.h"
 #include "io/frame_writer.h"
 #include "readout/footage_origin.h"
@@ -33,6 +34,7 @@ struct EmulateOptions {
     std::string truth;  ///< empty: none
     WaveformOptions waveform;
     FootageOptions reading;
+    ResampleChoice resample;
     SensorChoice sensor;
 };
 
@@ -48,12 +50,22 @@ std::string recording_faults(const std::string& file, const RecordingFootage& fo
     return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
 }
 
+void say_rate_warnings(const EmulateOptions& options, const ReadAhead& footage,
+                       const SensorParams& sensor) {
+    const auto hz = footage.video_hz();
+    if (hz && options.resample.method.empty())
+        say_warning(video_rate_warning(options.footage, *hz, sensor));
+    if (const auto exposure_us = footage.exposure_us())
+        say_warning(exposure_warning(options.footage, *exposure_us, sensor));
+}
+
 void emulate(const EmulateOptions& options, const RunOptions& run) {
     ReadAhead footage = read_footage(options.footage, options.reading);
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
-    if (const auto hz = footage.video_hz())
-        say_warning(video_rate_warning(options.footage, *hz, setup.params));
+    say_rate_warnings(options, footage, setup.params);
+    const SlotSource slots =
+        slots_of(footage, options.footage, options.resample, options.reading, setup.params.slot_us);
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
@@ -61,17 +73,19 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
         say_leftover(options.truth);
     }
-    StreamRecorder recorder =
-        open_stream_output(options.output, run, setup,
-                           origin_of(options.footage, options.reading, [] { throw_if_stopped(); }));
-    Progress progress(run, "emulating", footage.slots());
-    auto frame = footage.next();
-    for (; !frame.empty() && stop_signal() == 0; frame = footage.next()) {
+    FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
+    origin.resample = options.resample.method;
+    StreamRecorder recorder = open_stream_output(options.output, run, setup, origin);
+    Progress progress(run, "emulating", slots.slots);
+    auto frame = slots.next();
+    for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
         recorder.expose(frame);
         if (truth) truth->write(frame);
         progress.advance();
     }
     if (progress.done() == 0) throw_if_stopped();
+    if (progress.done() == 0)
+        throw InputError(options.footage, "is shorter than a slot of the sensor");
     if (truth) truth->finish();
     recorder.finish();
     if (waveform)
@@ -81,7 +95,8 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (frame.empty() && footage.recording() != nullptr) {
         const RecordingFootage& frames = *footage.recording();
         say_warning(recording_faults(options.footage, frames));
-        say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
+        if (options.resample.method.empty())
+            say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
     }
     const double slots_per_s = static_cast<double>(progress.done()) / progress.seconds();
     json.write(emulation_json(recorder, slots_per_s));
@@ -108,6 +123,7 @@ void add_emulate(Command& app, Action& action) {
     add_settings(command, sensor_sections(options->sensor),
                  "change a key of the sensor or of the schedule");
     add_footage_arguments(command, options->reading);
+    add_resample_arguments(command, options->resample, options->reading);
     add_max_value(command, options->reading.max_value);
     command
         .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
@@ -120,6 +136,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate scene -o clip.stipple\n"
         "  stipple emulate video.mp4 -o clip.stipple --transfer srgb --luminance --truth light\n"
         "  stipple emulate clip.raw --raw 1280x1024:bayergr16:hz=1057 -o clip.stipple\n"
+        "  stipple emulate hdr.mp4 -o clip.stipple --transfer auto --resample flow --scale 2\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");
     set_action(command, action, options, emulate);

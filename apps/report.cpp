@@ -17,11 +17,11 @@
 #include "apps/report/number_text.h"
 #include "apps/report/own_command.h"
 #include "apps/report/progress.h"
-#include "apps/standard_error.h"
 #include "apps/report/stream_text.h"
 #include "apps/report/text_file.h"
 #include "apps/run_report/report_page.h"
 #include "apps/run_report/run_report.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -196,7 +196,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
 }
 
 void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {
-    command.add_option("--until", options->page.slots, "only the first N slots (64)")
+    command.add_option("--until", options->page.slots, "only the first N slots")
+        .shows_default()
         .check(whole_check(std::int64_t{1}, std::int64_t{100'000}))
         .type_name("N");
     command
@@ -207,7 +208,8 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
                 if (!options->page.area)
                     throw UsageError("--crop", "\"" + text + "\" is not WxH or WxH+X+Y in pixels");
             },
-            "area of the pictures (all, or 640x480 of the middle)")
+            "area of the pictures: width, height, first column, first row")
+        .default_text("all, or 640x480 of the middle")
         .type_name("WxH+X+Y");
     command
         .add_parsed(
@@ -217,7 +219,8 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
                 if (!bytes) throw UsageError("--max-size", "\"" + text + "\" is not 1M or more");
                 options->page.max_bytes = *bytes;
             },
-            "bound of the file, as 64M; beyond it pictures of slots are left out (96M)")
+            "bound of the file, as 64M; beyond it pictures of slots are left out")
+        .default_text("96M")
         .type_name("SIZE");
 }
 
@@ -229,7 +232,8 @@ void add_report(Command& app, Action& action) {
     command.add_option("RUN", options->runs, "sample streams, or folders of them")
         .required()
         .input();
-    command.add_option("-o,--output", options->output, "page (report.html)")
+    command.add_option("-o,--output", options->output, "page")
+        .shows_default()
         .type_name("FILE")
         .output(kPageName);
     command.add_option("--truth", options->truth, "footage that the sensor saw")
@@ -237,7 +241,8 @@ void add_report(Command& app, Action& action) {
         .input();
     add_footage_arguments(command, options->footage, "the truth");
     add_max_value(command, options->page.quality.max_value);
-    command.add_option("--method", options->method, "decoding method beside naive (fast)")
+    command.add_option("--method", options->method, "decoding method beside naive")
+        .shows_default()
         .one_of(names_of(decode_methods()))
         .type_name("NAME");
     command

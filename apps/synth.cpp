@@ -62,7 +62,7 @@ void add_synth(Command& app, Action& action) {
     command.add_option("SCENE", options->scene, "scene, of \"stipple list scenes\"")
         .one_of(names_of(scenes()))
         .required();
-    command.add_option("-o,--output", options->output, "folder (EXR), .npy, .mp4 or .mkv")
+    command.add_option("-o,--output", options->output, "folder (EXR), .npy, .tif, .mp4 or .mkv")
         .type_name("OUT")
         .required()
         .output(kVideoName);

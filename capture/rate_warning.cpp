@@ -57,4 +57,11 @@ std::string video_rate_warning(const std::string& file, double frames_hz,
         file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
 }
 
+std::string exposure_warning(const std::string& file, double exposure_us,
+                             const SensorParams& sensor) {
+    if (exposure_us <= (1 + kTolerance) * sensor.slot_us) return {};
+    return fmt::format("{}: its frames were exposed for {:.4g} us, but {}: what moves is blurred",
+                       file, exposure_us, slot_text(sensor));
+}
+
 }  // namespace stipple

@@ -21,4 +21,8 @@ namespace stipple {
 [[nodiscard]] std::string video_rate_warning(const std::string& file, double frames_hz,
                                              const SensorParams& sensor);
 
+/// Of footage whose frames were exposed for longer than a slot; else empty.
+[[nodiscard]] std::string exposure_warning(const std::string& file, double exposure_us,
+                                           const SensorParams& sensor);
+
 }  // namespace stipple

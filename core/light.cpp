@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/hdr_curves.h"
 
 namespace stipple {
 namespace {
@@ -22,7 +23,41 @@ float srgb_to_light(float value) {
     return std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
 
+struct NamedTransfer {
+    std::string_view name;
+    Transfer transfer;
+};
+
+constexpr NamedTransfer kTransfers[] = {
+    {"linear", Transfer::kLinear}, {"gamma22", Transfer::kGamma22}, {"srgb", Transfer::kSrgb},
+    {"bt709", Transfer::kBt709},   {"pq", Transfer::kPq},           {"hlg", Transfer::kHlg},
+    {"auto", Transfer::kAuto}};
+
+template <typename Curve>
+void apply(std::span<float> values, Curve curve) {
+    for (float& value : values) value = value > 0.0F ? curve(value) : value;
+}
+
 }  // namespace
+
+std::string_view transfer_name(Transfer transfer) {
+    for (const NamedTransfer& named : kTransfers)
+        if (named.transfer == transfer) return named.name;
+    return {};
+}
+
+std::optional<Transfer> transfer_from_name(std::string_view name) {
+    for (const NamedTransfer& named : kTransfers)
+        if (named.name == name) return named.transfer;
+    return {};
+}
+
+std::string transfer_names() {
+    std::string names;
+    for (const NamedTransfer& named : kTransfers)
+        names.append(names.empty() ? "" : ", ").append(named.name);
+    return names;
+}
 
 FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
                          std::string_view where) {
@@ -45,10 +80,27 @@ void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_vie
 }
 
 void linearise(std::span<float> values, Transfer transfer) {
-    if (transfer == Transfer::kGamma22)
-        for (float& value : values) value = value > 0.0F ? std::pow(value, 2.2F) : value;
-    if (transfer == Transfer::kSrgb)
-        for (float& value : values) value = srgb_to_light(value);
+    switch (transfer) {
+        case Transfer::kGamma22:
+            return apply(values, [](float value) { return std::pow(value, 2.2F); });
+        case Transfer::kSrgb:
+            for (float& value : values) value = srgb_to_light(value);
+            return;
+        case Transfer::kBt709:
+            return apply(values, bt709_light);
+        case Transfer::kPq: {
+            constexpr auto kWhite = static_cast<float>(kReferenceWhiteCd);
+            return apply(values, [](float value) { return pq_luminance(value) / kWhite; });
+        }
+        case Transfer::kHlg: {
+            const auto white = static_cast<float>(hlg_light_of_luminance(kReferenceWhiteCd));
+            return apply(values, [white](float value) { return hlg_light(value) / white; });
+        }
+        case Transfer::kLinear:
+            return;
+        case Transfer::kAuto:
+            assert(false);
+    }
 }
 
 void check_light(std::span<const float> light, FrameShape shape, std::string_view where) {

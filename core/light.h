@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/geometry.h"
@@ -13,7 +15,17 @@ enum class Transfer {
     kLinear,   ///< proportional to light
     kGamma22,  ///< light = value^2.2
     kSrgb,     ///< IEC 61966-2-1
+    kBt709,    ///< ITU-R BT.709-6 and BT.2020: light before the camera
+    kPq,       ///< SMPTE ST 2084: 203 cd/m2 is light 1.0 (core/hdr_curves.h)
+    kHlg,      ///< ARIB STD-B67: light before the camera; 1.0 where a display shows 203 cd/m2
+    kAuto,     ///< the one that the file declares
 };
+
+/// The name of a transfer function on the command line and in provenance, and its inverse.
+[[nodiscard]] std::string_view transfer_name(Transfer transfer);
+[[nodiscard]] std::optional<Transfer> transfer_from_name(std::string_view name);
+/// All names, for messages: "linear, gamma22, ...".
+[[nodiscard]] std::string transfer_names();
 
 /// The shape of rows x cols x planes. \throws InputError at `where` unless 1 <= rows,
 /// cols <= kMaxFrameSide, planes is 1 or 3 and there are at most kMaxFrameSites.
@@ -30,7 +42,8 @@ inline constexpr std::uint64_t kDeflateRatio = 1032;
 void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view where,
                   std::uint64_t ratio = kDeflateRatio);
 
-/// Converts encoded values to light, in place. Values below 0 are unchanged.
+/// Converts encoded values to light, in place. Values below 0 are unchanged. Precondition: not
+/// kAuto.
 void linearise(std::span<float> values, Transfer transfer);
 
 /// \throws InputError naming place, row, column and plane of the first value that is NaN,

@@ -57,10 +57,14 @@ std::vector<std::string> image_channels(const Imf::ChannelList& channels,
     return names;
 }
 
+constexpr float kMaxHalf = 65504;
+
 /// A plane as OpenEXR wants it: the address that pixel (0, 0) would have.
-Imf::Slice plane_slice(float* plane, const Imath::Box2i& window, FrameShape shape) {
-    return Imf::Slice::Make(Imf::FLOAT, plane, window, sizeof(float),
-                            sizeof(float) * static_cast<std::size_t>(shape.cols));
+template <typename Sample>
+Imf::Slice plane_slice(Sample* plane, const Imath::Box2i& window, FrameShape shape) {
+    const auto type = std::is_same_v<Sample, float> ? Imf::FLOAT : Imf::HALF;
+    return Imf::Slice::Make(type, plane, window, sizeof(Sample),
+                            sizeof(Sample) * static_cast<std::size_t>(shape.cols));
 }
 
 const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& where) {
@@ -134,6 +138,25 @@ std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
     }
 }
 
+/// A file with channels of this type.
+template <typename Sample, typename Convert>
+std::string encoded_as(FrameShape shape, std::span<const float> frame, std::string_view where,
+                       Convert convert) {
+    Imf::Header header(shape.cols, shape.rows);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer planes;
+    std::vector<Sample> values(frame.size());  // OpenEXR wants a mutable pointer
+    std::ranges::transform(frame, values.begin(), convert);
+    for (int p = 0; p < shape.planes; ++p) {
+        const char* name = shape.planes == 1 ? "Y" : &"R\0G\0B\0"[2 * p];
+        Sample* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
+        const Imf::Slice slice = plane_slice(plane, header.dataWindow(), shape);
+        header.channels().insert(name, Imf::Channel(slice.type));
+        planes.insert(name, slice);
+    }
+    return encoded(header, planes, where);
+}
+
 }  // namespace
 
 void read_exr(const std::filesystem::path& file, Image& image) {
@@ -150,19 +173,13 @@ void read_exr(const std::filesystem::path& file, Image& image) {
 }
 
 void write_exr(const std::filesystem::path& file, std::string_view where, FrameShape shape,
-               std::span<const float> frame) {
+               std::span<const float> frame, ExrSample sample) {
     assert(frame.size() == shape.sites());
-    Imf::Header header(shape.cols, shape.rows);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    Imf::FrameBuffer planes;
-    std::vector<float> values(frame.begin(), frame.end());  // OpenEXR wants a mutable pointer
-    for (int p = 0; p < shape.planes; ++p) {
-        const char* name = shape.planes == 1 ? "Y" : &"R\0G\0B\0"[2 * p];
-        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-        float* plane = values.data() + static_cast<std::size_t>(p) * shape.pixels();
-        planes.insert(name, plane_slice(plane, header.dataWindow(), shape));
-    }
-    const std::string bytes = encoded(header, planes, where);
+    const std::string bytes =
+        sample == ExrSample::kFloat
+            ? encoded_as<float>(shape, frame, where, [](float light) { return light; })
+            : encoded_as<half>(shape, frame, where,
+                               [](float light) { return half(std::min(light, kMaxHalf)); });
     OutputFile output(file, std::string(where));
     output.write(std::as_bytes(std::span(bytes)));
     output.close();

@@ -16,10 +16,13 @@ namespace stipple {
 /// or stores another rectangle than it displays.
 void read_exr(const std::filesystem::path& file, Image& image);
 
-/// Writes an OpenEXR image: float, ZIP compression, channels R, G, B or Y. The same frame gives the
-/// same bytes. `frame` holds shape.sites() floats, order (plane, row, col); `where` names the
-/// output in messages. \throws DeviceError.
+enum class ExrSample { kFloat, kHalf };
+
+/// Writes an OpenEXR image: float or half (light up to 65504, brighter is clipped), ZIP
+/// compression, channels R, G, B or Y. The same frame gives the same bytes. `frame` holds
+/// shape.sites() floats, order (plane, row, col); `where` names the output in messages. \throws
+/// DeviceError.
 void write_exr(const std::filesystem::path& file, std::string_view where, FrameShape shape,
-               std::span<const float> frame);
+               std::span<const float> frame, ExrSample sample = ExrSample::kFloat);
 
 }  // namespace stipple

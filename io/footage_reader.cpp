@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/hdr_curves.h"
 #include "core/light.h"
 #include "io/cine_file.h"
 #include "io/fits_reader.h"
@@ -131,6 +132,7 @@ struct FootageReader::Impl {
     std::string extension;
     FrameShape source_shape;
     SourceTraits traits;
+    Transfer transfer = Transfer::kLinear;
     std::vector<std::string> warnings;  ///< not yet taken
     bool looked_at_brightness = false;
     bool at_end = false;
@@ -138,6 +140,7 @@ struct FootageReader::Impl {
 
     Impl(const fs::path& path, const FootageOptions& wanted);
     [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
+    void make_linear(std::span<float> light) const;
     void warn(std::string text) {
         if (!text.empty()) warnings.push_back(std::move(text));
     }
@@ -154,12 +157,24 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
     if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->video_hz();
+    if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
                          "is the mosaic of a colour filter array, of which there is "
                          "no --luminance");
+    transfer =
+        transfer_of(options, traits, std::holds_alternative<VideoReader>(source), path.string());
     for (std::string& text : reading_warnings(traits, options, path.string()))
         warn(std::move(text));
+}
+
+/// Light of HDR video has the primaries of BT.709 afterwards, as all other.
+void FootageReader::Impl::make_linear(std::span<float> light) const {
+    linearise(light, transfer);
+    const bool hdr = transfer == Transfer::kPq || transfer == Transfer::kHlg;
+    if (hdr && traits.bt2020 && source_shape.planes == 3) bt2020_to_bt709(light);
+    if (options.scale != 1)
+        for (float& value : light) value *= static_cast<float>(options.scale);
 }
 
 FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
@@ -185,6 +200,10 @@ std::optional<int> FootageReader::slots() const {
 
 std::optional<double> FootageReader::video_hz() const {
     return impl_->traits.frames_hz;
+}
+
+std::optional<double> FootageReader::exposure_us() const {
+    return impl_->traits.exposure_us;
 }
 
 ColourFilter FootageReader::filter() const {
@@ -214,9 +233,10 @@ bool FootageReader::read(std::span<float> frame) {
     const auto light = impl_->reduces() ? std::span<float>(impl_->colour) : frame;
     const auto read = [&](auto& source) {
         if (!source.read(light)) return false;
-        linearise(light, impl_->options.transfer.value_or(Transfer::kLinear));
+        impl_->make_linear(light);
         check_light(light, impl_->source_shape, source.where());
-        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value)
+        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
+            impl_->options.scale == 1)
             impl_->warn(brightness_warning(light, source.where()));
         return true;
     };

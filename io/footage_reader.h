@@ -17,9 +17,11 @@ namespace stipple {
 
 struct FootageOptions {
     std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
-    bool luminance = false;             ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
-    std::optional<double> max_value;    ///< clip light to this value
-    std::optional<RawFormat> raw = {};  ///< read a file without a header so, whatever its name
+    bool luminance = false;                ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
+    std::optional<double> max_value;       ///< clip light to this value
+    std::optional<RawFormat> raw = {};     ///< read a file without a header so, whatever its name
+    double scale = 1;                      ///< factor on the light, before it is clipped; above 0
+    std::optional<double> frames_hz = {};  ///< frame rate, instead of that of the source
 };
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
@@ -42,6 +44,8 @@ class FootageReader {
 
     /// Frames a second at which a video plays or a camera took them, if the source tells.
     [[nodiscard]] std::optional<double> video_hz() const;
+    /// Exposure time of a frame in microseconds, if the source tells.
+    [[nodiscard]] std::optional<double> exposure_us() const;
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.

@@ -4,27 +4,42 @@
 
 #include <numeric>
 
+#include "core/error.h"
+
 namespace stipple {
+
+Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits, bool is_video,
+                     const std::string& name) {
+    if (options.transfer != Transfer::kAuto) return options.transfer.value_or(Transfer::kLinear);
+    if (traits.declared) return *traits.declared;
+    if (is_video && traits.gamma_coded)
+        throw InputError(name, traits.curve.empty()
+                                   ? "declares no transfer function, so --transfer auto has none; "
+                                     "name it, as --transfer bt709 of most cameras"
+                                   : fmt::format("declares the transfer function {}, which is not "
+                                                 "known; convert it first, e.g. by ffmpeg",
+                                                 traits.curve));
+    return traits.gamma_coded ? Transfer::kSrgb : Transfer::kLinear;
+}
 
 std::vector<std::string> reading_warnings(const SourceTraits& traits, const FootageOptions& options,
                                           const std::string& name) {
     std::vector<std::string> warnings;
     const Transfer transfer = options.transfer.value_or(Transfer::kLinear);
-    if (!traits.hdr_curve.empty())
-        warnings.push_back(
-            fmt::format("{}: is HDR video in the curve {}, which --transfer does not "
-                        "know; convert it to linear light first",
-                        name, traits.hdr_curve));
+    const bool hdr = traits.declared == Transfer::kPq || traits.declared == Transfer::kHlg;
+    if (hdr && transfer != Transfer::kAuto && transfer != traits.declared)
+        warnings.push_back(fmt::format("{}: is HDR video in the curve {}: add --transfer {}", name,
+                                       traits.curve, transfer_name(*traits.declared)));
     else if (traits.gamma_coded && !options.transfer)
         warnings.push_back(
             fmt::format("{}: looks gamma-coded: add --transfer srgb, or --transfer "
                         "linear if its numbers are linear light",
                         name));
-    if (traits.floating && transfer != Transfer::kLinear)
+    if (traits.floating && transfer != Transfer::kLinear && transfer != Transfer::kAuto)
         warnings.push_back(
             fmt::format("{}: holds floating-point numbers, which are linear light as "
                         "a rule; --transfer {} bends them",
-                        name, transfer == Transfer::kSrgb ? "srgb" : "gamma22"));
+                        name, transfer_name(transfer)));
     constexpr double kMicrosecondsASecond = 1e6;
     const double period_us = kMicrosecondsASecond / traits.frames_hz.value_or(0);
     if (traits.frames_hz && traits.exposure_us && *traits.exposure_us < period_us / 2)

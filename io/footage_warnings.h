@@ -9,6 +9,12 @@
 
 namespace stipple {
 
+/// The transfer function by which a source is read: that of `options`, or with kAuto the one that
+/// the source declares. Images that declare none are sRGB if they look gamma-coded, else linear.
+/// \throws InputError at `name` if a video declares none, or one that is not known.
+[[nodiscard]] Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits,
+                                   bool is_video, const std::string& name);
+
 /// Effects of `options` on numbers of this kind that users may not expect; each begins with `name`.
 [[nodiscard]] std::vector<std::string> reading_warnings(const SourceTraits& traits,
                                                         const FootageOptions& options,

@@ -2,22 +2,27 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/geometry.h"
+#include "io/image_coding.h"
+#include "io/video_coding.h"
 
 namespace stipple {
 
 struct FrameWriterOptions {
-    double frames_per_second = 30;  ///< playback rate of .mp4 / .mkv
-    bool force = false;             ///< replace an existing output
-    bool live = false;              ///< frames of a folder appear there one by one
+    VideoCoding video = {};   ///< of .mp4 / .mkv
+    ImageCoding images = {};  ///< of a folder and of .tif / .tiff
+    bool force = false;       ///< replace an existing output
+    bool live = false;        ///< frames of a folder appear there one by one
 };
 
-/// Writes a video frame by frame. The name determines the format: a folder of `frame_%04d.exr`
-/// (float, linear), `.npy` (float32, (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv` (tone-mapped, 8 bits).
-/// The output is written under a hidden name in the same folder, and `finish` renames it. So the
-/// final name never holds a partial video; without `finish` nothing remains.
+/// Writes a video frame by frame. The name determines the format: a folder of `frame_%04d.exr`,
+/// light_%04d.png or light_%04d.tif (linear), `.tif` / `.tiff` (OME-TIFF, linear), `.npy` (float32,
+/// (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv` (io/video_writer.h). The output is written under a hidden
+/// name in the same folder, and `finish` renames it. So the final name never holds a partial video;
+/// without `finish` nothing remains.
 class FrameWriter {
   public:
     /// \throws InputError if the output exists (and not force) or its folder does not, or the
@@ -33,6 +38,8 @@ class FrameWriter {
     void write(std::span<const float> frame);
     /// Completes the file with any number of frames. \throws DeviceError.
     void finish();
+    /// Of the frames so far, if the output is a video in PQ.
+    [[nodiscard]] std::optional<LightLevels> light_levels() const;
 
   private:
     struct Impl;

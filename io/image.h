@@ -6,6 +6,7 @@
 
 #include "core/colour_filter.h"
 #include "core/geometry.h"
+#include "core/light.h"
 
 namespace stipple {
 
@@ -13,9 +14,9 @@ namespace stipple {
 struct SourceTraits {
     bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
     bool floating = false;
-    bool has_alpha = false;  ///< which is left out
-    std::string hdr_curve =
-        {};  ///< of HDR video that declares it: "smpte2084" (PQ), "arib-std-b67"
+    bool has_alpha = false;                     ///< which is left out
+    std::optional<Transfer> declared = {};      ///< transfer function, if it is one of these
+    bool bt2020 = false;                        ///< declares the primaries of BT.2020
     ColourFilter filter = ColourFilter::kNone;  ///< whose mosaic its one plane is
     std::optional<double> frames_hz = {};       ///< at which frames play or were taken
     std::optional<double> exposure_us = {};     ///< of a frame

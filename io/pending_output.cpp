@@ -70,13 +70,13 @@ bool all_digits(std::string_view text) {
 }  // namespace
 
 bool is_frame_name(std::string_view name) {
-    constexpr std::string_view kPrefix = "frame_";
-    constexpr std::string_view kSuffix = ".exr";
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) return false;
-    if (name.size() < kPrefix.size() + 4 + kSuffix.size()) return false;
-    name.remove_prefix(kPrefix.size());
-    name.remove_suffix(kSuffix.size());
-    return all_digits(name);
+    constexpr std::size_t kSides = 6 + 4;  // "frame_" or "light_", and the extension
+    if (name.size() < kSides + 4) return false;
+    const std::string_view prefix = name.substr(0, 6);
+    const std::string_view suffix = name.substr(name.size() - 4);
+    const bool exr = prefix == "frame_" && suffix == ".exr";
+    const bool integers = prefix == "light_" && (suffix == ".png" || suffix == ".tif");
+    return (exr || integers) && all_digits(name.substr(6, name.size() - kSides));
 }
 
 namespace {

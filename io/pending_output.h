@@ -12,7 +12,7 @@ enum class OutputKind { kFile, kFolder };
 
 /// Whether a run of this kind writes a file with this name into its folder.
 using IsOwnName = bool (*)(std::string_view name);
-/// frame_0000.exr ...
+/// frame_0000.exr, light_0000.png, light_0000.tif ... Others name their frames frame_0000.png too.
 [[nodiscard]] bool is_frame_name(std::string_view name);
 
 /// An output that gets its final name only when it is complete and on the disk

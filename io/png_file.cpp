@@ -208,8 +208,10 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where
     return image;
 }
 
-void write_png_file(const std::filesystem::path& file, const PngPixels& pixels) {
-    Sink sink{OutputFile(file, file.string())};
+void write_png_file(const std::filesystem::path& file, const PngPixels& pixels,
+                    const std::string& where) {
+    const std::string name = where.empty() ? file.string() : where;
+    Sink sink{OutputFile(file, name)};
     const Png writer(false);
     const png_structp png = writer.png;
     const png_infop info = writer.info;
@@ -231,8 +233,7 @@ void write_png_file(const std::filesystem::path& file, const PngPixels& pixels) 
         png_write_end(png, nullptr);
     });
     if (sink.failure) std::rethrow_exception(sink.failure);
-    if (!succeeded)
-        throw DeviceError(file.string(), fmt::format("cannot be written: {}", writer.reason()));
+    if (!succeeded) throw DeviceError(name, fmt::format("cannot be written: {}", writer.reason()));
     sink.file.close();
 }
 

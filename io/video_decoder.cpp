@@ -90,6 +90,8 @@ void complete_colours(AVFrame& frame, const AVCodecParameters& container) {
     if (frame.colorspace == AVCOL_SPC_UNSPECIFIED) frame.colorspace = container.color_space;
     if (frame.color_range == AVCOL_RANGE_UNSPECIFIED) frame.color_range = container.color_range;
     if (frame.color_trc == AVCOL_TRC_UNSPECIFIED) frame.color_trc = container.color_trc;
+    if (frame.color_primaries == AVCOL_PRI_UNSPECIFIED)
+        frame.color_primaries = container.color_primaries;
 }
 
 }  // namespace

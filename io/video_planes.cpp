@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -118,6 +119,29 @@ struct Scale {
     }
 };
 
+/// The transfer function of a curve; none of those that are not read.
+std::optional<Transfer> transfer_of(AVColorTransferCharacteristic curve) {
+    switch (curve) {
+        case AVCOL_TRC_BT709:
+        case AVCOL_TRC_SMPTE170M:
+        case AVCOL_TRC_BT2020_10:
+        case AVCOL_TRC_BT2020_12:
+            return Transfer::kBt709;
+        case AVCOL_TRC_GAMMA22:
+            return Transfer::kGamma22;
+        case AVCOL_TRC_IEC61966_2_1:
+            return Transfer::kSrgb;
+        case AVCOL_TRC_LINEAR:
+            return Transfer::kLinear;
+        case AVCOL_TRC_SMPTE2084:
+            return Transfer::kPq;
+        case AVCOL_TRC_ARIB_STD_B67:
+            return Transfer::kHlg;
+        default:
+            return {};
+    }
+}
+
 /// What a frame declares of its curve goes first. Where it declares none, all but grey and RGB of
 /// more than 8 bits are gamma-coded, as is usual.
 SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
@@ -127,9 +151,10 @@ SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
     traits.gamma_coded = is_declared
                              ? curve != AVCOL_TRC_LINEAR
                              : about.comp[0].depth <= 8 || colours_of(about) == Colours::kYcbcr;
-    if (curve == AVCOL_TRC_SMPTE2084 || curve == AVCOL_TRC_ARIB_STD_B67)
-        traits.hdr_curve = av_color_transfer_name(curve);
-    if (is_declared) traits.curve = av_color_transfer_name(curve);
+    traits.declared = transfer_of(curve);
+    if (is_declared && av_color_transfer_name(curve) != nullptr)
+        traits.curve = av_color_transfer_name(curve);
+    traits.bt2020 = frame.color_primaries == AVCOL_PRI_BT2020;
     traits.sample_format = about.name;
     traits.bits = about.comp[0].depth;
     traits.has_alpha =

@@ -3,19 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
+#include "io/hdr_signal.h"
 #include "io/late_ffmpeg.h"
 #include "io/output_file.h"
 #include "io/tone_map.h"
+#include "io/video_encoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -27,7 +32,6 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_d2q);
 STIPPLE_LATE(av_dict_free);
 STIPPLE_LATE(av_dict_set);
 STIPPLE_LATE(av_frame_alloc);
@@ -39,9 +43,6 @@ STIPPLE_LATE(av_malloc);
 STIPPLE_LATE(av_packet_alloc);
 STIPPLE_LATE(av_packet_rescale_ts);
 STIPPLE_LATE(av_write_trailer);
-STIPPLE_LATE(avcodec_alloc_context3);
-STIPPLE_LATE(avcodec_find_encoder);
-STIPPLE_LATE(avcodec_open2);
 STIPPLE_LATE(avcodec_parameters_from_context);
 STIPPLE_LATE(avcodec_receive_packet);
 STIPPLE_LATE(avcodec_send_frame);
@@ -54,15 +55,30 @@ STIPPLE_LATE(sws_getContext);
 STIPPLE_LATE(sws_scale);
 STIPPLE_LATE(sws_setColorspaceDetails);
 
-/// Of the encoder, whose bits depend on it: the same on any machine.
-constexpr int kThreads = 4;
-constexpr const char* kQuality = "23";  ///< constant rate factor, x264's default
 constexpr int kBufferBytes = 1 << 16;
+constexpr const char* kCreate = "cannot be created";
+
+/// The longest header of a file in which light levels are looked for.
+constexpr std::size_t kHeadBytes = 1 << 16;
 
 /// Where the bytes of the file go. A failure must not pass through FFmpeg.
 struct Sink {
     OutputFile file;
+    std::vector<std::uint8_t> head = {};  ///< the first bytes of the file
+    std::size_t position = 0;
     std::exception_ptr failure = nullptr;
+
+    void write(std::span<const std::uint8_t> bytes) {
+        file.write(std::as_bytes(bytes));
+        const std::size_t kept = std::min(kHeadBytes, position + bytes.size());
+        if (head.size() < kept) head.resize(kept);
+        for (std::size_t i = 0; position + i < kept; ++i) head[position + i] = bytes[i];
+        position += bytes.size();
+    }
+    void seek(std::int64_t offset) {
+        file.seek(offset);
+        position = static_cast<std::size_t>(offset);
+    }
 
     template <typename Step>
     bool succeeds(Step step) {
@@ -79,15 +95,13 @@ struct Sink {
 int write_bytes(void* opaque, std::uint8_t* bytes, int count) {
     auto& sink = *static_cast<Sink*>(opaque);
     const auto size = static_cast<std::size_t>(count);
-    return sink.succeeds([&] { sink.file.write(std::as_bytes(std::span(bytes, size))); })
-               ? count
-               : AVERROR(EIO);
+    return sink.succeeds([&] { sink.write({bytes, size}); }) ? count : AVERROR(EIO);
 }
 
 std::int64_t seek(void* opaque, std::int64_t offset, int whence) {
     auto& sink = *static_cast<Sink*>(opaque);
     if (whence != SEEK_SET) return AVERROR(ENOSYS);
-    return sink.succeeds([&] { sink.file.seek(offset); }) ? offset : AVERROR(EIO);
+    return sink.succeeds([&] { sink.seek(offset); }) ? offset : AVERROR(EIO);
 }
 
 /// A frame of the format with room for its pixels; null if there is no memory.
@@ -101,23 +115,16 @@ FfmpegPtr<AVFrame> new_frame(AVPixelFormat format, int width, int height) {
     return frame;
 }
 
-/// As the tone-mapped numbers are: sRGB's primaries, the power 1/2.2.
-void declare_colours(AVCodecContext& encoder) {
-    encoder.color_range = AVCOL_RANGE_MPEG;
-    encoder.colorspace = AVCOL_SPC_BT709;
-    encoder.color_primaries = AVCOL_PRI_BT709;
-    encoder.color_trc = AVCOL_TRC_GAMMA22;
-}
-
-/// From grey or RGB of 8 bits; the same bits on any processor.
-FfmpegPtr<SwsContext> new_scaler(const AVFrame& from, const AVFrame& to) {
+/// From grey or RGB of 8 or 16 bits; the same bits on any processor.
+FfmpegPtr<SwsContext> new_scaler(const AVFrame& from, const AVFrame& to, VideoCurve curve) {
     constexpr int kFlags =
         SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
     constexpr int kOne = 1 << 16;
     FfmpegPtr<SwsContext> scaler(sws_getContext(
         from.width, from.height, static_cast<AVPixelFormat>(from.format), to.width, to.height,
         static_cast<AVPixelFormat>(to.format), kFlags, nullptr, nullptr, nullptr));
-    const int* const matrix = sws_getCoefficients(SWS_CS_ITU709);
+    const int* const matrix =
+        sws_getCoefficients(curve == VideoCurve::kSdr ? SWS_CS_ITU709 : SWS_CS_BT2020);
     if (scaler) sws_setColorspaceDetails(scaler.get(), matrix, 1, matrix, 0, 0, kOne, kOne);
     return scaler;
 }
@@ -128,7 +135,9 @@ struct VideoWriter::Impl {
     std::string where;
     FrameShape shape;
     Sink sink;
-    std::vector<std::uint8_t> pixels;  ///< as tone-mapped
+    VideoCoding coding;
+    std::vector<std::uint8_t> pixels;  ///< as tone-mapped, or of 16 bits in the machine's order
+    std::optional<HdrSignal> hdr;
     FfmpegPtr<AVIOContext> bytes;
     FfmpegPtr<AVFormatContext> muxer;
     FfmpegPtr<AVCodecContext> encoder;
@@ -139,11 +148,23 @@ struct VideoWriter::Impl {
     AVStream* stream = nullptr;
     std::int64_t next_slot = 0;
 
-    Impl(const std::filesystem::path& file, std::string_view named, FrameShape frame)
-        : where(named), shape(frame), sink{OutputFile(file, where)}, pixels(frame.sites()) {}
-    void open(const std::filesystem::path& file, double frames_per_second);
-    void open_encoder(AVRational rate);
+    Impl(const std::filesystem::path& file, std::string_view named, FrameShape frame,
+         const VideoCoding& wanted)
+        : where(named),
+          shape(frame),
+          sink{OutputFile(file, where)},
+          coding(wanted),
+          pixels(frame.sites() * sample_bytes()) {
+        if (coding.curve != VideoCurve::kSdr) hdr.emplace(shape, coding);
+    }
+    [[nodiscard]] std::size_t sample_bytes() const {
+        return coding.curve == VideoCurve::kSdr ? sizeof(std::uint8_t) : sizeof(std::uint16_t);
+    }
+    void open(const std::filesystem::path& file);
+    void open_stream();
+    void convert(std::span<const float> frame);
     void pad();
+    void replace_light_levels(unsigned max_cll, unsigned max_fall);
     void encode(const AVFrame* frame);
     /// \throws what the disk has thrown, else DeviceError, if `result` is an error.
     void check(int result, std::string_view what) const {
@@ -153,68 +174,83 @@ struct VideoWriter::Impl {
     }
 };
 
-void VideoWriter::Impl::open_encoder(AVRational rate) {
-    const AVCodec* const codec = avcodec_find_encoder(AV_CODEC_ID_H264);
-    if (codec == nullptr) throw DeviceError(where, "FFmpeg here has no encoder for H.264");
-    encoder.reset(avcodec_alloc_context3(codec));
-    if (!encoder) throw std::bad_alloc();
-    // Even, and at least four columns: FFmpeg 5.1 converts narrower frames beyond their memory.
-    encoder->width = std::max(shape.cols + shape.cols % 2, 4);
-    encoder->height = shape.rows + shape.rows % 2;
-    encoder->pix_fmt = AV_PIX_FMT_YUV420P;
-    encoder->framerate = rate;
-    encoder->time_base = av_inv_q(rate);
-    encoder->thread_count = kThreads;
-    declare_colours(*encoder);
-    if ((muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0)
-        encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    AVDictionary* options = nullptr;
-    av_dict_set(&options, "crf", kQuality, 0);
-    const int result = avcodec_open2(encoder.get(), codec, &options);
-    av_dict_free(&options);
-    check(result, fmt::format("no video of {} x {} pixels at {} frames per second can be encoded",
-                              shape.cols, shape.rows, av_q2d(rate)));
+void VideoWriter::Impl::open_stream() {
+    stream = avformat_new_stream(muxer.get(), nullptr);
+    if (stream == nullptr) throw std::bad_alloc();
+    check(avcodec_parameters_from_context(stream->codecpar, encoder.get()), kCreate);
+    stream->time_base = encoder->time_base;
+    stream->avg_frame_rate = encoder->framerate;
+    if (coding.curve != VideoCurve::kSdr && coding.codec == HdrCodec::kHevc)
+        stream->codecpar->codec_tag =
+            MKTAG('h', 'v', 'c', '1');  // of .mp4, as Apple's players want
+    if (coding.curve != VideoCurve::kPq) return;
+    declare_mastering_display(*stream, coding);
+    declare_light_levels(*stream, kUnknownMaxCll, kUnknownMaxFall);
 }
 
-void VideoWriter::Impl::open(const std::filesystem::path& file, double frames_per_second) {
-    constexpr int kMaxTermOfRate = 60'000;  // numerator, denominator
-    constexpr const char* kCreate = "cannot be created";
+void VideoWriter::Impl::open(const std::filesystem::path& file) {
     av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* created = nullptr;
     check(avformat_alloc_output_context2(&created, nullptr, nullptr, file.c_str()), kCreate);
     muxer.reset(created);
-    open_encoder(av_d2q(frames_per_second, kMaxTermOfRate));
+    encoder = open_encoder(shape, coding, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0, where);
     packet.reset(av_packet_alloc());
-    padded = new_frame(shape.planes == 1 ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24, encoder->width,
-                       encoder->height);
+    const bool grey = shape.planes == 1;
+    const bool deep = sample_bytes() > 1;
+    padded = new_frame(deep ? (grey ? AV_PIX_FMT_GRAY16 : AV_PIX_FMT_RGB48)
+                            : (grey ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24),
+                       encoder->width, encoder->height);
     encoded = new_frame(encoder->pix_fmt, encoder->width, encoder->height);
-    if (packet && padded && encoded) scaler = new_scaler(*padded, *encoded);
-    stream = avformat_new_stream(muxer.get(), nullptr);
+    if (packet && padded && encoded) scaler = new_scaler(*padded, *encoded, coding.curve);
     auto* const buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
     if (buffer != nullptr)
         bytes.reset(avio_alloc_context(buffer, kBufferBytes, 1, &sink, nullptr, write_bytes, seek));
-    if (!scaler || stream == nullptr || !bytes) throw std::bad_alloc();
-    check(avcodec_parameters_from_context(stream->codecpar, encoder.get()), kCreate);
-    stream->time_base = encoder->time_base;
-    stream->avg_frame_rate = encoder->framerate;
+    if (!scaler || !bytes) throw std::bad_alloc();
+    open_stream();
     muxer->pb = bytes.get();
     muxer->flags |= AVFMT_FLAG_BITEXACT;  // neither time nor random numbers
-    check(avformat_write_header(muxer.get(), nullptr), kCreate);
+    AVDictionary* options = nullptr;
+    if (hdr) av_dict_set(&options, "write_crc", "0", 0);  // light levels change later
+    const int result = avformat_write_header(muxer.get(), &options);
+    av_dict_free(&options);
+    check(result, kCreate);
+}
+
+void VideoWriter::Impl::convert(std::span<const float> frame) {
+    if (!hdr) return tone_map_frame(frame, shape, pixels);
+    hdr->convert(frame, {reinterpret_cast<std::uint16_t*>(pixels.data()), shape.sites()});
 }
 
 /// Repeats the last row and column.
 void VideoWriter::Impl::pad() {
-    const auto planes = static_cast<std::size_t>(shape.planes);
-    const std::size_t row_bytes = static_cast<std::size_t>(shape.cols) * planes;
+    const std::size_t pixel_bytes = static_cast<std::size_t>(shape.planes) * sample_bytes();
+    const std::size_t row_bytes = static_cast<std::size_t>(shape.cols) * pixel_bytes;
     for (int row = 0; row < padded->height; ++row) {
         const std::uint8_t* const from =
             pixels.data() + static_cast<std::size_t>(std::min(row, shape.rows - 1)) * row_bytes;
         std::uint8_t* to = padded->data[0] + static_cast<std::ptrdiff_t>(row) * padded->linesize[0];
         std::memcpy(to, from, row_bytes);
         to += row_bytes;
-        for (int col = shape.cols; col < padded->width; ++col, to += planes)
-            std::memcpy(to, from + row_bytes - planes, planes);
+        for (int col = shape.cols; col < padded->width; ++col, to += pixel_bytes)
+            std::memcpy(to, from + row_bytes - pixel_bytes, pixel_bytes);
     }
+}
+
+/// Of Matroska, whose header is at the beginning: its elements MaxCLL (55BC) and MaxFALL (55BD),
+/// each of two bytes. The header of .mp4 comes last, and has them already.
+void VideoWriter::Impl::replace_light_levels(unsigned max_cll, unsigned max_fall) {
+    const auto element = [](std::uint8_t id, unsigned value) {
+        return std::array<std::uint8_t, 5>{0x55, id, 0x82, static_cast<std::uint8_t>(value >> 8U),
+                                           static_cast<std::uint8_t>(value & 0xFFU)};
+    };
+    const auto replace = [&](std::uint8_t id, unsigned unknown, unsigned value) {
+        const auto found = std::ranges::search(sink.head, element(id, unknown));
+        if (found.empty()) return;
+        sink.seek(found.begin() - sink.head.begin());
+        sink.write(element(id, value));
+    };
+    replace(0xBC, kUnknownMaxCll, max_cll);
+    replace(0xBD, kUnknownMaxFall, max_fall);
 }
 
 /// Null: what the encoder still holds.
@@ -232,9 +268,9 @@ void VideoWriter::Impl::encode(const AVFrame* frame) {
 }
 
 VideoWriter::VideoWriter(const std::filesystem::path& file, std::string_view where,
-                         FrameShape shape, double frames_per_second)
-    : impl_(std::make_unique<Impl>(file, where, shape)) {
-    impl_->open(file, frames_per_second);
+                         FrameShape shape, const VideoCoding& coding)
+    : impl_(std::make_unique<Impl>(file, where, shape, coding)) {
+    impl_->open(file);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -242,7 +278,7 @@ VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
 
 void VideoWriter::write(std::span<const float> frame) {
-    tone_map_frame(frame, impl_->shape, impl_->pixels);
+    impl_->convert(frame);
     impl_->pad();
     const AVFrame& from = *impl_->padded;
     AVFrame& to = *impl_->encoded;
@@ -252,9 +288,20 @@ void VideoWriter::write(std::span<const float> frame) {
     impl_->encode(&to);
 }
 
+std::optional<LightLevels> VideoWriter::light_levels() const {
+    if (impl_->coding.curve != VideoCurve::kPq) return {};
+    return impl_->hdr->levels();
+}
+
 void VideoWriter::finish() {
     impl_->encode(nullptr);
+    const LightLevels levels = light_levels().value_or(LightLevels{});
+    const auto max_cll = static_cast<unsigned>(std::ceil(levels.max_cll));
+    const auto max_fall = static_cast<unsigned>(std::ceil(levels.max_fall));
+    const bool is_pq = impl_->coding.curve == VideoCurve::kPq;
+    if (is_pq) declare_light_levels(*impl_->stream, max_cll, max_fall);
     impl_->check(av_write_trailer(impl_->muxer.get()), "cannot be written");
+    if (is_pq) impl_->replace_light_levels(max_cll, max_fall);
     impl_->sink.file.close();
 }
 

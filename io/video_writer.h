@@ -2,21 +2,27 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "core/geometry.h"
+#include "io/video_coding.h"
 
 namespace stipple {
 
-/// Writes a video for viewing: tone-mapped (io/tone_map.h), H.264 of 8 bits by FFmpeg's libraries,
-/// Y'CbCr by BT.709 in limited range, which the file declares. Odd sizes, and fewer than four
-/// columns, are padded by repeating the last row or column. The same bits on any machine.
+/// Writes a video by FFmpeg's libraries, in limited range, with the same bits on any machine. Its
+/// file declares curve, primaries and matrix. Odd sizes, and fewer than four columns, are padded by
+/// repeating the last row or column.
+///
+/// For viewing: tone-mapped (io/tone_map.h), H.264 of 8 bits, Y'CbCr by BT.709. In HDR: the signals
+/// of io/hdr_signal.h, HEVC or AV1 of 10 bits, Y'CbCr by BT.2020 (non-constant luminance); in PQ
+/// with mastering display (SMPTE ST 2086) and light levels (CTA-861.3), rounded up to cd/m2.
 class VideoWriter {
   public:
     /// Creates `file` (.mp4 or .mkv); messages name it `where`. \throws DeviceError.
     VideoWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape,
-                double frames_per_second);
+                const VideoCoding& coding);
     ~VideoWriter();
     VideoWriter(VideoWriter&&) noexcept;
     VideoWriter& operator=(VideoWriter&&) noexcept;
@@ -25,6 +31,8 @@ class VideoWriter {
     void write(std::span<const float> frame);
     /// Completes the file. \throws DeviceError.
     void finish();
+    /// Of the frames so far, in PQ.
+    [[nodiscard]] std::optional<LightLevels> light_levels() const;
 
   private:
     struct Impl;

@@ -108,8 +108,9 @@ std::span<const float> ArrayFrames::next() {
     const auto* first = static_cast<const std::byte*>(array_.data());
     auto light = stored(first + slot_ * array_.strides(0));
     const std::string where = fmt::format("{}: frame {}", kWhere, slot_++);
-    if (options_.transfer.value_or(Transfer::kLinear) != Transfer::kLinear) {
-        linearise(own(light), *options_.transfer);
+    const Transfer transfer = options_.transfer.value_or(Transfer::kLinear);
+    if (transfer != Transfer::kLinear && transfer != Transfer::kAuto) {  // arrays declare none
+        linearise(own(light), transfer);
         light = frame_;
     }
     check_light(light, source_, where);

@@ -41,15 +41,10 @@ FootageOptions options_of(const std::optional<std::string>& transfer, bool lumin
     if (max_value && !(*max_value > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *max_value));
     if (!transfer) return options;
-    if (*transfer == "linear")
-        options.transfer = Transfer::kLinear;
-    else if (*transfer == "gamma22")
-        options.transfer = Transfer::kGamma22;
-    else if (*transfer == "srgb")
-        options.transfer = Transfer::kSrgb;
-    else
+    options.transfer = transfer_from_name(*transfer);
+    if (!options.transfer)
         throw InputError("transfer",
-                         fmt::format("\"{}\" is none of linear, gamma22, srgb", *transfer));
+                         fmt::format("\"{}\" is none of {}", *transfer, transfer_names()));
     return options;
 }
 

@@ -55,20 +55,19 @@ toml::table sensor_table(const SensorSetup& setup) {
     return sensor;
 }
 
-const char* name_of(Transfer transfer) {
-    if (transfer == Transfer::kGamma22) return "gamma22";
-    return transfer == Transfer::kSrgb ? "srgb" : "linear";
-}
-
 toml::table footage_table(const FootageOrigin& footage) {
-    toml::table table{{"name", footage.name},
-                      {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
-                      {"luminance", footage.reading.luminance}};
+    toml::table table{
+        {"name", footage.name},
+        {"transfer", transfer_name(footage.reading.transfer.value_or(Transfer::kLinear))},
+        {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
     if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
+    if (footage.reading.scale != 1) table.insert("scale", footage.reading.scale);
+    if (!footage.resample.empty()) table.insert("resample", footage.resample);
+    if (footage.reading.frames_hz) table.insert("frames_hz", *footage.reading.frames_hz);
     if (footage.black_level_dn != 0) table.insert("black_level_dn", footage.black_level_dn);
     return table;
 }
@@ -123,8 +122,18 @@ std::string options_of(const toml::table& provenance) {
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
     if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
+<<<<<<< HEAD
     if (const auto max_value = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *max_value));
+=======
+    if (const auto scale = footage["scale"].value<double>())
+        add("--scale", fmt::format("{}", *scale));
+    if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
+    if (const auto hz = footage["frames_hz"].value<double>())
+        add("--footage-hz", fmt::format("{}", *hz));
+    if (const auto most = footage["max_value"].value<double>())
+        add("--max-value", fmt::format("{}", *most));
+>>>>>>> s9-hdr
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
     if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
         add("--schedule", it);

@@ -16,6 +16,7 @@ struct FootageOrigin {
     std::string pixel_format = {};  ///< of the camera that replays footage; empty otherwise
     FootageOptions reading = {};
     double black_level_dn = 0;  ///< subtracted from the input
+    std::string resample = {};  ///< method that made slots of frames; empty: a frame is a slot
 };
 
 /// The provenance in a stream header (TOML, docs/stream_format.md): everything that determines the

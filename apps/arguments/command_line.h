@@ -41,7 +41,7 @@ class UsageError : public std::runtime_error {
 /// The names that an output may have: any, or those with one of the extensions.
 struct OutputName {
     std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
-    std::array<std::string_view, 3> extensions = {};  ///< in lower case; names may be in upper case
+    std::array<std::string_view, 5> extensions = {};  ///< in lower case; names may be in upper case
     bool may_have_none = true;
 };
 

@@ -14,8 +14,8 @@ constexpr OutputName kRecoveredName{
     "a stream is a .stipple, a recording a .strec, or either has a name without extension",
     {".stipple", ".strec"}};
 constexpr OutputName kVideoName{
-    "a video is a .npy, .mp4 or .mkv, or by a name without extension a folder of EXR files",
-    {".npy", ".mp4", ".mkv"}};
+    "a video is a .npy, .mp4, .mkv or .tif, or by a name without extension a folder of images",
+    {".npy", ".mp4", ".mkv", ".tif", ".tiff"}};
 constexpr OutputName kDifferenceName{
     "a difference is a .png or a .npy, or by a name without extension a folder of EXR files",
     {".png", ".npy"}};

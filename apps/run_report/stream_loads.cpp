@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 ordered_json account_of(const StreamHeader& header, const ReadoutTiming& timing,
                         std::int64_t slots) {
     ReadoutCost account(timing, header.schedule, header.shape,
-                           {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch});
+                        {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch});
     ordered_json readout = ordered_json::array(), convert = readout, link = readout, bits = readout,
                  limit = readout;
     for (std::int64_t slot = 0; slot < slots; ++slot) {

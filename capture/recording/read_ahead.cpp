@@ -57,6 +57,11 @@ std::optional<double> ReadAhead::video_hz() const {
     return footage == nullptr ? std::nullopt : footage->video_hz();
 }
 
+std::optional<double> ReadAhead::exposure_us() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage == nullptr ? std::nullopt : footage->exposure_us();
+}
+
 ColourFilter ReadAhead::filter() const {
     return std::visit([](const auto& reader) { return reader.filter(); }, reader_);
 }

@@ -29,6 +29,8 @@ class ReadAhead {
     [[nodiscard]] std::optional<int> slots() const;
     /// As FootageReader::video_hz; a recording tells its rate at its end.
     [[nodiscard]] std::optional<double> video_hz() const;
+    /// As FootageReader::exposure_us; a recording does not tell.
+    [[nodiscard]] std::optional<double> exposure_us() const;
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.

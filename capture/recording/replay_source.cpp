@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include "capture/clipping.h"
@@ -13,19 +16,40 @@
 namespace stipple {
 namespace {
 
-FrameLayout footage_layout(FrameShape shape, const std::string& name) {
-    const std::string_view of_shape = shape.planes == 3 ? "RGB8" : "Mono16";
+/// The format of 16 bits whose pixels lie behind this filter.
+std::string_view words_behind(ColourFilter filter) {
+    constexpr std::array<std::string_view, 5> kNames{"Mono16", "BayerRG16", "BayerGR16",
+                                                     "BayerGB16", "BayerBG16"};
+    return kNames[static_cast<std::size_t>(filter)];
+}
+
+/// \throws InputError if frames with the mosaic of `filter` do not come in `format`.
+void check_mosaic(ColourFilter filter, const PixelFormat& format) {
+    if (filter == ColourFilter::kNone || format.filter == ColourFilter::kNone ||
+        format.filter == filter)
+        return;
+    throw InputError("PixelFormat",
+                     fmt::format("the footage is a mosaic that begins as {}, not as {}; write {}",
+                                 name_of(filter), format.name, words_behind(filter)));
+}
+
+/// Of footage of this shape, which may be a mosaic. Its format is `name`, or if that is empty the
+/// one of 16 bits, in colour of 8.
+FrameLayout footage_layout(FrameShape shape, ColourFilter filter, const std::string& name) {
+    const std::string_view of_shape = shape.planes == 3 ? "RGB8" : words_behind(filter);
     const std::string_view wanted = name.empty() ? of_shape : std::string_view(name);
     const PixelFormat* format = pixel_format_named(wanted);
     const bool mosaic = format != nullptr && format->filter != ColourFilter::kNone &&
                         format->packing == Packing::kBytes && format->significant_bits % 8 == 0;
     const bool plain = wanted == "Mono8" || wanted == "Mono16" || wanted == "RGB8";
-    if (!(plain || mosaic) || (mosaic ? 3 : format->planes) != shape.planes)
+    const int mosaic_planes = filter == ColourFilter::kNone ? 3 : 1;
+    if (!(plain || mosaic) || (mosaic ? mosaic_planes : format->planes) != shape.planes)
         throw InputError(
             "PixelFormat",
             fmt::format("footage of {} planes does not come in \"{}\"; write {}", shape.planes,
                         wanted,
                         shape.planes == 3 ? "RGB8, or BayerRG8 ... BayerBG16" : "Mono8 or Mono16"));
+    check_mosaic(filter, *format);
     return {.format = format,
             .width = shape.cols,
             .height = shape.rows,
@@ -38,7 +62,7 @@ ReplaySource::ReplaySource(const std::filesystem::path& path, const std::string&
     : path_(path) {
     if (!stipple::is_recording(path)) {
         open_footage();
-        layout_ = footage_layout(footage_->shape(), format);
+        layout_ = footage_layout(footage_->shape(), footage_->filter(), format);
         light_.resize(footage_->shape().sites());
         look_at_first_frame();
         rewind();
@@ -103,7 +127,9 @@ void ReplaySource::quantise(std::vector<std::uint8_t>& payload) const {
     const auto planes = static_cast<std::size_t>(layout_.format->planes);
     const auto cols = static_cast<std::size_t>(layout_.width);
     const std::size_t pixels = cols * static_cast<std::size_t>(layout_.height);
-    const ColourFilter filter = layout_.format->filter;
+    // Footage behind a filter array has one plane.
+    const ColourFilter filter =
+        footage_->shape().planes == 1 ? ColourFilter::kNone : layout_.format->filter;
     const bool words = layout_.format->significant_bits == 16;
     const float full_scale = words ? 65535.0F : 255.0F;
     payload.resize(layout_.payload_bytes());

@@ -17,8 +17,9 @@ namespace stipple {
 class ReplaySource {
   public:
     /// Opens a recording, or footage for the pixel format `format` ("Mono8" or "Mono16", in colour
-    /// "RGB8" or "BayerRG8" ... "BayerBG16"; empty: Mono16 or RGB8). \throws InputError if it is
-    /// neither, holds no frame, or does not suit the format.
+    /// "RGB8" or "BayerRG8" ... "BayerBG16"; empty: Mono16, RGB8, or of the mosaic of a colour
+    /// filter array its own of 16 bits). \throws InputError if it is neither, holds no frame, or
+    /// does not suit the format.
     ReplaySource(const std::filesystem::path& path, const std::string& format);
 
     [[nodiscard]] bool is_recording() const { return recording_.has_value(); }

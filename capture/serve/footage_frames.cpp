@@ -39,7 +39,12 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
     shape_ = reader_.shape();
     image_.width = shape_.cols;
     image_.height = shape_.rows;
-    if (preferred != nullptr) filter_ = preferred->filter;
+    const bool whole_cells = shape_.rows % 2 == 0 && shape_.cols % 2 == 0;
+    if (preferred != nullptr)
+        filter_ = preferred->filter;
+    else if (whole_cells)
+        filter_ = reader_.filter();
+    check_mosaic();
     check_cells();
     image_.formats = formats_for(shape_, filter_);
     image_.frames_per_s = frames_per_s;
@@ -53,6 +58,15 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
     const bool takes_mosaic = filter_ != ColourFilter::kNone && shape_.planes == 3;
     if (takes_mosaic) mosaic_.resize(shape_.pixels());
     dn_.resize(takes_mosaic ? shape_.pixels() : shape_.sites());
+}
+
+/// Footage that is a mosaic already can be served as that, or as grey.
+void FootageFrames::check_mosaic() const {
+    const ColourFilter own = reader_.filter();
+    if (own == ColourFilter::kNone || filter_ == ColourFilter::kNone || filter_ == own) return;
+    throw InputError(footage_.string(),
+                     fmt::format("is a mosaic that begins as {}, and cannot be served as {}",
+                                 name_of(own), name_of(filter_)));
 }
 
 void FootageFrames::check_cells() const {

@@ -27,6 +27,7 @@ class FootageFrames final : public FrameSource {
 
   private:
     void make_default(const PixelFormat& format);
+    void check_mosaic() const;
     void check_cells() const;
 
     std::filesystem::path footage_;

@@ -13,9 +13,7 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-using TvL1Flow = decltype(tv_l1_flow);
-
-TvL1Flow* load() {
+void* load(const char* function) {
     constexpr const char* kName = "libstipple_opencv.so";
     std::vector<fs::path> folders;
     for (const fs::path& own : own_folders()) {
@@ -27,8 +25,8 @@ TvL1Flow* load() {
     std::string why;
     for (const fs::path& folder : folders) {
         void* const library = dlopen((folder / kName).c_str(), RTLD_LAZY);
-        void* const flow = library ? dlsym(library, "stipple_tv_l1_flow") : nullptr;
-        if (flow != nullptr) return reinterpret_cast<TvL1Flow*>(flow);
+        void* const flow = library ? dlsym(library, function) : nullptr;
+        if (flow != nullptr) return flow;
         why += fmt::format("{}{}", why.empty() ? "" : "; ", dlerror());
     }
     throw DeviceError(
@@ -38,7 +36,13 @@ TvL1Flow* load() {
 }  // namespace
 
 void tv_l1_flow(PlaneView<float> from, PlaneView<float> to, std::span<float> flow) {
-    static TvL1Flow* const calculate = load();
+    static auto* const calculate =
+        reinterpret_cast<decltype(tv_l1_flow)*>(load("stipple_tv_l1_flow"));
+    calculate(from, to, flow);
+}
+
+void dis_flow(PlaneView<const float> from, PlaneView<const float> to, std::span<float> flow) {
+    static auto* const calculate = reinterpret_cast<decltype(dis_flow)*>(load("stipple_dis_flow"));
     calculate(from, to, flow);
 }
 

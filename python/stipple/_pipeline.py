@@ -103,7 +103,8 @@ def emulate(
         goes with the Stream; Stream.save copies it.
     force: replace a file that is there.
     overrun: what a sensor with timing does if a readout takes longer than its slot, "stretch" or "drop".
-    transfer: how the numbers map to light, "linear" (default), "gamma22" or "srgb".
+    transfer: how the numbers map to light, "linear" (default), "gamma22", "srgb", "bt709", "pq", "hlg", or
+        "auto": as the file declares.
     luminance: reduce colour to Rec. 709 luminance.
     max_value: clip light to this value first.
     threads: 0 means all cores. The bytes do not depend on it.

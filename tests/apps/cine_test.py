@@ -100,6 +100,28 @@ class CineTest(CameraFilesTest):
         self.assertEqual(self.said, "")
         self.refuse(["no --luminance"], name, "--luminance")
 
+    def test_a_replay_plays_a_mosaic_as_what_it_is(self):
+        """Its colours come back from a sensor with that array, as from `emulate`; another array is refused."""
+        name = self.cine(np.repeat(MOSAIC[:1], 12, axis=0), compression=2, filter=3, hz=200, exposure_ns=0)
+        sensor = ["--sensor", "ideal", "--schedule", "full1x", "--set", "sensor.cfa=gbrg"]
+        fast = ["--set", "camera.AcquisitionFrameRate=0", "--buffers", 1024]
+        self.succeed("emulate", name, "-o", "a.stipple", *sensor)
+        self.succeed("capture", "live", "replay:" + name, "-o", "b.stipple", *sensor, *fast)
+        for clip in "ab":
+            self.assertEqual(self.figures("info", clip + ".stipple")["cfa"], "gbrg")
+            self.succeed("decode", clip + ".stipple", "-o", clip + ".npy", "--method", "naive")
+        self.assertEqual(self.array("b.npy").shape, (12, 6, 8, 3))
+        # Two roundings of 16 bits, of the replay and of the sensor, whose full scale is 16 times light 1.0.
+        np.testing.assert_allclose(self.array("b.npy"), self.array("a.npy"), atol=20 / 65535)
+        other = [*sensor[:-1], "sensor.cfa=rggb"]
+        self.fails(INPUT, ["gbrg"], "capture", "live", "replay:" + name, "-o", "c.stipple", *other, *fast)
+        self.succeed("capture", "record", "replay:" + name, "-o", "clip.strec", *fast)
+        self.assertEqual(self.figures("info", "clip.strec")["format"], "BayerGB16")
+        self.fails(INPUT, ["PixelFormat: the footage is a mosaic that begins as gbrg"], "capture", "record",
+                   "replay:" + name, "-o", "d.strec", "--set", "camera.PixelFormat=BayerRG16", *fast)
+        self.succeed("capture", "record", "replay:" + name, "-o", "e.strec", "--set", "camera.PixelFormat=Mono16",
+                     *fast)
+
     def test_kinds_that_are_not_read(self):
         for parts, what in ((["is compressed (kind 1)"], {"compression": 1}),
                             (["24 bits per pixel in packing 0"], {"bits": 24}), (["packing 77"], {"packing": 77}),

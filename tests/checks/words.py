@@ -8,7 +8,8 @@ from tree import report
 MACHINE_PATH = re.compile(r"(?<![\w.$}/-])/(?:home|root|work|mnt|media|srv|opt|Users)/\w+")
 ADDRESS = re.compile(r"\bhttps?://([\w.-]+)")
 HOSTS = {"www.apache.org", "www.genicam.org", "doi.org", "arxiv.org",
-         "www.w3.org", "www.debian.org"}  # name spaces of SVG and of Debian's copyright files
+         # name spaces of SVG, of Debian's copyright files and of OME-XML
+         "www.w3.org", "www.debian.org", "www.openmicroscopy.org"}
 VAGUE = r"(?:manager|helper|util(?:s|ity|ities)?|base)"
 BANNED = (  # pattern, why; in the sources and the build of the modules
     (re.compile(rf"\b(?:class|struct|enum|union) +(?:class +)?\w*{VAGUE}\b", re.I), "a vague name"),

@@ -91,7 +91,7 @@ TEST(FrameWriterTest, ANpyFileWhoseWriterWasKilledSaysHowManyFramesItHolds) {
 
 TEST(FrameWriterTest, LeavesNothingBehindWithoutFinish) {
     const TemporaryFolder folder;
-    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv"}) {
+    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv", "clip.tif"}) {
         FrameWriter writer(folder / name, kShape);
         writer.write(ramp(0));
         EXPECT_FALSE(fs::exists(folder / name));
@@ -102,7 +102,7 @@ TEST(FrameWriterTest, LeavesNothingBehindWithoutFinish) {
 
 TEST(FrameWriterTest, CompletesAnOutputWithoutFrames) {
     const TemporaryFolder folder;
-    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv"}) {
+    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv", "clip.tif"}) {
         FrameWriter writer(folder / name, kShape);
         writer.finish();
         writer.finish();
@@ -112,13 +112,13 @@ TEST(FrameWriterTest, CompletesAnOutputWithoutFrames) {
 
 TEST(FrameWriterTest, ReplacesAnExistingOutputOnlyWithForce) {
     const TemporaryFolder folder;
-    for (const char* name : {"clip.npy", "frames", "clip.mp4"}) {
+    for (const char* name : {"clip.npy", "clip.tif", "frames", "clip.mp4"}) {
         write_two(folder / name);
         expect_parts(message_of<InputError>([&] { write_two(folder / name); }),
                      {"exists already", "--force"});
         write_two(folder / name, {.force = true});
     }
-    EXPECT_EQ(folder.names(), (Names{"clip.mp4", "clip.npy", "frames"}));
+    EXPECT_EQ(folder.names(), (Names{"clip.mp4", "clip.npy", "clip.tif", "frames"}));
 }
 
 TEST(FrameWriterTest, NeverReplacesAFolderWithOtherFiles) {
@@ -141,7 +141,7 @@ TEST(FrameWriterTest, RefusesAMissingFolderBadShapesAndBadRates) {
     EXPECT_THROW(FrameWriter(folder / "clip.npy", {0, 5, 1}), InputError);
     EXPECT_THROW(FrameWriter(folder / "clip.npy", {5, 5, 2}), InputError);
     for (const double rate : {0.0, -1.0, 1e9, std::nan("")})
-        EXPECT_THROW(FrameWriter(folder / "c.mp4", kShape, {.frames_per_second = rate}),
+        EXPECT_THROW(FrameWriter(folder / "c.mp4", kShape, {.video = {.frames_per_second = rate}}),
                      InputError);
     EXPECT_EQ(folder.names(), Names{});
 }

@@ -48,7 +48,7 @@ Floats noise(FrameShape shape, std::uint32_t state) {
 
 TEST(FullDiskTest, EveryVideoFormatReportsItAndLeavesNothingBehind) {
     const FrameShape shape{64, 64, 3};
-    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv"})
+    for (const char* name : {"clip.npy", "frames", "clip.mp4", "clip.mkv", "clip.tif"})
         for (const rlim_t limit : {0U, 20000U}) {
             const TemporaryFolder folder;
             const FileSizeLimit full_disk(limit);

@@ -71,7 +71,8 @@ TEST_P(VideoFileTest, PadsOddAndNarrowSizes) {
 
 TEST_P(VideoFileTest, WritesTheFrameRate) {
     for (const double rate : {0.01, 12.5, 29.97, 240.0}) {
-        FrameWriter writer(file_, {32, 32, 1}, {.frames_per_second = rate, .force = true});
+        FrameWriter writer(file_, {32, 32, 1},
+                           {.video = {.frames_per_second = rate}, .force = true});
         for (int i = 0; i < 5; ++i) writer.write(Floats(32 * 32, 1.0F));
         writer.finish();
         cv::VideoCapture capture(file_.string(), cv::CAP_FFMPEG);

@@ -1,0 +1,209 @@
+#include "io/frame_resampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/light.h"
+#include "core/parallel.h"
+
+namespace stipple {
+namespace {
+
+/// Times this close, in frames, are the same: rates such as 29.97 frames/s are rounded.
+constexpr double kSameTime = 1e-6;
+
+/// Of the collected light where frames of the mean light a and b meet.
+float slope(float a, float b) {
+    return std::min((a + b) / 2, 3 * std::min(a, b));
+}
+
+/// Hermite's basis: the light collected in a frame until its phase s is
+/// middle x (mean light of the frame) + left x (slope at its begin) + right x (slope at its end).
+struct CollectedWeights {
+    float middle;
+    float left;
+    float right;
+
+    /// From the phase `begin` to the phase `end`.
+    CollectedWeights(double begin, double end)
+        : middle(static_cast<float>(rise(end) - rise(begin))),
+          left(static_cast<float>(out(end) - out(begin))),
+          right(static_cast<float>(in(end)-in(begin))) {}
+
+    static double rise(double s) { return s * s * (3 - 2 * s); }
+    static double out(double s) { return s * (1 - s) * (1 - s); }
+    static double in(double s) { return s * s * (s - 1); }
+};
+
+/// Bilinear; outside the plane its border.
+float sample(std::span<const float> plane, FrameShape shape, float col, float row) {
+    const float x = std::clamp(col, 0.0F, static_cast<float>(shape.cols - 1));
+    const float y = std::clamp(row, 0.0F, static_cast<float>(shape.rows - 1));
+    const int left = std::min(static_cast<int>(x), std::max(shape.cols - 2, 0));
+    const int top = std::min(static_cast<int>(y), std::max(shape.rows - 2, 0));
+    const auto at = [&](int dy, int dx) {
+        const int r = std::min(top + dy, shape.rows - 1);
+        const int c = std::min(left + dx, shape.cols - 1);
+        return plane[static_cast<std::size_t>(r) * static_cast<std::size_t>(shape.cols) +
+                     static_cast<std::size_t>(c)];
+    };
+    const float fx = x - static_cast<float>(left);
+    const float fy = y - static_cast<float>(top);
+    const float upper = at(0, 0) + fx * (at(0, 1) - at(0, 0));
+    const float lower = at(1, 0) + fx * (at(1, 1) - at(1, 0));
+    return upper + fy * (lower - upper);
+}
+
+}  // namespace
+
+std::int64_t resampled_slots(std::int64_t frames, double frames_per_slot) {
+    assert(frames_per_slot > 0);
+    return static_cast<std::int64_t>((static_cast<double>(frames) + kSameTime) / frames_per_slot);
+}
+
+FrameResampler::FrameResampler(FrameShape shape, ResamplingOptions options, Source source)
+    : shape_(shape),
+      options_(std::move(options)),
+      source_(std::move(source)),
+      light_(shape.sites()) {
+    assert(options_.frames_per_slot > 0);
+}
+
+bool FrameResampler::have(std::int64_t index) {
+    while (!ended_ && first_ + static_cast<std::int64_t>(frames_.size()) <= index) {
+        const auto next = source_();
+        ended_ = next.empty();
+        if (!ended_) frames_.emplace_back(next.begin(), next.end());
+    }
+    return index < first_ + static_cast<std::int64_t>(frames_.size());
+}
+
+void FrameResampler::drop_before(std::int64_t index) {
+    for (; first_ < index && !frames_.empty(); ++first_) frames_.pop_front();
+}
+
+const FrameResampler::Frame& FrameResampler::frame(std::int64_t index) const {
+    return frames_[static_cast<std::size_t>(index - first_)];
+}
+
+bool FrameResampler::reach(std::int64_t index) {
+    for (std::int64_t i = first_; i <= index; ++i) {
+        if (!have(i)) return false;
+        drop_before(i - 1);
+    }
+    return true;
+}
+
+std::span<const float> FrameResampler::next() {
+    const double length = options_.frames_per_slot;
+    const double begin = static_cast<double>(slot_) * length;
+    const double end = static_cast<double>(slot_ + 1) * length;
+    ++slot_;
+    const auto first = static_cast<std::int64_t>(std::floor(begin + kSameTime));
+    const auto last = static_cast<std::int64_t>(std::ceil(end - kSameTime)) - 1;
+    if (options_.method == Resampling::kHold) {
+        if (!reach(first)) return {};
+        light_ = frame(first);
+    } else if (options_.method == Resampling::kFlow && length < 1 - kSameTime) {
+        if (!reach(last)) return {};
+        interpolate((begin + end) / 2 - 0.5);
+    } else if (!blend(begin, end)) {
+        return {};
+    }
+    return reach(last) ? std::span<const float>(light_) : std::span<const float>();
+}
+
+bool FrameResampler::blend(double begin, double end) {
+    std::ranges::fill(light_, 0.0F);
+    const auto first = static_cast<std::int64_t>(std::floor(begin + kSameTime));
+    for (auto index = first; static_cast<double>(index) < end - kSameTime; ++index) {
+        if (!reach(index)) return false;
+        add_part(index, begin, end);
+    }
+    const auto scale = static_cast<float>(1 / options_.frames_per_slot);
+    if (std::abs(options_.frames_per_slot - 1) > kSameTime)
+        for (float& light : light_) light *= scale;
+    return true;
+}
+
+void FrameResampler::add_part(std::int64_t index, double begin, double end) {
+    const auto phase = [index](double time) {
+        const double exact = time - static_cast<double>(index);
+        if (exact < kSameTime) return 0.0;
+        return exact > 1 - kSameTime ? 1.0 : exact;
+    };
+    const CollectedWeights weights(phase(begin), phase(end));
+    const bool has_next = have(index + 1);
+    const Frame& own = frame(index);
+    const Frame& before = index > first_ ? frame(index - 1) : own;
+    const Frame& after = has_next ? frame(index + 1) : own;
+    for (std::size_t site = 0; site < own.size(); ++site)
+        light_[site] += weights.middle * own[site] + weights.left * slope(before[site], own[site]) +
+                        weights.right * slope(own[site], after[site]);
+}
+
+void FrameResampler::interpolate(double time) {
+    const auto index = static_cast<std::int64_t>(std::floor(std::max(time, 0.0)));
+    const double phase = std::max(time, 0.0) - static_cast<double>(index);
+    const bool has_next = have(index + 1);
+    if (!has_next || phase < kSameTime) {
+        light_ = frame(index);
+        return;
+    }
+    if (flow_of_ != index) find_flow(index);
+    parallel_for(0, shape_.rows, [&](int row) { move_row(row, index, static_cast<float>(phase)); });
+}
+
+void FrameResampler::find_flow(std::int64_t index) {
+    flow_of_ = index;
+    forth_.assign(2 * shape_.pixels(), 0.0F);
+    back_.assign(2 * shape_.pixels(), 0.0F);
+    if (!options_.flow) return;
+    std::array<Frame, 2> images;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Frame& light = frame(index + static_cast<std::int64_t>(i));
+        images[i].resize(shape_.pixels());
+        if (shape_.planes == 3)
+            reduce_to_luminance(light, images[i]);
+        else
+            images[i] = light;
+    }
+    const PlaneView<const float> from(images[0].data(), shape_.rows, shape_.cols);
+    const PlaneView<const float> to(images[1].data(), shape_.rows, shape_.cols);
+    options_.flow(from, to, forth_);
+    options_.flow(to, from, back_);
+}
+
+void FrameResampler::move_row(int row, std::int64_t index, float phase) {
+    const float s = phase;
+    const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(shape_.cols);
+    for (int col = 0; col < shape_.cols; ++col) {
+        const std::size_t pixel = begin + static_cast<std::size_t>(col);
+        std::array<float, 2> to_before{};
+        std::array<float, 2> to_after{};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const float forth = forth_[2 * pixel + axis];
+            const float back = back_[2 * pixel + axis];
+            to_before[axis] = -(1 - s) * s * forth + s * s * back;
+            to_after[axis] = (1 - s) * (1 - s) * forth - s * (1 - s) * back;
+        }
+        const auto x = static_cast<float>(col);
+        const auto y = static_cast<float>(row);
+        for (std::size_t plane = 0; plane < static_cast<std::size_t>(shape_.planes); ++plane) {
+            const auto plane_of = [&](std::int64_t i) {
+                return std::span(frame(i)).subspan(plane * shape_.pixels(), shape_.pixels());
+            };
+            const float before =
+                sample(plane_of(index), shape_, x + to_before[0], y + to_before[1]);
+            const float after =
+                sample(plane_of(index + 1), shape_, x + to_after[0], y + to_after[1]);
+            light_[plane * shape_.pixels() + pixel] = (1 - s) * before + s * after;
+        }
+    }
+}
+
+}  // namespace stipple
