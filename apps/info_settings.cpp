@@ -18,7 +18,7 @@
 #include "core/joined.h"
 #include "core/key_reader.h"
 #include "io/footage_files.h"
-#include "readout/schedules/schedule_check.h"
+#include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
 #include "scenes/scene.h"
 #include "sensor_model/sensor_keys.h"
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 /// Of a schedule that is shown without a sensor.
 constexpr FrameShape kArray{.rows = 480, .cols = 640, .planes = 1};
 
-bool is_listed(const std::string& kind, const std::string& name) {
+bool is_listed(ConfigKind kind, const std::string& name) {
     return std::ranges::count(config_names(kind), name) > 0;
 }
 
@@ -41,14 +41,14 @@ bool is_scene(const std::string& name) {
 }
 
 SettingsKind kind_of_name(const std::string& name) {
-    const bool sensor = is_listed("sensors", name);
-    const bool schedule = is_listed("schedules", name);
+    const bool sensor = is_listed(ConfigKind::kSensors, name);
+    const bool schedule = is_listed(ConfigKind::kSchedules, name);
     if (sensor && schedule)
         throw InputError(fmt::format("\"{}\"", name),
                          fmt::format("is the name of a sensor and of a schedule; give the file: "
                                      "{} or {}",
-                                     find_config("sensors", name).string(),
-                                     find_config("schedules", name).string()));
+                                     find_config(ConfigKind::kSensors, name).string(),
+                                     find_config(ConfigKind::kSchedules, name).string()));
     if (sensor) return SettingsKind::kSensor;
     if (schedule) return SettingsKind::kSchedule;
     return is_scene(name) ? SettingsKind::kScene : SettingsKind::kNone;
@@ -96,9 +96,9 @@ std::string short_number(const std::string& text) {
 }
 
 /// The keys of the section [timing] that the file gives.
-std::vector<KnownKey> timing_of(const SensorChoice& choice) {
+std::vector<KnownKey> timing_of(const std::string& file) {
     const std::vector<KnownKey> known = key_lists("sensor", "timing").front().keys;
-    std::istringstream lines(timing_keys(choice));
+    std::istringstream lines(Config(file, {}).as_toml("timing"));
     std::vector<KnownKey> rows;
     for (std::string line; std::getline(lines, line);) {
         const auto equals = line.find(" = ");
@@ -137,7 +137,7 @@ std::string rows_text(const std::vector<KnownKey>& rows) {
 void info_sensor(const std::string& name, const RunOptions& run) {
     const SensorChoice choice{.sensor = name};
     const SensorDescription sensor = read_sensor_file(choice);
-    const std::string file = find_config("sensors", name).string();
+    const std::string file = find_config(ConfigKind::kSensors, name).string();
     const auto keys = values_of(sensor.params);
     const auto derived = derived_from(sensor.params);
     JsonFile json(run);
@@ -148,7 +148,7 @@ void info_sensor(const std::string& name, const RunOptions& run) {
                                    rows_text(keys), rows_text(derived));
     if (sensor.timing) {
         const ReadoutTiming& timing = *sensor.timing;
-        const auto given = timing_of(choice);
+        const auto given = timing_of(file);
         figures["timing"] = {{"width", timing.cols},
                              {"height", timing.rows},
                              {"clock_hz", timing.clock_hz},
@@ -176,15 +176,12 @@ struct Verdict {
 std::string problem_of(const std::string& sensor_name, const std::string& schedule_name) {
     try {
         const SensorChoice choice{.sensor = sensor_name, .schedule = schedule_name};
-        const auto [params, timing] = read_sensor_file(choice);
+        const SensorDescription sensor = read_sensor_file(choice);
         FrameShape shape = kArray;
-        if (timing) shape = {.rows = timing->rows, .cols = timing->cols, .planes = 1};
-        const ExposureSchedule schedule =
-            set_up_schedule(choice, shape, timing ? timing->addressing : ColumnAddressing{})
-                .schedule;
-        auto problem = store_problem(schedule, params.charge_stores);
-        if (timing && !problem) problem = timing_problem(schedule, *timing, shape, params.slot_us);
-        return problem.value_or("");
+        if (sensor.timing)
+            shape = {.rows = sensor.timing->rows, .cols = sensor.timing->cols, .planes = 1};
+        if (sensor.params.physical.cfa != ColourFilter::kNone) shape.planes = 3;
+        return schedule_problem(set_up_sensor(sensor, choice, shape)).value_or("");
     } catch (const InputError& e) {
         return e.what();
     }
@@ -207,20 +204,20 @@ std::string verdicts_text(const std::vector<Verdict>& verdicts) {
 std::string kind_key(const std::string& name) {
     const std::string extension = lower_extension(name);
     if (extension == ".mem" || extension == ".hex") return "compiled";
-    return Config(find_config("schedules", name), {}).text({"kind"}, "");
+    return Config(find_config(ConfigKind::kSchedules, name), {}).text({"kind"}, "");
 }
 
 void info_schedule(const std::string& name, const RunOptions& run) {
-    const auto [title, source, schedule] =
+    const NamedSchedule named =
         set_up_schedule(SensorChoice{.schedule = name}, kArray, ColumnAddressing{});
     JsonFile json(run);
-    const ScheduleFigures figures = schedule_figures(schedule, kArray);
+    const ScheduleFigures figures = schedule_figures(named.schedule, kArray);
     std::vector<Verdict> verdicts;
-    for (const std::string& sensor : config_names("sensors"))
+    for (const std::string& sensor : config_names(ConfigKind::kSensors))
         verdicts.push_back({sensor, problem_of(sensor, name)});
     const std::string kind = kind_key(name);
     ordered_json told{{"kind", "schedule"}, {"schedule_kind", kind}};
-    told.update(figures_json(title, figures));
+    told.update(figures_json(named.name, figures));
     told["array"] = {{"width", kArray.cols}, {"height", kArray.rows}};
     told["sensors"] = ordered_json::array();
     for (const Verdict& verdict : verdicts)
@@ -229,7 +226,7 @@ void info_schedule(const std::string& name, const RunOptions& run) {
                                    {"problem", verdict.problem}});
     json.write(told);
     run.say(fmt::format("schedule of kind {}, of an array of {} x {}\n{}\n{}", kind, kArray.cols,
-                        kArray.rows, figures_text(title, figures), verdicts_text(verdicts)));
+                        kArray.rows, figures_text(named.name, figures), verdicts_text(verdicts)));
 }
 
 void info_scene(const std::string& name, const RunOptions& run) {

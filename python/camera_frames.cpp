@@ -37,14 +37,15 @@ class CameraFrames {
     /// The next frame. \throws stop_iteration at the end, DeviceError if the camera is lost.
     std::unique_ptr<CapturedFrame> next() {
         while (camera_) {
-            std::optional<CapturedFrame> frame;
+            auto frame = std::make_unique<CapturedFrame>();
+            bool came = false;
             {
                 const py::gil_scoped_release released;
-                frame = camera_->next(kPatience);
+                came = camera_->next(*frame, kPatience);
             }
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             warnings_.pass_on();
-            if (frame) return std::make_unique<CapturedFrame>(std::move(*frame));
+            if (came) return frame;
             if (const auto end = camera_->end()) {
                 close();
                 throw_end(*end);

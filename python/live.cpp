@@ -30,7 +30,7 @@ using namespace pybind11::literals;
 
 /// The sensor behind a camera, and how late it may be.
 struct LiveTask {
-    SensorChoice choice;
+    ChosenSensor sensor;
     py::object schedule;
     double black_level_dn;
     std::size_t queue_frames;
@@ -44,10 +44,9 @@ LiveTask live_task(const py::object& sensor, const py::object& schedule, std::ui
         throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
     if (!(late_after_slots > 0))
         throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
-    LiveTask task{sensor_of(sensor).choice, schedule, black_level_dn, queue_frames,
-                  late_after_slots};
-    task.choice.seed = seed;
-    task.choice.overrun = overrun_policy(overrun);
+    LiveTask task{sensor_of(sensor), schedule, black_level_dn, queue_frames, late_after_slots};
+    task.sensor.choice.seed = seed;
+    task.sensor.choice.overrun = overrun_policy(overrun);
     return task;
 }
 
@@ -125,9 +124,11 @@ py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path
     }
     const FrameLight& to_light = camera->to_light;
     const SensorSetup setup =
-        set_up(live.choice, live.schedule, to_light.shape(), to_light.filter());
+        set_up(live.sensor, live.schedule, to_light.shape(), to_light.filter());
     const auto recorder = creating(file, [&] {
-        return std::make_unique<StreamRecorder>(file, force, setup, provenance_of(setup, origin));
+        return std::make_unique<StreamRecorder>(
+            file, setup,
+            StreamRecorderOptions{.force = force, .provenance = provenance_of(setup, origin)});
     });
     for (const std::string& text : camera->camera.description().warnings) warn(text);
     warn(mosaic_warning(setup, to_light.filter()));

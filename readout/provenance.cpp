@@ -122,18 +122,13 @@ std::string options_of(const toml::table& provenance) {
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
     if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
-<<<<<<< HEAD
-    if (const auto max_value = footage["max_value"].value<double>())
-        add("--max-value", fmt::format("{}", *max_value));
-=======
     if (const auto scale = footage["scale"].value<double>())
         add("--scale", fmt::format("{}", *scale));
     if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
     if (const auto hz = footage["frames_hz"].value<double>())
         add("--footage-hz", fmt::format("{}", *hz));
-    if (const auto most = footage["max_value"].value<double>())
-        add("--max-value", fmt::format("{}", *most));
->>>>>>> s9-hdr
+    if (const auto max_value = footage["max_value"].value<double>())
+        add("--max-value", fmt::format("{}", *max_value));
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
     if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
         add("--schedule", it);

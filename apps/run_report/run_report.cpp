@@ -19,6 +19,7 @@
 #include "decoder/pixel_response.h"
 #include "io/tone_map.h"
 #include "readout/provenance.h"
+#include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {

@@ -13,14 +13,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json account_of(const StreamHeader& header, const ReadoutTiming& timing,
-                        std::int64_t slots) {
-    ReadoutCost account(timing, header.schedule, header.shape,
-                        {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch});
+ordered_json cost_of(const StreamHeader& header, const ReadoutTiming& timing, std::int64_t slots) {
+    ReadoutCost cost(timing, header.schedule, header.shape,
+                     {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch});
     ordered_json readout = ordered_json::array(), convert = readout, link = readout, bits = readout,
                  limit = readout;
     for (std::int64_t slot = 0; slot < slots; ++slot) {
-        const SlotAccount& of_slot = account.of(slot);
+        const SlotCost& of_slot = cost.of(slot);
         readout.push_back(of_slot.counts.readout_clocks);
         convert.push_back(of_slot.counts.convert_clocks);
         link.push_back(of_slot.counts.link_clocks);
@@ -28,7 +27,7 @@ ordered_json account_of(const StreamHeader& header, const ReadoutTiming& timing,
         limit.push_back(name_of(of_slot.limit));
     }
     return {{"clock_hz", timing.clock_hz},
-            {"slot_clocks", account.budget().clocks},
+            {"slot_clocks", cost.budget().clocks},
             {"readout", readout},
             {"convert", convert},
             {"link", link},
@@ -42,7 +41,7 @@ ordered_json readout_json(const StreamHeader& header, std::int64_t slots) {
     try {
         Config config(timing_settings(header.provenance));
         if (const auto timing = read_timing(config, header.calibration.bit_depth))
-            return account_of(header, *timing, slots);
+            return cost_of(header, *timing, slots);
     } catch (const InputError&) {
         // A text for people: it need not tell a timing, nor one of this schedule.
     }

@@ -20,9 +20,10 @@ void check_recording_options(const std::filesystem::path& recording,
                              const FootageOptions& options) {
     if (options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear || options.luminance ||
         options.max_value || options.raw || options.scale != 1)
-        throw InputError(recording.string(),
-                         "is a recording of a camera, whose numbers are linear: the options for "
-                         "transfer, raw format, luminance, scale and maximum are for other footage");
+        throw InputError(
+            recording.string(),
+            "is a recording of a camera, whose numbers are linear: the options for "
+            "transfer, raw format, luminance, scale and maximum are for other footage");
 }
 
 RecordingFootage::RecordingFootage(const std::filesystem::path& file,

@@ -25,7 +25,7 @@ inline FluxVideo ramp(int slots, FrameShape shape) {
 inline void record_clip(const std::filesystem::path& file, const SensorChoice& choice,
                         const FluxVideo& light) {
     const SensorSetup setup = set_up_sensor(choice, light.shape());
-    StreamRecorder recorder(file, false, setup, provenance_of(setup, {.name = "ramp"}));
+    StreamRecorder recorder(file, setup, {.provenance = provenance_of(setup, {.name = "ramp"})});
     for (int slot = 0; slot < light.slots(); ++slot) recorder.expose(light.frame(slot));
     recorder.finish();
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
-#include "readout/timing/readout_account.h"
+#include "readout/timing/readout_cost.h"
 #include "stream/stream_reader.h"
 #include "tests/apps/run_report/recorded_clip.h"
 #include "tests/support/temporary_folder.h"
@@ -39,20 +39,19 @@ TEST(StreamLoadsTest, AnUndamagedStreamHasTheSamplesThatAreDue) {
     EXPECT_TRUE(loads["clocks"].is_null());  // the paper's sensor has none
 }
 
-TEST(StreamLoadsTest, ClocksAreThoseOfTheReadoutAccount) {
+TEST(StreamLoadsTest, ClocksAreThoseOfTheReadoutCost) {
     const TemporaryFolder folder;
     const SensorChoice choice{.sensor = "lux1310"};
     record_clip(folder / "a.stipple", choice, ramp(kSlots, kShape));
     const auto loads = loads_of(folder / "a.stipple");
     const SensorSetup setup = set_up_sensor(choice, kShape);
-    ReadoutAccount account(
-        *setup.timing, setup.schedule.schedule, kShape,
-        {slot_clocks(*setup.timing, setup.params.slot_us), OverrunPolicy::kStretch});
+    ReadoutCost cost(*setup.timing, setup.schedule.schedule, kShape,
+                     {slot_clocks(*setup.timing, setup.params.slot_us), OverrunPolicy::kStretch});
     const auto& clocks = loads["clocks"];
     EXPECT_EQ(clocks["clock_hz"], setup.timing->clock_hz);
-    EXPECT_EQ(clocks["slot_clocks"], account.budget().clocks);
+    EXPECT_EQ(clocks["slot_clocks"], cost.budget().clocks);
     for (std::size_t slot = 0; slot < kSlots; ++slot) {
-        const SlotAccount& expected = account.of(static_cast<std::int64_t>(slot));
+        const SlotCost& expected = cost.of(static_cast<std::int64_t>(slot));
         EXPECT_EQ(clocks["readout"][slot], expected.counts.readout_clocks);
         EXPECT_EQ(clocks["link"][slot], expected.counts.link_clocks);
         EXPECT_EQ(clocks["link_bits"][slot], expected.counts.bits);
