@@ -25,7 +25,10 @@ class BadStreamsTest(ProgramTest):
         self.refuse("empty.stipple")
 
     def test_another_kind_of_file(self):
-        self.refuse(self.write_flat("light.npy"), "not a sample stream")
+        self.fails(INPUT, [self.write_flat("light.npy"), "not a sample stream"],
+                   "decode", "light.npy", "-o", "out.npy", "--method", "naive")
+        (self.folder / "notes.stipple").write_text("no stream at all, but some words about one\n")
+        self.refuse("notes.stipple")
 
     def test_a_newer_version_is_called_so(self):
         self.change_byte(self.write_stream(), 8)
