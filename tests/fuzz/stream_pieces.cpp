@@ -70,7 +70,7 @@ bool is_packet(const Piece& piece) {
 std::optional<std::uint32_t> random_crc(const Bytes& head, View section) {
     const int rows = load<std::uint16_t>(&head[16]);
     const int cols = load<std::uint16_t>(&head[18]);
-    if (section.size() < 10 || section.size() != 9U + section[8] || rows * cols == 0 ||
+    if (section.size() < 10 || section.size() != 9U + section[8] || rows == 0 || cols == 0 ||
         asks_for_much(head))
         return {};
     const std::vector<int> lengths(section.begin() + 9, section.end());
