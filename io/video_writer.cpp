@@ -244,9 +244,10 @@ void VideoWriter::Impl::replace_light_levels(unsigned max_cll, unsigned max_fall
                                            static_cast<std::uint8_t>(value & 0xFFU)};
     };
     const auto replace = [&](std::uint8_t id, unsigned unknown, unsigned value) {
-        const auto found = std::ranges::search(sink.head, element(id, unknown));
-        if (found.empty()) return;
-        sink.seek(found.begin() - sink.head.begin());
+        const auto old = element(id, unknown);
+        const auto found = std::search(sink.head.begin(), sink.head.end(), old.begin(), old.end());
+        if (found == sink.head.end()) return;
+        sink.seek(found - sink.head.begin());
         sink.write(element(id, value));
     };
     replace(0xBC, kUnknownMaxCll, max_cll);
