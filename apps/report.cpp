@@ -58,7 +58,8 @@ std::vector<fs::path> streams_in(const fs::path& folder) {
             streams.push_back(entry.path());
     if (streams.empty()) throw InputError(folder.string(), "holds no sample stream (.stipple)");
     std::ranges::sort(streams);
-    std::ranges::stable_partition(streams, [](const fs::path& s) { return !exposes_alike(s); });
+    std::stable_partition(streams.begin(), streams.end(),
+                          [](const fs::path& s) { return !exposes_alike(s); });
     return streams;
 }
 

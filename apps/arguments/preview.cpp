@@ -8,7 +8,7 @@
 namespace stipple {
 
 void add_preview_arguments(Command& command, PreviewArguments& arguments) {
-    constexpr SideRange kSides{8, kMaxFrameSide};
+    static constexpr SideRange kSides{8, kMaxFrameSide};
     command
         .add_option("--preview", arguments.file,
                     "keep a decoded image of the newest slots: .png (tone-mapped, saturated "
