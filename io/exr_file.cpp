@@ -9,6 +9,7 @@
 #include <ImfStdIO.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <exception>
