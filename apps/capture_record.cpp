@@ -98,6 +98,7 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
          .tell = say_event});
     say_warnings(recorder.description());
     say_leftover(recorder.file());
+    const std::string file = recorder.file().string();  // afterwards there may be no memory for it
     const CameraRecording recording = [&] {
         Progress progress(run, "recording", arguments.limits.total());
         return recorder.record([&](std::uint64_t frames, const SessionTotals& totals) {
@@ -106,7 +107,6 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
             return stop_signal() == 0;
         });
     }();
-    const std::string file = recorder.file().string();
     check_end(recording, file, address);
     json.write(recording_json(file, recording));
     run.say(recording_text(file, recording));

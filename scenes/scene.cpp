@@ -59,8 +59,7 @@ void require(bool holds, std::string_view option, std::string_view range) {
 void check(const SceneOptions& options) {
     const FrameShape shape = options.shape;
     const auto within = [](int value, int min, int max, std::string_view option) {
-        require(value >= min && value <= max, option,
-                fmt::format("must be {}..{}", min, max));
+        require(value >= min && value <= max, option, fmt::format("must be {}..{}", min, max));
     };
     within(options.slots, 1, SceneOptions::kMaxSlots, "slots");
     within(shape.rows, SceneOptions::kMinSide, SceneOptions::kMaxSide, "rows");
