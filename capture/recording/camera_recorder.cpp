@@ -130,9 +130,14 @@ void CameraRecorder::Impl::finish() {
     } catch (...) {
         note_failure();
     }
-    if (writer.frames() > 0) output.commit();
+    result.end.frames = writer.frames();
+    try {
+        if (writer.frames() > 0) output.commit();
+        result.end = writer.totals();
+    } catch (const std::bad_alloc&) {  // perhaps after the file was put in place
+        note_failure();
+    }
     result.kept = output.committed();
-    result.end = writer.totals();
     result.session = session.totals();
     result.frames_per_s = rate.hz();
 }

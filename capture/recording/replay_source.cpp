@@ -43,7 +43,8 @@ FrameLayout footage_layout(FrameShape shape, ColourFilter filter, const std::str
                         format->packing == Packing::kBytes && format->significant_bits % 8 == 0;
     const bool plain = wanted == "Mono8" || wanted == "Mono16" || wanted == "RGB8";
     const int mosaic_planes = filter == ColourFilter::kNone ? 3 : 1;
-    if (!(plain || mosaic) || (mosaic ? mosaic_planes : format->planes) != shape.planes)
+    if (format == nullptr || !(plain || mosaic) ||
+        (mosaic ? mosaic_planes : format->planes) != shape.planes)
         throw InputError(
             "PixelFormat",
             fmt::format("footage of {} planes does not come in \"{}\"; write {}", shape.planes,
