@@ -69,7 +69,8 @@ def doxygen_configuration(root, output):
     folders = " ".join(str(root / module) for module in HEADERS)
     return "\n".join((
         "PROJECT_NAME = Stipple", f"INPUT = {folders}", "FILE_PATTERNS = *.h", "RECURSIVE = YES",
-        "EXCLUDE_PATTERNS = *-inl.h", f"OUTPUT_DIRECTORY = {output}", "GENERATE_HTML = NO", "GENERATE_LATEX = NO",
-        "GENERATE_XML = YES", "XML_PROGRAMLISTING = NO", f"STRIP_FROM_PATH = {root}", "EXTRACT_ALL = YES",
+        "EXCLUDE_PATTERNS = *-inl.h", f"OUTPUT_DIRECTORY = {output}", "INCLUDE_GRAPH = NO",
+        "INCLUDED_BY_GRAPH = NO", "GENERATE_HTML = NO", "GENERATE_LATEX = NO", "GENERATE_XML = YES",
+        "XML_PROGRAMLISTING = NO", f"STRIP_FROM_PATH = {root}", "EXTRACT_ALL = YES",
         "HIDE_FRIEND_COMPOUNDS = YES", "QUIET = YES", "WARNINGS = NO",
         f'INPUT_FILTER = "sed -E -f {root / "docs/site/header_filter.sed"}"', ""))
