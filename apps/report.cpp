@@ -105,9 +105,10 @@ FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
     return truth;
 }
 
-/// Decodes the shown slots of a stream into a video of the report.
-void decode_into(RunReport& report, std::size_t video, const fs::path& stream, DecodeMethod method,
-                 std::int64_t slots, const RunOptions& run) {
+/// Decodes the first slots of a stream. `put` takes slot and frame.
+template <typename Put>
+void decode_slots(const fs::path& stream, DecodeMethod method, std::int64_t slots,
+                  const RunOptions& run, const Put& put) {
     StreamReader reader(stream);
     DecodeOptions options;
     options.method = method;
@@ -118,7 +119,7 @@ void decode_into(RunReport& report, std::size_t video, const fs::path& stream, D
     decode(
         reader, options,
         [&](std::int64_t slot, std::span<const float> frame) {
-            report.put(video, slot, frame);
+            put(slot, frame);
             return slot + 1 < slots && stop_signal() == 0;
         },
         [&](double done) {
@@ -142,7 +143,8 @@ std::size_t add_stream(RunReport& report, const fs::path& stream, const ReportAr
         const std::string by(named(method).name);
         video = report.add_video(
             {fmt::format("{}, {}", name, by), fmt::format("{} decoded by {}", name, by), number});
-        decode_into(report, video, stream, method, arguments.page.slots, run);
+        decode_slots(stream, method, arguments.page.slots, run,
+                     [&](std::int64_t slot, auto frame) { report.put(video, slot, frame); });
     }
     return video;
 }
@@ -172,6 +174,7 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
     RunReport report(page_options(arguments, streams, truth), shape, truth ? &*truth : nullptr);
     if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera));
     std::vector<std::size_t> decoded;
+    decoded.reserve(streams.size());
     for (const fs::path& stream : streams)
         decoded.push_back(add_stream(report, stream, arguments, run));
     report.feature(decoded.front());

@@ -1,5 +1,7 @@
 #include "apps/arguments/camera.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <string>
 
