@@ -55,20 +55,6 @@ SessionOptions session_of(const std::string& address, const std::string& incompl
                                      .reconnect = reconnect});
 }
 
-CameraTask camera_task(
-    const std::string& address, const py::dict& settings,
-    const std::optional<std::filesystem::path>& config, int buffers,
-    const std::tuple<std::string, std::int64_t, bool>& session,
-    const std::tuple<std::optional<std::int64_t>, std::optional<double>>& limits) {
-    const auto& [incomplete, stall_ms, reconnect] = session;
-    const auto& [frames, seconds] = limits;
-    return {.address = address,
-            .settings = settings_for(settings, config),
-            .buffers = {.frames = buffers},
-            .session = session_of(address, incomplete, stall_ms, reconnect),
-            .limits = limits_of(frames, seconds)};
-}
-
 }  // namespace
 
 CaptureSession::Opener CameraTask::opener() const {
@@ -118,7 +104,20 @@ py::dict transport_dict(const TransportCounts& counts) {
 }
 
 void bind_camera(py::module_& module) {
-    py::class_<CameraTask>(module, "CameraTask").def(py::init(&camera_task));
+    py::class_<CameraTask>(module, "CameraTask")
+        .def(py::init(
+            [](const std::string& address, const py::dict& settings,
+               const std::optional<std::filesystem::path>& config, int buffers,
+               const std::tuple<std::string, std::int64_t, bool>& session,
+               const std::tuple<std::optional<std::int64_t>, std::optional<double>>& limits) {
+                const auto& [incomplete, stall_ms, reconnect] = session;
+                const auto& [frames, seconds] = limits;
+                return CameraTask{.address = address,
+                                  .settings = settings_for(settings, config),
+                                  .buffers = {.frames = buffers},
+                                  .session = session_of(address, incomplete, stall_ms, reconnect),
+                                  .limits = limits_of(frames, seconds)};
+            }));
 }
 
 }  // namespace stipple::python

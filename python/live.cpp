@@ -37,19 +37,6 @@ struct LiveTask {
     double late_after_slots;
 };
 
-LiveTask live_task(const py::object& sensor, const py::object& schedule, std::uint64_t seed,
-                   const std::string& overrun, double black_level_dn, std::size_t queue_frames,
-                   double late_after_slots) {
-    if (queue_frames < 1 || queue_frames > 4096)
-        throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
-    if (!(late_after_slots > 0))
-        throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
-    LiveTask task{sensor_of(sensor), schedule, black_level_dn, queue_frames, late_after_slots};
-    task.sensor.choice.seed = seed;
-    task.sensor.choice.overrun = overrun_policy(overrun);
-    return task;
-}
-
 /// The keys of "capture live" in docs/cli.md, without its preview.
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
@@ -79,22 +66,23 @@ py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
 
 /// A camera that is opened for a live emulation, and the sensor behind it.
 struct LiveSetup {
-    LiveSetup(const CameraTask& task, const LiveTask& live, SessionWarnings& warnings)
+    LiveSetup(const CameraTask& task, const LiveTask& live)
         : camera(task.opener(),
                  {.session = task.session,
                   .waiting_frames = live.queue_frames,
                   .from_start = task.is_replay(),
-                  .tell = [&warnings](const SessionEvent& event) { warnings.take(event); }}),
+                  .tell = [this](const SessionEvent& event) { warnings.take(event); }}),
           to_light(camera.layout(), live.black_level_dn) {}
 
+    SessionWarnings warnings;
     LiveCamera camera;
     FrameLight to_light;
 };
 
 /// Emulates until the camera, a limit or Python ends it, and puts the stream in place.
 LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSetup& setup,
-                           StreamRecorder& recorder, CallProgress& progress,
-                           SessionWarnings& warnings) {
+                           StreamRecorder& recorder, CallProgress& progress) {
+    SessionWarnings& warnings = setup.warnings;
     const py::gil_scoped_release released;
     LiveEmulatorOptions options{.limits = task.limits, .late_after_slots = live.late_after_slots};
     options.tell = [&](const LeftOut& left_out) {
@@ -114,12 +102,11 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
 
 py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path& file, bool force,
                     const py::object& tell) {
-    SessionWarnings warnings;
     std::unique_ptr<LiveSetup> camera;
     FootageOrigin origin;
     {
         const py::gil_scoped_release released;
-        camera = opening(task, [&] { return std::make_unique<LiveSetup>(task, live, warnings); });
+        camera = opening(task, [&] { return std::make_unique<LiveSetup>(task, live); });
         origin = live_origin(task.address, camera->camera, live.black_level_dn, [] {});
     }
     const FrameLight& to_light = camera->to_light;
@@ -133,8 +120,8 @@ py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path
     for (const std::string& text : camera->camera.description().warnings) warn(text);
     warn(mosaic_warning(setup, to_light.filter()));
     CallProgress progress(tell, task.limits.total(), CallProgress::Early::kYes);
-    const LiveEmulation result = emulate_live(task, live, *camera, *recorder, progress, warnings);
-    warnings.pass_on();
+    const LiveEmulation result = emulate_live(task, live, *camera, *recorder, progress);
+    camera->warnings.pass_on();
     progress.finish();
     throw_early_end(result, task.address);
     return live_dict(result, *recorder, camera->camera);
@@ -155,7 +142,20 @@ std::unique_ptr<StreamFile> live(const CameraTask& task, const LiveTask& live,
 }  // namespace
 
 void bind_live(py::module_& module) {
-    py::class_<LiveTask>(module, "LiveTask").def(py::init(&live_task));
+    py::class_<LiveTask>(module, "LiveTask")
+        .def(py::init([](const py::object& sensor, const py::object& schedule, std::uint64_t seed,
+                         const std::string& overrun, double black_level_dn,
+                         std::size_t queue_frames, double late_after_slots) {
+            if (queue_frames < 1 || queue_frames > 4096)
+                throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
+            if (!(late_after_slots > 0))
+                throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
+            LiveTask task{sensor_of(sensor), schedule, black_level_dn, queue_frames,
+                          late_after_slots};
+            task.sensor.choice.seed = seed;
+            task.sensor.choice.overrun = overrun_policy(overrun);
+            return task;
+        }));
     module.def("live", &live);
 }
 
