@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "stream/slot_index.h"
 #include "tests/stream/stream_bytes.h"
 
 namespace stipple {
@@ -123,16 +124,21 @@ std::vector<GoldenCase> damages() {
             {"bytes_after_end", whole.bytes + "more"}};
 }
 
-/// What is left of a stream of three bands a slot if the writer or the file ends within a slot.
-std::vector<GoldenCase> ends_within_a_slot() {
+/// What is left of a stream of three bands a slot if bands are missing, or the writer or the file
+/// ends within a slot.
+std::vector<GoldenCase> parts_of_slots() {
     const StreamHeader header = varied_header({5, 4, 1});
     auto packets = random_packets(header, 3, 2);
     const StreamBytes whole = bytes_of(header, packets);
     packets.pop_back();
     std::string without_last = whole.bytes;
     without_last.erase(whole.begins[8], whole.begins[9] - whole.begins[8]);
+    std::string two_gaps = whole.bytes;
+    two_gaps.erase(whole.begins[2], whole.begins[8] - whole.begins[2]);
+    two_gaps.erase(whole.begins[0], whole.begins[1] - whole.begins[0]);
     return {{"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
             {"partial_last_slot_with_index", without_last},
+            {"two_gaps_in_a_slot", two_gaps},
             {"stopped_within_slot", bytes_of(header, packets).bytes}};
 }
 
@@ -145,21 +151,34 @@ void flip(std::string& bytes, std::size_t at) {
     bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
 }
 
-/// An index that leads to another place than a slot, and an end marker that leads elsewhere.
+/// Good CRCs for packet `i` of `whole`, which was changed in `bytes`.
+std::string sealed(std::string bytes, const StreamBytes& whole, std::size_t i) {
+    const std::size_t size = whole.begins[i + 1] - whole.begins[i];
+    const std::string packet = bytes.substr(whole.begins[i], size);
+    return bytes.replace(
+        whole.begins[i], size,
+        framed(packet_header_at(packet, 0), packet.substr(kPacketHeaderBytes), whole.seed()));
+}
+
+/// An index that leads to another place than a slot, one whose offsets do not rise (which counts
+/// after damage too), and an end marker that leads elsewhere.
 std::vector<GoldenCase> wrong_offsets(const StreamBytes& whole) {
     const auto [index, marker] = std::pair{whole.begins[3], whole.begins[4]};
+    const std::size_t first_offset = index + kPacketHeaderBytes + 8;
     std::string entry = whole.bytes;
-    flip(entry, index + kPacketHeaderBytes + 8);
-    entry.replace(
-        index, marker - index,
-        framed(packet_header_at(entry, index),
-               entry.substr(index + kPacketHeaderBytes, marker - index - kPacketHeaderBytes),
-               whole.seed()));
+    flip(entry, first_offset);
+    std::string order = whole.bytes;
+    std::swap_ranges(&order[first_offset], &order[first_offset + 8],
+                     &order[first_offset + kIndexEntryBytes]);
+    order = sealed(order, whole, 3);
+    flip(order, whole.begins[0] + kPacketHeaderBytes);
     std::string offset = whole.bytes;
     const auto numbers = as_numbers(offset);
     store(&numbers[marker + 4], std::uint64_t{whole.begins[2]});
     store(&numbers[marker + 16], crc32c(numbers.subspan(marker, 16), whole.seed()));
-    return {{"wrong_index_entry", entry}, {"wrong_end_marker", offset}};
+    return {{"wrong_index_entry", sealed(entry, whole, 3)},
+            {"index_out_of_order_after_damage", order},
+            {"wrong_end_marker", offset}};
 }
 
 /// Rules of docs/stream_format.md that the cases above leave out.
@@ -175,16 +194,19 @@ std::vector<GoldenCase> rules() {
     fields.reserved = 1;
     reserved.replace(begins[1], begins[2] - begins[1],
                      framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
+    std::string unused = whole.bytes;
+    flip(unused, begins[2] - 1);
     std::string after_index = whole.bytes;
     after_index.insert(begins[4], packet(2));
     std::string no_start = whole.bytes.substr(0, begins[3] + 10);
     flip(no_start, begins[2] + kPacketHeaderBytes);
     std::vector<GoldenCase> cases{
         {"reserved_not_zero", reserved},
+        {"unused_bits_not_zero", sealed(unused, whole, 1)},
         {"packet_after_index", after_index},
         {"no_start_after_damage", no_start},
         {"cut_in_end_marker", whole.bytes.substr(0, whole.bytes.size() - 1)}};
-    for (auto& more : {wrong_offsets(whole), ends_within_a_slot()})
+    for (auto& more : {wrong_offsets(whole), parts_of_slots()})
         cases.insert(cases.end(), more.begin(), more.end());
     return cases;
 }
