@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -61,6 +62,14 @@ void check_length(const CompareOptions& options, bool is_result, std::int64_t fr
         fmt::format("ends after {}, before --until {}", counted(frames, "frame"), options.until));
 }
 
+/// \throws InputError for a table or chart that would be empty.
+void check_frame_metrics(const CompareOptions& options, const QualityMetrics& metrics) {
+    if (options.csv.empty() && options.chart.empty()) return;
+    if (std::ranges::any_of(metrics, &QualityMetric::of_a_frame)) return;
+    throw InputError(options.csv.empty() ? "--chart" : "--csv",
+                     "shows figures of each frame, and no --metric that is given has one");
+}
+
 /// The video that goes on after the last frame of the other one.
 enum class Longer { kNone, kResult, kReference };
 
@@ -113,14 +122,14 @@ class Outputs {
         if (difference_) difference_->add(result, reference);
     }
 
-    void finish(const QualityMetrics& metrics, const QualityMeter& meter, std::int64_t margin) {
-        if (csv_ || chart_) {
-            const FrameTable table{metrics, meter.frame_qualities(), margin};
-            if (csv_) write_text(*csv_, table_csv(table));
-            if (chart_)
-                write_text(*chart_, table_chart(table, lower_extension(chart_->final_path())));
-        }
+    void finish(const FrameTable& table) {
+        if (csv_) write_text(*csv_, table_csv(table));
         if (difference_) difference_->finish();
+    }
+    /// Last, because gnuplot may be missing. \throws as draw_chart.
+    void draw(const FrameTable& table) {
+        if (!chart_) return;
+        write_text(*chart_, table_chart(table, lower_extension(chart_->final_path())));
     }
 
   private:
@@ -137,6 +146,7 @@ ReadAhead read_result(const CompareOptions& options) {
 
 void compare(const CompareOptions& options, const RunOptions& run) {
     const QualityMetrics metrics = chosen_metrics(options.metrics);
+    check_frame_metrics(options, metrics);
     QualityOptions quality = options.quality;
     quality.pu21_ssim = has_metric(metrics, "pu21-ssim");
     if (has_metric(metrics, "pu21-csf-psnr")) quality.pixels_per_degree = options.pixels_per_degree;
@@ -163,7 +173,8 @@ void compare(const CompareOptions& options, const RunOptions& run) {
     }
     const VideoQuality found = meter.quality();
     say_overlap(options, longer, frames);
-    outputs.finish(metrics, meter, quality.margin);
+    const FrameTable table{metrics, meter.frame_qualities(), quality.margin};
+    outputs.finish(table);
     auto figures = metrics_json(metrics, found);
     figures["peak"] = quality.peak;
     figures["cd_per_unit"] = quality.unit_cd_per_m2;
@@ -174,6 +185,7 @@ void compare(const CompareOptions& options, const RunOptions& run) {
         figures["longer"] = longer == Longer::kResult ? "result" : "reference";
     json.write(figures);
     run.say(metrics_text(metrics, found, quality));
+    outputs.draw(table);
 }
 
 /// `--metric` and what it needs.

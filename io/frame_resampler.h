@@ -12,6 +12,11 @@
 
 namespace stipple {
 
+/// The least and the most frames a slot: beyond them the times of slots are no longer exact, and a
+/// frame would make more slots than anybody looks at.
+inline constexpr double kMinFramesPerSlot = 1e-4;
+inline constexpr double kMaxFramesPerSlot = 1e6;
+
 /// How footage of one frame rate becomes slots of another.
 enum class Resampling {
     kHold,   ///< the frame at the beginning of the slot
@@ -25,7 +30,7 @@ using FlowFunction = std::function<void(PlaneView<const float> from, PlaneView<c
 
 struct ResamplingOptions {
     Resampling method = Resampling::kHold;
-    double frames_per_slot = 1;  ///< above 0
+    double frames_per_slot = 1;  ///< kMinFramesPerSlot to kMaxFramesPerSlot
     FlowFunction flow = {};      ///< of kFlow; empty: frames are blended without motion
 };
 
@@ -78,7 +83,7 @@ class FrameResampler {
     std::vector<float> back_;
 };
 
-/// Slots that `frames` frames give. Precondition: frames_per_slot > 0.
+/// Slots that `frames` frames give. Precondition: frames_per_slot >= kMinFramesPerSlot.
 [[nodiscard]] std::int64_t resampled_slots(std::int64_t frames, double frames_per_slot);
 
 }  // namespace stipple

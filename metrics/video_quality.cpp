@@ -48,13 +48,13 @@ QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
         throw InputError("quality", "the frames are empty");
     if (options.margin < 0)
         throw InputError("margin", fmt::format("{} is negative", options.margin));
-    if (options.max_value && !(*options.max_value > 0))
+    if (options.max_value && !(static_cast<float>(*options.max_value) > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *options.max_value));
-    if (!(options.peak > 0))
-        throw InputError("peak", fmt::format("{} is not above 0", options.peak));
-    if (!(options.unit_cd_per_m2 > 0))
+    if (!(options.peak > 0 && std::isfinite(options.peak)))
+        throw InputError("peak", fmt::format("{} is not finite and above 0", options.peak));
+    if (!(options.unit_cd_per_m2 > 0 && std::isfinite(options.unit_cd_per_m2)))
         throw InputError("unit_cd_per_m2",
-                         fmt::format("{} is not above 0", options.unit_cd_per_m2));
+                         fmt::format("{} is not finite and above 0", options.unit_cd_per_m2));
     if (options.pixels_per_degree) csf_.emplace(shape, *options.pixels_per_degree);
 }
 

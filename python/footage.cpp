@@ -38,7 +38,7 @@ std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& opti
 FootageOptions options_of(const std::optional<std::string>& transfer, bool luminance,
                           std::optional<double> max_value) {
     FootageOptions options{.transfer = {}, .luminance = luminance, .max_value = max_value};
-    if (max_value && !(*max_value > 0))
+    if (max_value && !(static_cast<float>(*max_value) > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *max_value));
     if (!transfer) return options;
     options.transfer = transfer_from_name(*transfer);

@@ -1,5 +1,7 @@
 #include "apps/arguments/footage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -88,6 +90,13 @@ SlotSource slots_of(ReadAhead& footage, const std::string& source, const Resampl
                          "would mix; use blend");
     const FrameShape shape = footage.shape();
     const double frames_per_slot = *hz * slot_us * 1e-6;
+    if (!(frames_per_slot >= kMinFramesPerSlot && frames_per_slot <= kMaxFramesPerSlot))
+        throw InputError(
+            source,
+            fmt::format(
+                "has {:.4g} frames/s, which are {:.4g} a slot of {:g} us; --resample takes {:g} "
+                "to {:g}, so check the rate (--footage-hz) and sensor.slot_us",
+                *hz, frames_per_slot, slot_us, kMinFramesPerSlot, kMaxFramesPerSlot));
     const bool is_small = std::min(shape.rows, shape.cols) < kMinDisFlowSide;
     const auto resampler = std::make_shared<FrameResampler>(
         shape,

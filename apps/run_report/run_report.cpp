@@ -91,7 +91,7 @@ RunReport::RunReport(RunReportOptions options, FrameShape shape, const FluxVideo
     : options_(std::move(options)),
       shape_(shape),
       area_(report_area(shape, options_.area)),
-      truth_(truth != nullptr),
+      truth_slots_(truth == nullptr ? 0 : truth->slots()),
       videos_(shape, area_, options_.quality, truth) {
     if (area_.rows < shape.rows || area_.cols < shape.cols)
         notes_.push_back(fmt::format(
@@ -138,6 +138,9 @@ void RunReport::set_camera(const ordered_json& camera) {
 }
 
 void RunReport::fit() {
+    if (truth_slots_ > 0 && truth_slots_ < slots_)
+        notes_.push_back(fmt::format("The truth has {} of {} slots; quality is of these.",
+                                     truth_slots_, slots_));
     std::size_t beside = report_page(options_.title, json(), {}).size();
     for (const auto& run : runs_) beside += run->samples.bytes();
     while (beside + videos_.bytes() > options_.max_bytes && videos_.step() < slots_)
@@ -172,7 +175,7 @@ ordered_json empty_report_json(const std::string& title, const std::string& comm
 
 ordered_json RunReport::json() const {
     ordered_json json = empty_report_json(options_.title, options_.command);
-    json["truth"] = truth_ ? ordered_json(0) : ordered_json();
+    json["truth"] = truth_slots_ > 0 ? ordered_json(0) : ordered_json();
     json["notes"] = notes_;
     json["featured"] = featured_;
     json["slots"] = slots_;

@@ -76,6 +76,22 @@ class ResampleTest(ProgramTest):
         self.fails(USAGE, ["--resample"], "emulate", self.ramp(), "-o", "x.stipple", "--resample", "cubic")
         self.fails(USAGE, ["--scale"], "emulate", self.ramp(), "-o", "x.stipple", "--scale", 0)
 
+    def test_rates_that_give_no_slots_or_without_end_are_refused(self):
+        (self.folder / "clip.raw").write_bytes(bytes(512))
+        for method in ("hold", "blend", "flow"):
+            for hz in ("1e-300", "1e-3", "1e12", "1e300"):
+                with self.subTest(method=method, hz=hz):
+                    self.fails(INPUT, ["clip.raw: has ", "frames/s", "--footage-hz"], "emulate", "clip.raw", "--raw",
+                               f"16x16:mono8:hz={hz}", "-o", "x.stipple", *SLOT, "--resample", method)
+
+    def test_factors_that_are_no_light_are_refused(self):
+        for value in ("1e-50", "1e50", "nan", "1e400"):
+            for option in ("--scale", "--max-value"):
+                self.fails(USAGE, [option, value], "emulate", self.ramp(), "-o", "x.stipple", option, value)
+        self.write_array("bright.npy", np.full((2, 4, 4), 100.0))
+        self.fails(INPUT, ["bright.npy: frame 0: light becomes infinite by --scale 1e+37"], "emulate", "bright.npy", "-o",
+                   "x.stipple", "--scale", "1e37")
+
     def test_the_rate_of_the_command_line_replaces_that_of_the_file(self):
         self.light(self.ramp(), "--footage-hz", 500)
         self.assertIn("ramp.npy: has 500 frames/s, but a slot", self.said)

@@ -197,8 +197,12 @@ TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
     EXPECT_THROW(QualityMeter({}, {}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.margin = -1}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
-    EXPECT_THROW(QualityMeter(kShape, {.peak = 0}), InputError);
-    EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = 0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.max_value = 1e-50}), InputError);  // 0 as a float
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (const double value : {0.0, kInfinite}) {
+        EXPECT_THROW(QualityMeter(kShape, {.peak = value}), InputError);
+        EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = value}), InputError);
+    }
     EXPECT_THROW(QualityMeter(kShape, {.pixels_per_degree = 0.0}), InputError);
 }
 
