@@ -35,8 +35,9 @@ struct SessionTotals {
     std::uint64_t frames = 0;      ///< delivered
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
-    std::uint64_t outages = 0;   ///< number of times that the camera was gone
-    std::uint64_t repeated = 0;  ///< complete frames that came a second time, left out
+    std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
+    std::uint64_t outages = 0;               ///< number of times that the camera was gone
+    std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out
 };
 
 /// The camera is gone; the session is opening it again.
@@ -58,10 +59,11 @@ using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, Devi
 ///
 /// The counters of the transport decide the cause of a gap, in this order: no free buffer
 /// (kHostUnderrun), losses of network or socket (kTransport), none (kDevice). The number of frames
-/// lost while the camera was gone is estimated from the earlier frame period.
-/// A frame with an old id is the first of a restarted counter if its stamp is newer, or if the next
-/// frame follows it. Otherwise it is a repeat, and left out.
-/// Used from one thread; other threads open and close the camera.
+/// lost while the camera was gone is estimated from the earlier frame period. Frames lost before
+/// the first one that arrives count too, if its id tells (frames_before_first); its id is their
+/// number. A frame with an old id is the first of a restarted counter if its stamp is newer, or if
+/// the next frame follows it. Otherwise it is a repeat, and left out. Used from one thread; other
+/// threads open and close the camera.
 class CaptureSession {
   public:
     /// Opens the camera with its settings. Called again after an outage, from another thread.

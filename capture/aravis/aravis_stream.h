@@ -29,6 +29,8 @@ class AravisStream {
     [[nodiscard]] std::vector<std::string> warnings() const;
 
     void start();  ///< \throws DeviceError
+    /// CLOCK_MONOTONIC just before the camera was told to begin.
+    [[nodiscard]] std::int64_t started_ns() const;
     /// As Camera::wait; the payload is taken from `pool`.
     [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout, FramePool& pool);
     void stop() noexcept;
