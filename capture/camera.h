@@ -72,6 +72,8 @@ class Camera {
 
     [[nodiscard]] virtual CameraDescription description() const = 0;
     [[nodiscard]] virtual FrameLayout layout() const = 0;
+    /// Memory of its buffers for frames.
+    [[nodiscard]] virtual std::size_t buffer_bytes() const { return 0; }
     /// Wire ids count modulo this (65535 for GigE Vision without 0, 2^32 for V4L2).
     [[nodiscard]] virtual std::uint64_t wire_id_period() const = 0;
     /// Of the last `start`, if the transport has a rule for the first wire id.

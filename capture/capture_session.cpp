@@ -301,12 +301,13 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     return NoFrame{};
 }
 
-CaptureSession::CaptureSession(Opener open, SessionOptions options)
+CaptureSession::CaptureSession(Opener open, SessionOptions options, const HeldFrames& held)
     : impl_(std::make_unique<Impl>()) {
     impl_->open = std::move(open);
     impl_->options = options;
     auto camera = impl_->open();
     impl_->ids = FrameIds(camera->wire_id_period());
+    if (held) impl_->pool.reserve(held(*camera) + kOwnFrames, camera->layout().payload_bytes());
     camera->start();
     impl_->take_over(std::move(camera));
 }
@@ -317,10 +318,6 @@ CaptureSession::~CaptureSession() {
 
 SessionEvent CaptureSession::next(std::chrono::milliseconds timeout) {
     return impl_->camera ? impl_->wait_for_frame(timeout) : impl_->wait_for_camera(timeout);
-}
-
-void CaptureSession::reserve(std::size_t frames) {
-    impl_->pool.reserve(frames + kOwnFrames, impl_->layout.payload_bytes());
 }
 
 void CaptureSession::give_back(std::vector<std::uint8_t>&& payload) {

@@ -69,8 +69,12 @@ class CaptureSession {
     /// Opens the camera with its settings. Called again after an outage, from another thread.
     using Opener = std::function<std::unique_ptr<Camera>()>;
 
-    /// Opens and starts. \throws InputError, DeviceError.
-    CaptureSession(Opener open, SessionOptions options);
+    /// How many frames of an open camera the caller holds at a time, and gives back.
+    using HeldFrames = std::function<std::size_t(const Camera&)>;
+
+    /// Opens and starts. In between, memory for the payloads of `held` frames is allocated: no
+    /// later frame of this layout needs more. \throws InputError, DeviceError, and as `held`.
+    CaptureSession(Opener open, SessionOptions options, const HeldFrames& held = {});
     ~CaptureSession();
     CaptureSession(const CaptureSession&) = delete;
     CaptureSession& operator=(const CaptureSession&) = delete;
@@ -81,12 +85,9 @@ class CaptureSession {
     /// Frames that the session itself holds at most: the one being received, and two whose order
     /// is in doubt.
     static constexpr std::size_t kOwnFrames = 3;
-    /// Makes memory for the payloads of all later frames of this layout, if the caller holds up to
-    /// `frames` of them at a time and gives them back. Called once, before the first `next`.
-    void reserve(std::size_t frames);
     /// The memory of a payload is free for a later frame. Any thread may call it.
     void give_back(std::vector<std::uint8_t>&& payload);
-    /// Number of payloads that the memory of `reserve` was not enough for.
+    /// Number of payloads that this memory was not enough for.
     [[nodiscard]] std::uint64_t late_allocations() const;
 
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.

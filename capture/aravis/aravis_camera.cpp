@@ -108,6 +108,7 @@ class AravisCamera : public Camera {
 
     [[nodiscard]] CameraDescription description() const override;
     [[nodiscard]] FrameLayout layout() const override { return stream_->layout(); }
+    [[nodiscard]] std::size_t buffer_bytes() const override { return stream_->buffer_bytes(); }
     [[nodiscard]] std::uint64_t wire_id_period() const override {
         return device_.is_gige() ? kGigeIdPeriod : kUsbIdPeriod;
     }

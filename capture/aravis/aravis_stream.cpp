@@ -317,6 +317,10 @@ const FrameLayout& AravisStream::layout() const {
     return impl_->layout;
 }
 
+std::size_t AravisStream::buffer_bytes() const {
+    return impl_->buffer_bytes * static_cast<std::size_t>(impl_->buffers.frames);
+}
+
 std::map<std::string, std::string> AravisStream::facts() const {
     return impl_->link ? impl_->link->facts() : std::map<std::string, std::string>();
 }

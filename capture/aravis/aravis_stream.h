@@ -23,6 +23,7 @@ class AravisStream {
     AravisStream& operator=(const AravisStream&) = delete;
 
     [[nodiscard]] const FrameLayout& layout() const;
+    [[nodiscard]] std::size_t buffer_bytes() const;  ///< of all buffers
     [[nodiscard]] TransportCounts counts() const;
     /// Sizes of packets and buffers, for CameraDescription.
     [[nodiscard]] std::map<std::string, std::string> facts() const;
