@@ -66,6 +66,7 @@ struct CaptureSession::Impl {
     bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
 
     Clock::time_point last_sign;             ///< start, or the last frame that was no repeat
+    nanoseconds silence{};                   ///< time of waiting in vain since then
     nanoseconds period_before{};             ///< of the epoch before
     std::optional<FrameRecord> first_frame;  ///< of this epoch
     std::optional<FrameRecord> last_frame;
@@ -97,6 +98,7 @@ void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
     layout = camera->layout();
     counted = {};
     counted_at = last_sign = Clock::now();
+    silence = {};
     incomplete_since = false;
     first_frame.reset();
 }
@@ -259,6 +261,7 @@ SessionEvent CaptureSession::Impl::take(CapturedFrame frame) {
 SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     FrameRecord& record = frame.record;
     last_sign = Clock::now();
+    silence = {};
     number(record);
     last_frame = record;
     if (!first_frame) first_frame = record;
@@ -283,21 +286,23 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
 SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     if (coming) return deliver(*std::exchange(coming, {}));
     const auto limit = stall_timeout();
-    const auto silent = Clock::now() - last_sign;
     if (limit) {
-        const auto left = std::chrono::ceil<milliseconds>(*limit - silent);
+        const auto left = std::chrono::ceil<milliseconds>(*limit - silence);
         timeout = std::clamp(left, milliseconds(0), std::max(timeout, milliseconds(0)));
     }
+    const auto begun = Clock::now();
     Arrival arrival = camera->wait(timeout);
+    // Where this program stood still for longer, frames may have come that it has not taken yet.
+    silence += std::min<nanoseconds>(Clock::now() - begun, timeout);
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return take(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
         if (!lost->at_end && !lost->bad_file) return begin_outage(std::move(lost->reason));
         count_last_underruns();
         return std::move(*lost);
     }
-    const auto now_silent = std::chrono::ceil<milliseconds>(Clock::now() - last_sign);
-    if (limit && now_silent >= *limit)
-        return begin_outage(fmt::format("nothing came for {} ms", now_silent.count()));
+    if (limit && silence >= *limit)
+        return begin_outage(fmt::format("nothing came for {} ms",
+                                        std::chrono::ceil<milliseconds>(silence).count()));
     return NoFrame{};
 }
 

@@ -212,6 +212,21 @@ TEST(CaptureSessionTest, ACameraThatFallsSilentIsOpenedAnew) {
     EXPECT_EQ(session.totals().outages, 1U);
 }
 
+// The program is stopped, or the machine: frames that came meanwhile wait to be received.
+TEST(CaptureSessionTest, APauseOfTheProgramIsNoSilenceOfTheCamera) {
+    const auto pause = [] {
+        std::this_thread::sleep_for(100ms);
+        return Arrival(NoFrame{});
+    };
+    CaptureSession session(
+        plays({{arrives(scripted_frame(1)), {pause, {}}, arrives(scripted_frame(2))}}),
+        {.stall = 20ms});
+    static_cast<void>(next_record(session));
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(session.next(5ms)));
+    EXPECT_EQ(next_record(session).wire_id, 2U);
+    EXPECT_EQ(session.totals().outages, 0U);
+}
+
 TEST(CaptureSessionTest, FramesOfAnOutageAreEstimatedFromTheFramePeriod) {
     CameraDescription camera;
     camera.features["AcquisitionFrameRate"] = "100";  // 10 ms
