@@ -55,6 +55,7 @@ nlohmann::ordered_json recording_json(const std::string& file, const CameraRecor
             {"incomplete", recording.end.incomplete},
             {"repeated", recording.session.repeated},
             {"lost", lost_json(recording.session)},
+            {"missing_before_first", recording.session.missing_before_first},
             {"outages", recording.session.outages},
             {"transport", transport_json(recording.transport)},
             {"payload_bytes", recording.end.payload_bytes},
@@ -72,7 +73,10 @@ std::string recording_text(const std::string& file, const CameraRecording& recor
         text += fmt::format(", {} incomplete", recording.end.incomplete);
     if (recording.session.repeated > 0)
         text += fmt::format(", {} repeated and left out", recording.session.repeated);
-    return fmt::format("{}\nlost: {}", text, lost_text(recording.session));
+    text += fmt::format("\nlost: {}", lost_text(recording.session));
+    if (const std::uint64_t missing = recording.session.missing_before_first; missing > 0)
+        text += fmt::format(", of these {} before the first frame", missing);
+    return text;
 }
 
 /// \throws the fault that ended a recording too early, after a message on the frames kept.

@@ -111,6 +111,7 @@ void add_fault_arguments(Command& command, GigeServerOptions& options) {
     count("--fault-first-block", faults.first_block, "block id of the first frame")
         .shows_default()
         .check(whole_check(1, 65535));
+    count("--fault-begin-at", faults.begin_at, "frame before which nothing is sent");
     count("--fault-freeze-at", faults.freeze_at, "frame from which on nothing is sent");
     count("--fault-seed", faults.seed, "seed of the draw of the packets").shows_default();
     command

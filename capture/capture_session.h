@@ -35,8 +35,9 @@ struct SessionTotals {
     std::uint64_t frames = 0;      ///< delivered
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
-    std::uint64_t outages = 0;   ///< number of times that the camera was gone
-    std::uint64_t repeated = 0;  ///< complete frames that came a second time, left out
+    std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
+    std::uint64_t outages = 0;               ///< number of times that the camera was gone
+    std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out
 };
 
 /// The camera is gone; the session is opening it again.
@@ -58,17 +59,22 @@ using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, Devi
 ///
 /// The counters of the transport decide the cause of a gap, in this order: no free buffer
 /// (kHostUnderrun), losses of network or socket (kTransport), none (kDevice). The number of frames
-/// lost while the camera was gone is estimated from the earlier frame period.
-/// A frame with an old id is the first of a restarted counter if its stamp is newer, or if the next
-/// frame follows it. Otherwise it is a repeat, and left out.
-/// Used from one thread; other threads open and close the camera.
+/// lost while the camera was gone is estimated from the earlier frame period. Frames lost before
+/// the first one that arrives count too, if its id tells (frames_before_first); its id is their
+/// number. A frame with an old id is the first of a restarted counter if its stamp is newer, or if
+/// the next frame follows it. Otherwise it is a repeat, and left out. Used from one thread; other
+/// threads open and close the camera.
 class CaptureSession {
   public:
     /// Opens the camera with its settings. Called again after an outage, from another thread.
     using Opener = std::function<std::unique_ptr<Camera>()>;
 
-    /// Opens and starts. \throws InputError, DeviceError.
-    CaptureSession(Opener open, SessionOptions options);
+    /// How many frames of an open camera the caller holds at a time, and gives back.
+    using HeldFrames = std::function<std::size_t(const Camera&)>;
+
+    /// Opens and starts. In between, memory for the payloads of `held` frames is allocated: no
+    /// later frame of this layout needs more. \throws InputError, DeviceError, and as `held`.
+    CaptureSession(Opener open, SessionOptions options, const HeldFrames& held = {});
     ~CaptureSession();
     CaptureSession(const CaptureSession&) = delete;
     CaptureSession& operator=(const CaptureSession&) = delete;
@@ -79,12 +85,9 @@ class CaptureSession {
     /// Frames that the session itself holds at most: the one being received, and two whose order
     /// is in doubt.
     static constexpr std::size_t kOwnFrames = 3;
-    /// Makes memory for the payloads of all later frames of this layout, if the caller holds up to
-    /// `frames` of them at a time and gives them back. Called once, before the first `next`.
-    void reserve(std::size_t frames);
     /// The memory of a payload is free for a later frame. Any thread may call it.
     void give_back(std::vector<std::uint8_t>&& payload);
-    /// Number of payloads that the memory of `reserve` was not enough for.
+    /// Number of payloads that this memory was not enough for.
     [[nodiscard]] std::uint64_t late_allocations() const;
 
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.

@@ -72,8 +72,11 @@ std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
 void LiveEmulator::hold_missing(const FrameRecord& record) {
     const bool complete = record.status == FrameStatus::kComplete;
     const GapFiller::Gap gap = filler_.next(record, complete);
-    if (gap.held == 0) return;
     const std::uint64_t incomplete = complete ? 0 : 1;
+    if (gap.held == 0) {  // no slot yet, or nothing is missing
+        result_.totals.missing_before_first += gap.lost + incomplete;
+        return;
+    }
     const std::uint64_t slots = lost_to_hold(gap.lost) + incomplete;
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     result_.held_slots += slots;

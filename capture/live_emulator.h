@@ -47,7 +47,7 @@ struct LateSlot {
 /// What has become of a camera's frames.
 struct LiveEmulation {
     DurationHistogram latencies;  ///< from frame in to packets out, of each whole frame
-    SessionTotals totals;         ///< from the first slot to the last
+    SessionTotals totals;         ///< from the first slot to the last; missing_before_first apart
     FrameRate rate;
     std::uint64_t held_slots = 0;    ///< in which the frame before stands in
     std::uint64_t unheld_slots = 0;  ///< left out

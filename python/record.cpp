@@ -38,13 +38,15 @@ auto creating_from_camera(const CameraTask& task, const fs::path& file, Create&&
 }
 
 py::dict recording_dict(const std::string& file, const CameraRecording& recording) {
-    return py::dict(
-        "file"_a = file, "frames"_a = recording.end.frames,
-        "incomplete"_a = recording.end.incomplete, "repeated"_a = recording.session.repeated,
-        "lost"_a = lost_dict(recording.session), "outages"_a = recording.session.outages,
-        "transport"_a = transport_dict(recording.transport),
-        "payload_bytes"_a = recording.end.payload_bytes, "seconds"_a = recording.seconds,
-        "frames_per_s"_a = recording.frames_per_s);
+    return py::dict("file"_a = file, "frames"_a = recording.end.frames,
+                    "incomplete"_a = recording.end.incomplete,
+                    "repeated"_a = recording.session.repeated,
+                    "lost"_a = lost_dict(recording.session),
+                    "missing_before_first"_a = recording.session.missing_before_first,
+                    "outages"_a = recording.session.outages,
+                    "transport"_a = transport_dict(recording.transport),
+                    "payload_bytes"_a = recording.end.payload_bytes,
+                    "seconds"_a = recording.seconds, "frames_per_s"_a = recording.frames_per_s);
 }
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,

@@ -14,8 +14,9 @@
 namespace stipple {
 namespace {
 
-/// GVSP block ids are 1 to 65535.
+/// GVSP block ids are 1 to 65535, and begin with 1 when the stream channel is opened.
 constexpr std::uint64_t kGigeIdPeriod = 65535;
+constexpr std::uint64_t kGigeFirstId = 1;
 constexpr std::uint64_t kUsbIdPeriod = ~std::uint64_t{0};
 
 std::string formats_we_read() {
@@ -107,8 +108,13 @@ class AravisCamera : public Camera {
 
     [[nodiscard]] CameraDescription description() const override;
     [[nodiscard]] FrameLayout layout() const override { return stream_->layout(); }
+    [[nodiscard]] std::size_t buffer_bytes() const override { return stream_->buffer_bytes(); }
     [[nodiscard]] std::uint64_t wire_id_period() const override {
         return device_.is_gige() ? kGigeIdPeriod : kUsbIdPeriod;
+    }
+    [[nodiscard]] std::optional<StreamStart> stream_start() const override {
+        if (!device_.is_gige()) return {};
+        return StreamStart{kGigeFirstId, stream_->started_ns()};
     }
     [[nodiscard]] TransportCounts counts() const override { return stream_->counts(); }
     void start() override { stream_->start(); }

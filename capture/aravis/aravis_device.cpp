@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "capture/aravis/genicam_check.h"
@@ -137,6 +138,7 @@ constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
 struct AravisDevice::Impl {
     ArvCamera* camera = nullptr;
     ArvDevice* device = nullptr;
+    std::optional<GenicamCheck> check;
 
     ~Impl() { g_clear_object(&camera); }
     void set_number(const std::string& where, const NumberFeature& feature,
@@ -152,7 +154,7 @@ AravisDevice::AravisDevice(const std::string& address)
 AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
     const std::unique_ptr<void, void (*)(void*)> opened(device, g_object_unref);
-    check_genicam(device, address_);
+    impl_->check.emplace(device, address_);
     GlibError error;
     impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), error.slot());
     if (impl_->camera == nullptr)
@@ -187,6 +189,7 @@ std::string AravisDevice::controller() const {
 }
 
 bool AravisDevice::has(const std::string& feature) const {
+    impl_->check->check_lengths();
     ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
     return node != nullptr && ARV_IS_GC_FEATURE_NODE(node) != FALSE &&
            arv_gc_feature_node_is_available(ARV_GC_FEATURE_NODE(node), nullptr) != FALSE;
@@ -235,6 +238,7 @@ void AravisDevice::Impl::set_choice(const std::string& where, const char* featur
     if (error.any())
         throw InputError(where, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
                                             error.text(), choices_of(device, feature)));
+    check->check_lengths();
     const char* back = arv_device_get_string_feature_value(device, feature, nullptr);
     if (back == nullptr || value != back)
         throw DeviceError(where, fmt::format("asked for {}, the camera stays at {}", value,
@@ -250,6 +254,7 @@ void AravisDevice::Impl::set_integer(const std::string& where, const char* featu
     if (error.any())
         throw InputError(where, fmt::format("{} cannot be set ({}){}", value, error.text(),
                                             range_of(device, feature)));
+    check->check_lengths();
     const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
     if (back != *number)
         throw DeviceError(where, fmt::format("asked for {}, the camera made it {}; ask for that if "
@@ -287,6 +292,7 @@ std::string AravisDevice::nearest_feature(const std::string& name) const {
 }
 
 void AravisDevice::set(const std::string& feature, const std::string& value) {
+    impl_->check->check_lengths();
     const std::string where = fmt::format("{}: {}", address_, feature);
     const auto* const known = std::find_if(
         kNumbers.begin(), kNumbers.end(), [&](const auto& entry) { return feature == entry.name; });

@@ -71,6 +71,7 @@ struct AravisStream::Impl {
     ArvBuffer* held_back = nullptr;  ///< of the last frame, if that was incomplete
     std::uint64_t last_wire_id = 0;
     bool running = false;
+    std::int64_t started_ns = 0;
     std::atomic<bool> lost = false;
     gulong lost_handler = 0;
     std::optional<GigeLink> link;  ///< empty: USB3 Vision
@@ -316,6 +317,10 @@ const FrameLayout& AravisStream::layout() const {
     return impl_->layout;
 }
 
+std::size_t AravisStream::buffer_bytes() const {
+    return impl_->buffer_bytes * static_cast<std::size_t>(impl_->buffers.frames);
+}
+
 std::map<std::string, std::string> AravisStream::facts() const {
     return impl_->link ? impl_->link->facts() : std::map<std::string, std::string>();
 }
@@ -338,6 +343,7 @@ void AravisStream::start() {
     if (impl_->link) impl_->drop_foreign_packets();
     GError* error = nullptr;
     arv_camera_set_acquisition_mode(impl_->camera, ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
+    impl_->started_ns = monotonic_ns();
     arv_camera_start_acquisition(impl_->camera, &error);
     if (error != nullptr) {
         const std::string why = error->message;
@@ -345,6 +351,10 @@ void AravisStream::start() {
         throw DeviceError(impl_->device.address(), fmt::format("does not start: {}", why));
     }
     impl_->running = true;
+}
+
+std::int64_t AravisStream::started_ns() const {
+    return impl_->started_ns;
 }
 
 Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {

@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "capture/camera_timing.h"
 #include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
+#include "capture/waiting_frames.h"
 #include "core/version.h"
 #include "io/pending_output.h"
 
@@ -27,6 +31,15 @@ SessionRecord session_record(const CameraDescription& camera, const CameraSettin
     record.host["stipple"] = version();
     record.started_realtime_ns = realtime_ns();
     return record;
+}
+
+/// Frames of 10 s, for which a disk seldom stands still; memory for them is allocated in advance.
+std::size_t reserved_frames(const Camera& camera) {
+    constexpr std::chrono::seconds kDiskPause{10};
+    constexpr std::int64_t kFewest = 64, kUsual = 256, kMost = 4096;
+    const std::chrono::nanoseconds period = nominal_period(camera.description());
+    if (period.count() == 0) return kUsual;
+    return static_cast<std::size_t>(std::clamp<std::int64_t>(kDiskPause / period, kFewest, kMost));
 }
 
 std::string text_of(const std::exception_ptr& failure) {
@@ -46,10 +59,19 @@ struct CameraRecorder::Impl {
          const std::filesystem::path& file, CameraRecorderOptions given)
         : options(std::move(given)),
           output(file, options.force),
-          session(std::move(open), options.session),
+          session(std::move(open), options.session,
+                  [this](const Camera& camera) { return plan_queue(camera); }),
           writer(output.partial(), session_record(session.description(), settings),
                  output.final_path().string()),
-          queue(writer, options.queue_bytes) {}
+          queue(writer, waiting, [this](std::vector<std::uint8_t>&& payload) {
+              session.give_back(std::move(payload));
+          }) {}
+
+    /// Before it starts. Returns the frames to reserve memory for: waiting, and being written.
+    [[nodiscard]] std::size_t plan_queue(const Camera& camera) {
+        waiting = waiting_frames(camera, {.bytes = options.queue_bytes});
+        return std::min(waiting.frames, reserved_frames(camera)) + 1;
+    }
 
     void run(const GoesOn& goes_on);
     void take(SessionEvent event);
@@ -60,7 +82,8 @@ struct CameraRecorder::Impl {
 
     CameraRecorderOptions options;
     PendingOutput output;
-    CaptureSession session;
+    WaitingFrames waiting;
+    CaptureSession session;  ///< behind what is planned when it opens the camera
     RecordingWriter writer;
     RecordingQueue queue;
     std::uint64_t taken = 0;    ///< frames that the queue took
@@ -94,10 +117,11 @@ void CameraRecorder::Impl::take(CapturedFrame frame) {
     if (queue.push(std::move(frame))) {
         rate.add(record);
         ++taken;
-    } else {
-        ++refused;
-        session.count_own_drop(record);
+        return;
     }
+    ++refused;
+    session.count_own_drop(record);
+    session.give_back(std::move(frame.payload));
 }
 
 /// Of what is being thrown; the first one counts.

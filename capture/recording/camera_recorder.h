@@ -18,7 +18,8 @@ struct CameraRecorderOptions {
     SessionOptions session = {};
     CaptureLimits limits = {};
     bool force = false;  ///< replaces a file of that name
-    /// Bytes that may wait for the disk: 2 s of 640 x 480 pixels of 16 bits at 200 frames/s.
+    /// Bytes that may wait for the disk: 2 s of 640 x 480 pixels of 16 bits at 200 frames/s. Fewer
+    /// if `max_memory` demands it.
     std::size_t queue_bytes = std::size_t{1} << 28U;
     /// Told of outages and recoveries, and of the end of the camera; may be empty.
     std::function<void(const SessionEvent&)> tell = {};
@@ -37,7 +38,8 @@ struct CameraRecording {
 };
 
 /// Records a camera to a .strec file: a session takes the frames, a thread writes them. Frames that
-/// the disk is too slow for are dropped and counted.
+/// the disk is too slow for are dropped and counted. The memory of frames of 10 s is allocated
+/// before the camera starts; only when more of them wait, the resident memory grows.
 class CameraRecorder {
   public:
     /// Asked before each wait for a frame, every 100 ms at least, with the frames that are taken so

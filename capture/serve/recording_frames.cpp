@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "capture/frame_rate.h"
 #include "core/error.h"
 #include "core/joined.h"
 
@@ -56,9 +57,10 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
     if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesPerS;
-    const auto frames = static_cast<double>(next.record.id - first.id);
-    const auto elapsed_s = static_cast<double>(next.record.device_ns - first.device_ns) * 1e-9;
-    const double rate = frames / elapsed_s;
+    FrameRate frames;
+    frames.add(first);
+    frames.add(next.record);
+    const double rate = frames.hz().value_or(0);
     return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesPerS;
 }
 

@@ -54,6 +54,9 @@ class V4l2Camera final : public Camera {
 
     [[nodiscard]] CameraDescription description() const override;
     [[nodiscard]] FrameLayout layout() const override { return format_.layout; }
+    [[nodiscard]] std::size_t buffer_bytes() const override {
+        return format_.buffer_bytes * static_cast<std::size_t>(buffers_.count());
+    }
     [[nodiscard]] std::uint64_t wire_id_period() const override { return std::uint64_t{1} << 32U; }
     [[nodiscard]] TransportCounts counts() const override { return counts_; }
 

@@ -195,6 +195,24 @@ class ServeTest(ProgramTest):
     def same_bytes(self, one, other):
         return (self.folder / one).read_bytes() == (self.folder / other).read_bytes()
 
+    def test_frames_lost_before_the_first_are_counted_and_ids_that_begin_elsewhere_are_not(self):
+        scene = self.scene()
+        for fault, missing in ((["--fault-begin-at", 4], 4), (["--fault-first-block", 500], 0),
+                               (["--fault-gap-at", 0, "--fault-gap", 400], 0)):
+            address = self.serve(scene, "--fps", 50, *fault)
+            figures = json.loads(self.record(address, "clip.strec", "--frames", 3, "--force",
+                                             "--json", "-").stdout)
+            self.assertEqual(figures["missing_before_first"], missing, fault)
+            self.assertEqual(sum(figures["lost"].values()), missing, fault)
+            first = frames_of(self.folder / "clip.strec")[0][0]
+            self.assertEqual((first["id"], first["lost_before"]), (missing, missing), fault)
+
+    def test_slots_lost_before_the_first_are_dropped_packets(self):
+        address = self.serve(self.scene(), "--mode", "coded", "--fault-begin-at", 4)
+        done = self.record(address, "clip.stipple", "--coded", "--json", "-")
+        self.assertEqual(json.loads(done.stdout),
+                         {"slots": 24, "missing_slots": 4, "damaged_frames": 0})
+
     def test_a_coded_stream_arrives_as_emulate_writes_it(self):
         choice = [self.scene(), "--seed", 7, "--set", "sensor.bit_depth=10", "--schedule", "tiled"]
         self.succeed("emulate", *choice, "-o", "emulated.stipple")

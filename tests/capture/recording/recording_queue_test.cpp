@@ -21,9 +21,13 @@ TEST(RecordingQueueTest, WhatFitsIsWrittenInOrder) {
     const TemporaryFolder folder;
     const auto frames = test_frames(50);
     RecordingWriter writer(folder / "a", test_session());
-    RecordingQueue queue(writer, std::size_t{1} << 20U);
+    std::size_t given_back = 0;  // the queue's thread, until it is drained
+    RecordingQueue queue(
+        writer, {.bytes = std::size_t{1} << 20U},
+        [&](std::vector<std::uint8_t>&& payload) { given_back += payload.empty() ? 0U : 1U; });
     for (CapturedFrame frame : frames) EXPECT_TRUE(queue.push(std::move(frame)));
     queue.drain();
+    EXPECT_EQ(given_back, frames.size());
     writer.finish({});
     RecordingReader reader(folder / "a");
     EXPECT_TRUE(same(read_frames(reader), frames));
@@ -79,7 +83,7 @@ TEST(RecordingQueueTest, ADiskThatStandsStillCostsFramesThatAreCounted) {
     const StandingDisk disk(folder / "pipe");
     RecordingWriter writer(folder / "pipe", test_session());
     // A pipe takes 64 KiB; frames of 20 000 bytes; four of them wait.
-    RecordingQueue queue(writer, 80000);
+    RecordingQueue queue(writer, {.bytes = 80000});
     CountingCamera camera;
     std::uint64_t dropped = 0;
     for (int i = 0; i < 40; ++i) dropped += camera.push_next(queue) ? 0U : 1U;
@@ -116,7 +120,7 @@ TEST(RecordingQueueTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
     std::string message;
     {
         RecordingWriter writer(folder / "a", test_session(), "clip.strec");
-        RecordingQueue queue(writer, std::size_t{1} << 24U);
+        RecordingQueue queue(writer, {.bytes = std::size_t{1} << 24U});
         const rlimit limit{100'000, old.rlim_max};
         setrlimit(RLIMIT_FSIZE, &limit);
         for (std::uint64_t i = 0; i < 20; ++i) queue.push(test_frame(i, "Mono8", 200, 100));
