@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "core/named_value.h"
 
 namespace stipple {
 
@@ -20,6 +21,11 @@ enum class IncompletePolicy : std::uint8_t {
     kKeep,  ///< delivered without the list of holes
     kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };
+
+inline constexpr auto kIncompletePolicies =
+    std::to_array<NamedValue<IncompletePolicy>>({{"drop", IncompletePolicy::kDrop},
+                                                 {"keep", IncompletePolicy::kKeep},
+                                                 {"mask", IncompletePolicy::kMask}});
 
 struct SessionOptions {
     IncompletePolicy incomplete = IncompletePolicy::kMask;

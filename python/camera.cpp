@@ -30,13 +30,6 @@ CameraSettings settings_for(const py::dict& settings,
     return reading(*config, [&] { return Config(*config, texts, "camera").entries(); });
 }
 
-IncompletePolicy incomplete_policy(const std::string& name) {
-    if (name == "drop") return IncompletePolicy::kDrop;
-    if (name == "keep") return IncompletePolicy::kKeep;
-    if (name == "mask") return IncompletePolicy::kMask;
-    throw InputError("incomplete", fmt::format("\"{}\" is none of drop, keep, mask", name));
-}
-
 CaptureLimits limits_of(std::optional<std::int64_t> frames, std::optional<double> seconds) {
     if (frames && *frames < 1)
         throw InputError("frames", fmt::format("{} is not above 0", *frames));
@@ -50,9 +43,10 @@ SessionOptions session_of(const std::string& address, const std::string& incompl
                           std::int64_t stall_ms, bool reconnect) {
     if (stall_ms < 0 || stall_ms > 3'600'000)
         throw InputError("stall_ms", fmt::format("{} is outside 0..3600000", stall_ms));
-    return session_options(address, {.incomplete = incomplete_policy(incomplete),
-                                     .stall = std::chrono::milliseconds(stall_ms),
-                                     .reconnect = reconnect});
+    return session_options(address,
+                           {.incomplete = value_in(kIncompletePolicies, incomplete, "incomplete"),
+                            .stall = std::chrono::milliseconds(stall_ms),
+                            .reconnect = reconnect});
 }
 
 }  // namespace

@@ -57,10 +57,9 @@ toml::table sensor_table(const SensorSetup& setup) {
 }
 
 toml::table footage_table(const FootageOrigin& footage) {
-    toml::table table{
-        {"name", footage.name},
-        {"transfer", transfer_name(footage.reading.transfer.value_or(Transfer::kLinear))},
-        {"luminance", footage.reading.luminance}};
+    toml::table table{{"name", footage.name},
+                      {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
+                      {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);

@@ -37,10 +37,7 @@ bool is_replay(const CameraArguments& arguments) {
 
 void add_incomplete_argument(Command& command, IncompletePolicy& policy) {
     command
-        .add_choice("--incomplete", policy,
-                    {{"drop", IncompletePolicy::kDrop},
-                     {"keep", IncompletePolicy::kKeep},
-                     {"mask", IncompletePolicy::kMask}},
+        .add_choice("--incomplete", policy, kIncompletePolicies,
                     "incomplete frames: drop, keep, or mask (fill missing pixels with 0)")
         .type_name("POLICY");
 }

@@ -28,8 +28,7 @@ void add_sensor_arguments(Command& command, SensorChoice& sensor) {
 
 void add_overrun(Command& command, OverrunPolicy& policy) {
     command
-        .add_choice("--overrun", policy,
-                    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}},
+        .add_choice("--overrun", policy, kOverrunPolicies,
                     "a readout that exceeds its slot: stretch the slot, or drop its last rows; "
                     "drop needs a sensor with timing")
         .type_name("POLICY");
