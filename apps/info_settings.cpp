@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/key_list.h"
+#include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
 #include "apps/report/schedule_text.h"
 #include "core/config.h"
@@ -120,13 +121,9 @@ ordered_json rows_json(const std::vector<KnownKey>& rows) {
 }
 
 std::string rows_text(const std::vector<KnownKey>& rows) {
-    constexpr std::size_t kMaxWidth = 12;  // longer values shift their line
-    std::size_t name_width = 0;
-    std::size_t value_width = 0;
-    for (const KnownKey& row : rows) {
-        name_width = std::max(name_width, row.name.size());
-        value_width = std::max(value_width, std::min(row.fallback.size(), kMaxWidth));
-    }
+    constexpr std::size_t kMaxWidth = 12;
+    const std::size_t name_width = column_width(rows, &KnownKey::name);
+    const std::size_t value_width = column_width(rows, &KnownKey::fallback, kMaxWidth);
     std::string text;
     for (const KnownKey& row : rows)
         text += fmt::format("\n  {:<{}}  {:>{}} {:<12}  {}", row.name, name_width, row.fallback,

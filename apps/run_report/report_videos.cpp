@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/report/json_figures.h"
 #include "apps/report/quality_json.h"
 #include "apps/run_report/plane_code.h"
 
@@ -89,7 +90,7 @@ ordered_json ReportVideos::json() const {
     ordered_json list = ordered_json::array();
     for (const Video& video : videos_) {
         ordered_json entry{{"name", video.title.name}, {"text", video.title.text}};
-        entry["run"] = video.title.run ? ordered_json(*video.title.run) : ordered_json();
+        entry["run"] = or_null(video.title.run);
         entry["quality"] = quality_of(video);
         list.push_back(entry);
     }
