@@ -1,40 +1,18 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstdint>
 
 #include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/image_file.h"
 #include "io/output_file.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
 
 using Floats = std::vector<float>;
-
-/// While it lives no file of this process can grow beyond `bytes`: as on a full disk, a write
-/// stores what fits and then fails.
-class FileSizeLimit {
-  public:
-    explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &old_);
-        const rlimit limit{bytes, old_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &old_);
-        std::signal(SIGXFSZ, old_handler_);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
-  private:
-    rlimit old_{};
-    void (*old_handler_)(int);
-};
 
 /// A image that no codec makes small.
 Floats noise(FrameShape shape, std::uint32_t state) {
