@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/byte_edits.h"
 
 namespace stipple {
 namespace {
@@ -95,28 +96,19 @@ std::vector<GoldenCase> damages() {
     const StreamHeader header = varied_header({4, 4, 1});
     const StreamBytes whole = bytes_of(header, random_packets(header, 3, 4));
     const auto& begins = whole.begins;
-    const auto flipped = [&](std::size_t at) {
-        std::string bytes = whole.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        return bytes;
-    };
-    const auto without = [&](std::size_t begin, std::size_t end) {
-        std::string bytes = whole.bytes;
-        return bytes.erase(begin, end - begin);
-    };
     std::string twice = whole.bytes;
     twice.insert(begins[2], whole.bytes.substr(begins[1], begins[2] - begins[1]));
     return {{"interrupted", whole.bytes.substr(0, begins[3])},
             {"cut_in_packet", whole.bytes.substr(0, begins[3] - 1)},
             {"cut_in_header", whole.bytes.substr(0, begins[0] - 1)},
-            {"damaged_header", flipped(40)},
-            {"damaged_packet_header", flipped(begins[1] + 8)},
-            {"damaged_payload", flipped(begins[1] + kPacketHeaderBytes)},
-            {"damaged_index", flipped(begins[3] + kPacketHeaderBytes)},
-            {"damaged_end_marker", flipped(begins[4])},
-            {"missing_packet", without(begins[1], begins[2])},
-            {"missing_bytes", without(begins[1] + 10, begins[1] + 20)},
-            {"missing_end_of_last_packet", without(begins[3] - 3, begins[3])},
+            {"damaged_header", flipped(whole.bytes, 40)},
+            {"damaged_packet_header", flipped(whole.bytes, begins[1] + 8)},
+            {"damaged_payload", flipped(whole.bytes, begins[1] + kPacketHeaderBytes)},
+            {"damaged_index", flipped(whole.bytes, begins[3] + kPacketHeaderBytes)},
+            {"damaged_end_marker", flipped(whole.bytes, begins[4])},
+            {"missing_packet", without(whole.bytes, begins[1], begins[2])},
+            {"missing_bytes", without(whole.bytes, begins[1] + 10, begins[1] + 20)},
+            {"missing_end_of_last_packet", without(whole.bytes, begins[3] - 3, begins[3])},
             {"packet_twice", twice},
             {"torn", torn()},
             {"samples_exchanged", samples_exchanged()},
@@ -129,11 +121,10 @@ std::vector<GoldenCase> ends_within_a_slot() {
     auto packets = random_packets(header, 3, 2);
     const StreamBytes whole = bytes_of(header, packets);
     packets.pop_back();
-    std::string without_last = whole.bytes;
-    without_last.erase(whole.begins[8], whole.begins[9] - whole.begins[8]);
-    return {{"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
-            {"partial_last_slot_with_index", without_last},
-            {"stopped_within_slot", bytes_of(header, packets).bytes}};
+    return {
+        {"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
+        {"partial_last_slot_with_index", without(whole.bytes, whole.begins[8], whole.begins[9])},
+        {"stopped_within_slot", bytes_of(header, packets).bytes}};
 }
 
 PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
@@ -141,15 +132,10 @@ PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
     return decode_packet_header(as_numbers(copy));
 }
 
-void flip(std::string& bytes, std::size_t at) {
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-}
-
 /// An index that leads to another place than a slot, and an end marker that leads elsewhere.
 std::vector<GoldenCase> wrong_offsets(const StreamBytes& whole) {
     const auto [index, marker] = std::pair{whole.begins[3], whole.begins[4]};
-    std::string entry = whole.bytes;
-    flip(entry, index + kPacketHeaderBytes + 8);
+    std::string entry = flipped(whole.bytes, index + kPacketHeaderBytes + 8);
     entry.replace(
         index, marker - index,
         framed(packet_header_at(entry, index),
@@ -177,8 +163,8 @@ std::vector<GoldenCase> rules() {
                      framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
     std::string after_index = whole.bytes;
     after_index.insert(begins[4], packet(2));
-    std::string no_start = whole.bytes.substr(0, begins[3] + 10);
-    flip(no_start, begins[2] + kPacketHeaderBytes);
+    const std::string no_start =
+        flipped(whole.bytes.substr(0, begins[3] + 10), begins[2] + kPacketHeaderBytes);
     std::vector<GoldenCase> cases{
         {"reserved_not_zero", reserved},
         {"packet_after_index", after_index},
