@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "core/error.h"
 #include "core/joined.h"
 #include "core/key_reader.h"
+#include "core/parsed_number.h"
 #include "io/footage_files.h"
 #include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
@@ -90,10 +90,8 @@ std::vector<KnownKey> derived_from(const SensorParams& params) {
 
 /// A number in its shortest form, else `text` as it is.
 std::string short_number(const std::string& text) {
-    double number = 0;
-    const char* const end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(text.data(), end, number);
-    return error == std::errc() && last == end ? fmt::format("{}", number) : text;
+    const auto number = parsed_number<double>(text);
+    return number ? fmt::format("{}", *number) : text;
 }
 
 /// The keys of the section [timing] that the file gives.
