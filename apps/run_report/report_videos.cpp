@@ -43,11 +43,7 @@ void ReportVideos::put(std::size_t video, std::int64_t slot, std::span<const flo
     const auto reference = truth_->frame(static_cast<int>(slot));
     if (reference.data() == frame.data()) return;  // the truth itself
     to.meter.add(frame, reference);
-    QualityOptions of_one = options_;
-    of_one.margin = 0;
-    QualityMeter one(shape_, of_one);
-    one.add(frame, reference);
-    to.frames.push_back(one.quality());
+    to.frames.push_back(to.meter.last_quality());
 }
 
 /// Of the last one of the first `pictures`.

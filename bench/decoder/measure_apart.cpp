@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -32,9 +31,8 @@ VideoQuality quality_of(const std::filesystem::path& decoded, const RecordedClip
     FootageReader reference(clip.truth);
     std::vector<float> frame(video.shape().sites());
     std::vector<float> reference_frame(reference.shape().sites());
-    QualityMeter meter(
-        reference.shape(),
-        {.margin = std::min(4, (reference.slots().value() - 1) / 2), .max_value = clip.brightest});
+    QualityMeter meter(reference.shape(), {.margin = usual_margin(reference.slots().value()),
+                                           .max_value = clip.brightest});
     while (video.read(frame) && reference.read(reference_frame)) meter.add(frame, reference_frame);
     return meter.quality();
 }

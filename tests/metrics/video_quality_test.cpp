@@ -100,6 +100,14 @@ TEST(VideoQualityTest, AMarginThatLeavesNothingIsAnError) {
     EXPECT_THROW(flat_quality({}, {}), InputError);
 }
 
+TEST(VideoQualityTest, TheUsualMarginLeavesAFrame) {
+    for (int frames = 1; frames < 9; ++frames) {
+        const int left = frames - 2 * usual_margin(frames);
+        EXPECT_TRUE(left == 1 || left == 2) << frames;
+    }
+    for (const int frames : {9, 10, 1000}) EXPECT_EQ(usual_margin(frames), 4);
+}
+
 TEST(VideoQualityTest, IdenticalVideosAreInfinitelyGood) {
     const Floats frame = noise(kShape.sites(), 1);
     QualityMeter meter(kShape, {});
@@ -152,6 +160,10 @@ TEST(VideoQualityTest, FrameQualitiesAreThoseOfTheFramesAlone) {
         EXPECT_EQ(frames[i].pu21_csf_psnr_db, alone.pu21_csf_psnr_db);
     }
     EXPECT_EQ(meter.quality().psnr_frame_mean_db, (frames[0].psnr_db + frames[1].psnr_db) / 2);
+    const auto last = flat_quality({0.0F}, {0.5F}, {.pu21_ssim = true});  // in the margin
+    EXPECT_EQ(meter.last_quality().psnr_db, last.psnr_db);
+    EXPECT_EQ(meter.last_quality().pu21_psnr_db, last.pu21_psnr_db);
+    EXPECT_EQ(meter.last_quality().pu21_ssim, last.pu21_ssim);
 }
 
 TEST(VideoQualityTest, Pu21SsimOfFlatFramesComparesTheirLuminances) {
