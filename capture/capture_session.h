@@ -32,6 +32,7 @@ struct SessionOptions {
     /// A camera that is silent for this time and for five frame periods is opened again. 0: no
     /// limit. Cameras with TriggerMode On may be silent.
     std::chrono::milliseconds stall{250};
+    static constexpr std::chrono::milliseconds kMaxStall{3'600'000};
     std::chrono::milliseconds first_frame{2000};  ///< the limit between start and first frame
     bool reconnect = true;
 };

@@ -41,8 +41,9 @@ CaptureLimits limits_of(std::optional<std::int64_t> frames, std::optional<double
 
 SessionOptions session_of(const std::string& address, const std::string& incomplete,
                           std::int64_t stall_ms, bool reconnect) {
-    if (stall_ms < 0 || stall_ms > 3'600'000)
-        throw InputError("stall_ms", fmt::format("{} is outside 0..3600000", stall_ms));
+    constexpr std::int64_t kMaxMs = SessionOptions::kMaxStall.count();
+    if (stall_ms < 0 || stall_ms > kMaxMs)
+        throw InputError("stall_ms", fmt::format("{} is outside 0..{}", stall_ms, kMaxMs));
     return session_options(address,
                            {.incomplete = value_in(kIncompletePolicies, incomplete, "incomplete"),
                             .stall = std::chrono::milliseconds(stall_ms),

@@ -10,10 +10,6 @@
 namespace stipple {
 namespace {
 
-constexpr double kFramesPerS = 25;
-constexpr double kMinFramesPerS = 0.01;
-constexpr double kMaxFramesPerS = 100000;
-
 void check_format(const FrameLayout& layout, const std::string& where) {
     const PixelFormat& format = *layout.format;
     if (format.pfnc == 0)
@@ -55,11 +51,13 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
 /// By the frame that follows the first.
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
-    if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesPerS;
+    if (first.stamp_source == StampSource::kNone || !read_complete(next))
+        return ServedImage::kUsualFramesPerS;
     const auto frames = static_cast<double>(next.record.id - first.id);
     const auto elapsed_s = static_cast<double>(next.record.device_ns - first.device_ns) * 1e-9;
     const double rate = frames / elapsed_s;
-    return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesPerS;
+    const bool usable = rate >= ServedImage::kMinFramesPerS && rate <= ServedImage::kMaxFramesPerS;
+    return usable ? rate : ServedImage::kUsualFramesPerS;
 }
 
 bool RecordingFrames::read_complete(CapturedFrame& frame) {
