@@ -11,17 +11,17 @@
 
 #include "capture/camera_kind.h"
 #include "capture/image_camera.h"
+#include "capture/session_figures.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "python/bindings.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
 #include "python/sensor.h"
 
 namespace stipple::python {
 namespace {
-
-using namespace pybind11::literals;
 
 CameraSettings settings_for(const py::dict& settings,
                             const std::optional<std::filesystem::path>& config) {
@@ -85,17 +85,11 @@ void SessionWarnings::pass_on() {
 }
 
 py::dict lost_dict(const SessionTotals& totals) {
-    py::dict dict;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        dict[py::str(std::string(kGapCauseNames[i]))] = totals.lost[i];
-    return dict;
+    return dict_of([&](const auto& add) { visit_lost_figures(totals, add); });
 }
 
 py::dict transport_dict(const TransportCounts& counts) {
-    return py::dict("underruns"_a = counts.underruns, "packets_resent"_a = counts.packets_resent,
-                    "packets_missing"_a = counts.packets_missing,
-                    "socket_drops"_a = counts.socket_drops, "link_faults"_a = counts.link_faults,
-                    "size_mismatches"_a = counts.size_mismatches);
+    return dict_of([&](const auto& add) { visit_transport_figures(counts, add); });
 }
 
 void bind_camera(py::module_& module) {
