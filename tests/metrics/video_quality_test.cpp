@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "metrics/pu21.h"
 #include "metrics/ssim.h"
+#include "tests/support/noise.h"
 
 namespace stipple {
 namespace {
@@ -30,12 +31,10 @@ VideoQuality flat_quality(const Floats& result, const Floats& reference,
     return meter.quality();
 }
 
-Floats noise(std::size_t count, std::uint32_t state) {
-    Floats values(count);
-    for (float& value : values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 8388608.0F;  // 0..2
-    }
+/// Light from 0 to 2.
+Floats bright_noise(std::size_t count, std::uint32_t state) {
+    Floats values = noise(count, state);
+    for (float& value : values) value *= 2;
     return values;
 }
 
@@ -109,7 +108,7 @@ TEST(VideoQualityTest, TheUsualMarginLeavesAFrame) {
 }
 
 TEST(VideoQualityTest, IdenticalVideosAreInfinitelyGood) {
-    const Floats frame = noise(kShape.sites(), 1);
+    const Floats frame = bright_noise(kShape.sites(), 1);
     QualityMeter meter(kShape, {});
     meter.add(frame, frame);
     const auto quality = meter.quality();
@@ -125,8 +124,8 @@ TEST(VideoQualityTest, SsimIsTheMeanOverFramesAndPlanesAfterTheCurve) {
     QualityMeter meter(shape, {});
     double expected = 0;
     for (std::uint32_t t = 0; t < 2; ++t) {
-        const Floats result = noise(shape.sites(), 10 + t);
-        const Floats reference = noise(shape.sites(), 20 + t);
+        const Floats result = bright_noise(shape.sites(), 10 + t);
+        const Floats reference = bright_noise(shape.sites(), 20 + t);
         meter.add(result, reference);
         for (std::size_t plane = 0; plane < 3; ++plane) {
             Floats x;
@@ -192,7 +191,7 @@ TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
     const auto measure = [](int threads) {
         const ThreadLimit limit(threads);
         QualityMeter meter({40, 50, 3}, {.pu21_ssim = true, .pixels_per_degree = 60.0});
-        meter.add(noise(40 * 50 * 3, 1), noise(40 * 50 * 3, 2));
+        meter.add(bright_noise(40 * 50 * 3, 1), bright_noise(40 * 50 * 3, 2));
         return meter.quality();
     };
     const auto one = measure(1);
