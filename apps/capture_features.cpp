@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/report/column_width.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/subcommands.h"
@@ -47,10 +49,6 @@ std::vector<CameraFeature> features_of(const FeaturesOptions& options) {
     return features;
 }
 
-ordered_json known(const std::optional<std::string>& text) {
-    return text ? ordered_json(*text) : ordered_json(nullptr);
-}
-
 ordered_json features_json(const FeaturesOptions& options,
                            const std::vector<CameraFeature>& features) {
     auto list = ordered_json::array();
@@ -59,11 +57,11 @@ ordered_json features_json(const FeaturesOptions& options,
                         {"category", feature.category},
                         {"type", feature.type},
                         {"access", feature.access},
-                        {"value", known(feature.value)},
+                        {"value", or_null(feature.value)},
                         {"unit", feature.unit},
-                        {"minimum", known(feature.minimum)},
-                        {"maximum", known(feature.maximum)},
-                        {"increment", known(feature.increment)},
+                        {"minimum", or_null(feature.minimum)},
+                        {"maximum", or_null(feature.maximum)},
+                        {"increment", or_null(feature.increment)},
                         {"choices", feature.choices},
                         {"text", feature.text}});
     return {{"address", options.address}, {"features", list}};
@@ -86,13 +84,9 @@ std::string value_of(const CameraFeature& feature) {
 }
 
 std::string features_text(const std::vector<CameraFeature>& features) {
-    constexpr std::size_t kMaxWidth = 40;  // longer ones shift their line
-    std::size_t name_width = 0;
-    std::size_t value_width = 0;
-    for (const CameraFeature& feature : features) {
-        name_width = std::max(name_width, std::min(feature.name.size(), kMaxWidth));
-        value_width = std::max(value_width, std::min(value_of(feature).size(), kMaxWidth));
-    }
+    constexpr std::size_t kMaxWidth = 40;
+    const std::size_t name_width = column_width(features, &CameraFeature::name, kMaxWidth);
+    const std::size_t value_width = column_width(features, value_of, kMaxWidth);
     std::string text;
     for (const CameraFeature& feature : features) {
         std::string line =

@@ -162,7 +162,7 @@ void add_capture_live(Command& capture, Action& action) {
         .add_option("--queue", options->queue_frames,
                     "frames that may wait for the emulator; further frames are dropped and counted")
         .shows_default()
-        .check(whole_check(1, 4096))
+        .check(whole_check(1, LiveCameraOptions::kMaxWaitingFrames))
         .type_name("N");
     command
         .add_option("--late-after", options->late_after_slots,

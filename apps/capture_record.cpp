@@ -12,6 +12,7 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
@@ -49,7 +50,6 @@ std::filesystem::path file_for(const std::string& output) {
 }
 
 nlohmann::ordered_json recording_json(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
     return {{"file", file},
             {"frames", recording.end.frames},
             {"incomplete", recording.end.incomplete},
@@ -60,7 +60,7 @@ nlohmann::ordered_json recording_json(const std::string& file, const CameraRecor
             {"transport", transport_json(recording.transport)},
             {"payload_bytes", recording.end.payload_bytes},
             {"seconds", recording.seconds},
-            {"frames_per_s", hz ? nlohmann::ordered_json(*hz) : nullptr}};
+            {"frames_per_s", or_null(recording.frames_per_s)}};
 }
 
 std::string recording_text(const std::string& file, const CameraRecording& recording) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "apps/arguments/checks.h"
+#include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/camera_report.h"
@@ -197,13 +198,7 @@ void characterize(const CharacterizeOptions& options, const RunOptions& run) {
 void add_characterize(Command& app, Action& action) {
     Command command = app.add_command("characterize", "EMVA 1288 figures of a sensor or camera");
     const auto options = std::make_shared<CharacterizeOptions>();
-    const auto sensor =
-        command
-            .add_option("--sensor", options->sensor.sensor, "sensor, of \"stipple list sensors\"")
-            .shows_default()
-            .type_name("NAME|FILE")
-            .listed("sensors")
-            .input();
+    const auto sensor = add_sensor(command, options->sensor.sensor);
     const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
                                   "change a key of the sensor");
     const auto seed = command.add_option("--seed", options->sensor.seed, "seed of the noise")

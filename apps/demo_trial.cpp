@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
 #include "apps/stream_output.h"
@@ -12,7 +10,7 @@
 namespace stipple {
 
 QualityOptions demo_quality(int slots) {
-    return {.margin = std::min(4, (slots - 1) / 2), .max_value = kBrightestLight};
+    return {.margin = usual_margin(slots), .max_value = kBrightestLight};
 }
 
 FluxVideo render_video(const Scene& scene, const RunOptions& run) {

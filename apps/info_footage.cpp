@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
@@ -63,16 +64,6 @@ void read_all(FootageReader& reader, const std::string& source, const RunOptions
     }
 }
 
-/// What is known; null what is not.
-template <typename Value>
-ordered_json known(const std::optional<Value>& value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json known(const std::string& text) {
-    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
-}
-
 ordered_json footage_json(const FootageReader& reader, const Light& light, bool complete) {
     const FrameShape shape = reader.shape();
     const SourceTraits& traits = reader.traits();
@@ -81,16 +72,16 @@ ordered_json footage_json(const FootageReader& reader, const Light& light, bool 
                       {"width", shape.cols},
                       {"height", shape.rows},
                       {"planes", shape.planes},
-                      {"announced_frames", known(reader.slots())},
+                      {"announced_frames", or_null(reader.slots())},
                       {"frames", nullptr},
-                      {"frames_per_s", known(reader.video_hz())},
-                      {"exposure_us", known(traits.exposure_us)},
-                      {"sample_format", known(traits.sample_format)},
+                      {"frames_per_s", or_null(reader.video_hz())},
+                      {"exposure_us", or_null(traits.exposure_us)},
+                      {"sample_format", or_null(traits.sample_format)},
                       {"bits", nullptr},
-                      {"black_level_dn", known(traits.black_dn)},
-                      {"white_level_dn", known(traits.white_dn)},
+                      {"black_level_dn", or_null(traits.black_dn)},
+                      {"white_level_dn", or_null(traits.white_dn)},
                       {"cfa", name_of(traits.filter)},
-                      {"curve", known(traits.curve)},
+                      {"curve", or_null(traits.curve)},
                       {"gamma_coded", traits.gamma_coded},
                       {"alpha", traits.has_alpha},
                       {"min_light", nullptr},

@@ -182,7 +182,7 @@ RunReportOptions page_options(const ReportArguments& arguments,
             brightest = std::max(brightest, brightest_light(StreamReader(stream).header()));
         if (brightest > 0) options.quality.max_value = brightest;
     }
-    if (truth) options.quality.margin = std::min(4, (truth->slots() - 1) / 2);
+    if (truth) options.quality.margin = usual_margin(truth->slots());
     return options;
 }
 

@@ -107,7 +107,10 @@ using CameraSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// Buffers for frames on the host.
 struct CameraBuffers {
-    int frames = 32;        ///< 2 to 1024
+    static constexpr int kMinFrames = 2;
+    static constexpr int kMaxFrames = 1024;
+
+    int frames = 32;
     int socket_frames = 4;  ///< GigE Vision: frames in the receive buffer of the socket
 };
 

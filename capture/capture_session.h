@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "core/named_value.h"
 
 namespace stipple {
 
@@ -21,11 +22,17 @@ enum class IncompletePolicy : std::uint8_t {
     kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };
 
+inline constexpr auto kIncompletePolicies =
+    std::to_array<NamedValue<IncompletePolicy>>({{"drop", IncompletePolicy::kDrop},
+                                                 {"keep", IncompletePolicy::kKeep},
+                                                 {"mask", IncompletePolicy::kMask}});
+
 struct SessionOptions {
     IncompletePolicy incomplete = IncompletePolicy::kMask;
     /// A camera that is silent for this time and for five frame periods is opened again. 0: no
     /// limit. Cameras with TriggerMode On may be silent.
     std::chrono::milliseconds stall{250};
+    static constexpr std::chrono::milliseconds kMaxStall{3'600'000};
     std::chrono::milliseconds first_frame{2000};  ///< the limit between start and first frame
     bool reconnect = true;
 };

@@ -19,7 +19,8 @@ namespace stipple {
 
 struct LiveCameraOptions {
     SessionOptions session;
-    std::size_t waiting_frames = 64;
+    static constexpr std::size_t kMaxWaitingFrames = 4096;
+    std::size_t waiting_frames = 64;  ///< 1 to kMaxWaitingFrames
     bool from_start = false;  ///< replay: frames wait for `begin`, so that the first one is used
     /// Called for outages, recoveries and the end, by the thread that receives the frames.
     std::function<void(const SessionEvent&)> tell;

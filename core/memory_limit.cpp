@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <string>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -109,10 +109,9 @@ std::optional<std::uint64_t> parse_memory(std::string_view text) {
     const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
     if (unit == std::string_view::npos) return std::nullopt;
     text.remove_suffix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    const double bytes = number * static_cast<double>(std::uint64_t{1024} << (10 * unit));
+    const auto number = parsed_number<double>(text);
+    if (!number) return std::nullopt;
+    const double bytes = *number * static_cast<double>(std::uint64_t{1024} << (10 * unit));
     if (!(bytes >= static_cast<double>(kMiB) && bytes < 0x1p60)) return std::nullopt;
     return static_cast<std::uint64_t>(bytes);
 }

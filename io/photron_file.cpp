@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -19,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/parsed_number.h"
 #include "io/footage_files.h"
 #include "io/pixel_unpack.h"
 
@@ -125,12 +125,11 @@ std::string_view Header::text(const Key& key) const {
 
 std::uint32_t Header::count(const Key& key) const {
     const std::string_view value = text(key);
-    std::uint32_t number = 0;
-    const auto [last, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (error != std::errc() || last != value.data() + value.size() || number == 0)
+    const auto number = parsed_number<std::uint32_t>(value);
+    if (!number || *number == 0)
         throw InputError(name_,
                          fmt::format("\"{}\" is \"{}\", no number above 0", key.name, value));
-    return number;
+    return *number;
 }
 
 std::optional<double> Header::number(const Key& key) const {
@@ -138,15 +137,10 @@ std::optional<double> Header::number(const Key& key) const {
     if (found == values_.end()) return {};
     const std::string_view value = found->second;
     const auto slash = std::min(value.find('/'), value.size());
-    const auto parsed = [](std::string_view part) {
-        double number = 0;
-        const char* const end = part.data() + part.size();
-        const auto [last, error] = std::from_chars(part.data(), end, number);
-        return error == std::errc() && last == end ? number : 0.0;
-    };
-    const double numerator = parsed(value.substr(0, slash));
+    const auto part = [](std::string_view text) { return parsed_number<double>(text).value_or(0); };
+    const double numerator = part(value.substr(0, slash));
     const double result =
-        slash == value.size() ? numerator : numerator / parsed(value.substr(slash + 1));
+        slash == value.size() ? numerator : numerator / part(value.substr(slash + 1));
     return std::isfinite(result) && result > 0 ? std::optional(result) : std::nullopt;
 }
 

@@ -179,4 +179,8 @@ std::vector<VideoQuality> QualityMeter::frame_qualities() const {
     return qualities;
 }
 
+VideoQuality QualityMeter::last_quality() const {
+    return quality_of(std::span(frames_).last(1));
+}
+
 }  // namespace stipple

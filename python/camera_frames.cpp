@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <chrono>
@@ -22,8 +23,9 @@ constexpr std::chrono::milliseconds kPatience{100};
 class CameraFrames {
   public:
     CameraFrames(CameraTask task, std::size_t queue_frames) : task_(std::move(task)) {
-        if (queue_frames < 1 || queue_frames > 4096)
-            throw InputError("queue", "give 1 to 4096 frames");
+        constexpr std::size_t kMax = LiveCameraOptions::kMaxWaitingFrames;
+        if (queue_frames < 1 || queue_frames > kMax)
+            throw InputError("queue", fmt::format("{} is outside 1..{}", queue_frames, kMax));
         const py::gil_scoped_release released;
         LiveCameraOptions options{.session = task_.session,
                                   .waiting_frames = queue_frames,

@@ -17,10 +17,12 @@
 #include "python/camera.h"
 #include "python/emulation.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "readout/emulation_figures.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -41,12 +43,8 @@ struct LiveTask {
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);
-    const ReadoutStats& stats = recorder.stats();
-    const auto& hz = live.slots_per_s;
-    dict["slots_per_second"] = hz;
-    dict["samples_per_second"] = hz ? std::optional(*hz * static_cast<double>(stats.samples) /
-                                                    static_cast<double>(stats.slots))
-                                    : std::nullopt;
+    dict.attr("update")(
+        dict_of([&](const auto& add) { visit_speed_figures(recorder, live.slots_per_s, add); }));
     py::list late;
     for (const LateSlot& slot : live.late)
         late.append(py::dict("slot"_a = slot.slot, "arrival_monotonic_ns"_a = slot.arrival_ns,

@@ -19,16 +19,8 @@ namespace stipple {
 
 void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
-        .add_choice<std::optional<Transfer>>(
-            "--transfer", options.transfer,
-            {{"linear", Transfer::kLinear},
-             {"gamma22", Transfer::kGamma22},
-             {"srgb", Transfer::kSrgb},
-             {"bt709", Transfer::kBt709},
-             {"pq", Transfer::kPq},
-             {"hlg", Transfer::kHlg},
-             {"auto", Transfer::kAuto}},
-            "how the numbers of " + footage + " map to light; auto: as it declares")
+        .add_choice("--transfer", options.transfer, kTransfers,
+                    "how the numbers of " + footage + " map to light; auto: as it declares")
         .default_text("linear, with a warning if they look gamma-coded")
         .type_name("NAME");
     add_raw_argument(command, options.raw, footage);

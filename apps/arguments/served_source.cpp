@@ -19,8 +19,6 @@
 namespace stipple {
 namespace {
 
-constexpr double kFramesPerS = 25;
-
 void say_warnings_of_footage(const ServedSourceChoice& choice) {
     FootageReader reader(choice.path, choice.reading);
     for (const std::string& warning : reader.take_warnings()) say_warning(warning);
@@ -35,8 +33,9 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
                 "--format " + choice.format,
                 "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
-    return std::make_unique<FootageFrames>(choice.path, choice.reading,
-                                           choice.frames_per_s.value_or(kFramesPerS), format);
+    return std::make_unique<FootageFrames>(
+        choice.path, choice.reading, choice.frames_per_s.value_or(ServedImage::kUsualFramesPerS),
+        format);
 }
 
 }  // namespace
@@ -53,8 +52,9 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
                     "send frames as they are, or the coded samples of a sensor")
         .type_name("MODE");
     command.add_option("--fps", source.frames_per_s, "frames or slots per second")
-        .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}", kFramesPerS))
-        .check(number_check(0.01, 100000.0))
+        .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}",
+                                  ServedImage::kUsualFramesPerS))
+        .check(number_check(ServedImage::kMinFramesPerS, ServedImage::kMaxFramesPerS))
         .type_name("N");
     command.add_option("--format", source.format, "pixel format of footage, in mode frames")
         .default_text("Mono8, RGB8 for colour")

@@ -13,15 +13,10 @@ namespace stipple {
 
 nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                       std::optional<double> slots_per_s) {
-    const ReadoutStats& stats = recorder.stats();
-    auto json = json_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
-    json["slots_per_second"] = nullptr;
-    json["samples_per_second"] = nullptr;
-    if (slots_per_s) {
-        json["slots_per_second"] = *slots_per_s;
-        json["samples_per_second"] =
-            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
-    }
+    auto json = json_of([&](const auto& add) {
+        visit_emulation_figures(recorder, add);
+        visit_speed_figures(recorder, slots_per_s, add);
+    });
     if (const ReadoutCost* cost = recorder.readout_cost())
         json["readout"] = readout_json(*cost, recorder.light_throughput());
     return json;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/emulation_text.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
 #include "apps/report/session_report.h"
 
@@ -12,10 +13,9 @@ namespace stipple {
 
 nlohmann::ordered_json live_json(const LiveReport& report) {
     const LiveEmulation& live = report.emulation;
-    const auto hz = live.rate.hz();
     nlohmann::ordered_json json = emulation_json(report.recorder, live.slots_per_s);
     json["frames"] = live.latencies.count();
-    json["frames_hz"] = hz ? nlohmann::ordered_json(*hz) : nullptr;
+    json["frames_hz"] = or_null(live.rate.hz());
     json["slots_hz"] = 1e6 / report.recorder.setup().params.slot_us;
     json["incomplete"] = live.totals.incomplete;
     json["repeated"] = live.totals.repeated;

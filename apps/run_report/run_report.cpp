@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "apps/report/json_figures.h"
 #include "apps/report/stream_text.h"
 #include "apps/run_report/plane_code.h"
 #include "apps/run_report/report_page.h"
@@ -78,7 +79,7 @@ ordered_json RunReport::Run::json() const {
     const StreamHeader& header = reader.header();
     const std::string command = command_of(header.provenance);
     ordered_json json{{"name", name}, {"stream", stream_json(header, reader.report())}};
-    json["command"] = command.empty() ? ordered_json() : ordered_json(command);
+    json["command"] = or_null(command);
     json["filter"] = filter_json(header.cfa);
     json["samples"] = samples.json();
     json["loads"] = loads.json();

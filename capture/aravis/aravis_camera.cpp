@@ -3,13 +3,12 @@
 #include <arv.h>
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "capture/aravis/aravis_device.h"
 #include "capture/aravis/aravis_stream.h"
 #include "capture/recording/recording_format.h"
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace {
@@ -66,12 +65,11 @@ FrameLayout layout_of(const AravisDevice& device) {
 constexpr std::string_view kPacketSize = "GevSCPSPacketSize";
 
 int packet_bytes_of(const std::string& address, const std::string& text) {
-    int bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error != std::errc() || end != text.data() + text.size() || bytes < 220 || bytes > 65500)
+    const auto bytes = parsed_number<int>(text);
+    if (!bytes || *bytes < 220 || *bytes > 65500)
         throw InputError(fmt::format("{}: {}", address, kPacketSize),
                          fmt::format("\"{}\" is no number from 220 to 65500", text));
-    return bytes;
+    return *bytes;
 }
 
 class AravisCamera : public Camera {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
+#include "core/parsed_number.h"
 #include "core/suggestion.h"
 
 namespace stipple {
@@ -79,14 +79,6 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
 ArvDevice* open_device(const std::string& address) {
     const std::string rest = address.substr(address.find(':') + 1);
     return address.starts_with("gige:") ? open_gige(address, rest) : open_usb(address, rest);
-}
-
-template <typename Number>
-std::optional<Number> parsed(const std::string& text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
 }
 
 std::string choices_of(ArvDevice* device, const char* feature) {
@@ -210,12 +202,12 @@ std::optional<std::string> AravisDevice::read(const std::string& feature) const 
 
 std::optional<double> AravisDevice::read_number(const std::string& feature) const {
     const auto text = read(feature);
-    return text ? parsed<double>(*text) : std::nullopt;
+    return text ? parsed_number<double>(*text) : std::nullopt;
 }
 
 void AravisDevice::Impl::set_number(const std::string& where, const NumberFeature& feature,
                                     const std::string& value) const {
-    const auto number = parsed<double>(value);
+    const auto number = parsed_number<double>(value);
     if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
     // Aravis sets some to the nearest value that can be.
     double least = 0, most = 0;
@@ -247,7 +239,7 @@ void AravisDevice::Impl::set_choice(const std::string& where, const char* featur
 
 void AravisDevice::Impl::set_integer(const std::string& where, const char* feature,
                                      const std::string& value) const {
-    const auto number = parsed<gint64>(value);
+    const auto number = parsed_number<gint64>(value);
     if (!number) throw InputError(where, fmt::format("needs an integer, but is \"{}\"", value));
     GlibError error;
     arv_device_set_integer_feature_value(device, feature, *number, error.slot());
@@ -274,7 +266,7 @@ void AravisDevice::Impl::set_other(const std::string& where, const char* feature
     } else if (ARV_IS_GC_COMMAND(node)) {
         arv_device_execute_command(device, feature, error.slot());
     } else if (ARV_IS_GC_FLOAT(node)) {
-        const auto number = parsed<double>(value);
+        const auto number = parsed_number<double>(value);
         if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
         arv_device_set_float_feature_value(device, feature, *number, error.slot());
     } else {

@@ -153,7 +153,8 @@ GvcpStatus GigeDevice::check_write(std::uint32_t address, std::uint32_t value) c
             return when(value >= 1);
         case gige::kFrameRate: {
             const float rate = std::bit_cast<float>(value);
-            return when(rate >= 0.01F && rate <= static_cast<float>(image_.frames_per_s));
+            return when(rate >= static_cast<float>(ServedImage::kMinFramesPerS) &&
+                        rate <= static_cast<float>(image_.frames_per_s));
         }
         case gige::kChunkModeActive:
             return when(value <= 1);

@@ -11,10 +11,6 @@
 namespace stipple {
 namespace {
 
-constexpr double kFramesPerS = 25;
-constexpr double kMinFramesPerS = 0.01;
-constexpr double kMaxFramesPerS = 100000;
-
 void check_format(const FrameLayout& layout, const std::string& where) {
     const PixelFormat& format = *layout.format;
     if (format.pfnc == 0)
@@ -56,12 +52,14 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
 /// By the frame that follows the first.
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
-    if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesPerS;
+    if (first.stamp_source == StampSource::kNone || !read_complete(next))
+        return ServedImage::kUsualFramesPerS;
     FrameRate frames;
     frames.add(first);
     frames.add(next.record);
     const double rate = frames.hz().value_or(0);
-    return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesPerS;
+    const bool usable = rate >= ServedImage::kMinFramesPerS && rate <= ServedImage::kMaxFramesPerS;
+    return usable ? rate : ServedImage::kUsualFramesPerS;
 }
 
 bool RecordingFrames::read_complete(CapturedFrame& frame) {

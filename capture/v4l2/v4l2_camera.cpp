@@ -214,8 +214,11 @@ V4l2Memory memory_setting(const std::string& address, const CameraSettings& sett
 
 std::unique_ptr<Camera> open_v4l2_camera(const std::string& address, const CameraSettings& settings,
                                          const CameraBuffers& buffers) {
-    if (buffers.frames < 2 || buffers.frames > 1024)
-        throw InputError(address, fmt::format("{} frame buffers: take 2 to 1024", buffers.frames));
+    constexpr int kMin = CameraBuffers::kMinFrames;
+    constexpr int kMax = CameraBuffers::kMaxFrames;
+    if (buffers.frames < kMin || buffers.frames > kMax)
+        throw InputError(
+            address, fmt::format("{} frame buffers: take {} to {}", buffers.frames, kMin, kMax));
     return std::make_unique<V4l2Camera>(v4l2_node_path(address), settings,
                                         memory_setting(address, settings), buffers.frames);
 }

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/parsed_number.h"
 
 namespace stipple::emva1288 {
 namespace {
@@ -55,14 +55,11 @@ class Parser {
     double number(std::istringstream& words, std::string_view what, double least, double most) {
         std::string word;
         if (!(words >> word)) fail(fmt::format("{} is missing", what));
-        double value = 0;
-        const char* const end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(word.data(), end, value);
-        if (error != std::errc() || stop != end)
-            fail(fmt::format("{} \"{}\" is not a number", what, word));
-        if (!(value >= least && value <= most))
+        const auto value = parsed_number<double>(word);
+        if (!value) fail(fmt::format("{} \"{}\" is not a number", what, word));
+        if (!(*value >= least && *value <= most))
             fail(fmt::format("{} {} is outside {}..{}", what, word, least, most));
-        return value;
+        return *value;
     }
 
     int integer(std::istringstream& words, std::string_view what, double most) {

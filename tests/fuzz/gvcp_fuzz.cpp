@@ -2,18 +2,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
 #include "capture/serve/gige_device.h"
 #include "capture/serve/gvcp_codec.h"
+#include "tests/fuzz/require.h"
 
 namespace stipple {
 namespace {
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 ServedImage image() {
     ServedImage image;

@@ -6,7 +6,7 @@
 #include "io/dn_image.h"
 #include "io/footage_reader.h"
 #include "io/image_file.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 

@@ -7,6 +7,7 @@
 #include "io/footage_reader.h"
 #include "tests/io/npy_bytes.h"
 #include "tests/io/test_images.h"
+#include "tests/support/byte_edits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -105,11 +106,9 @@ TEST_F(FootageErrorsTest, NamesTheTruncatedImageWhateverItsLength) {
 
 TEST_F(FootageErrorsTest, SaysWhereAPngIsDamaged) {
     write_flat(folder_ / "f.png", 4, 4, CV_8UC1, 100);
-    std::string png = read_text(folder_ / "f.png");
+    const std::string png = read_text(folder_ / "f.png");
     for (std::size_t i = 0; i < png.size(); ++i) {
-        std::string damaged = png;
-        damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
-        write_text(folder_ / "f.png", damaged);
+        write_text(folder_ / "f.png", flipped(png, i));
         expect_parts(error_of(folder_ / "f.png"), {i < 8 ? "is not a PNG" : "f.png: offset "});
     }
 }

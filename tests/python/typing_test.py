@@ -36,9 +36,7 @@ with stipple.capture.frames("replay:a.npy") as frames:
 class TypingTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.cache = folder.name
+        cls.cache = cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_"))
 
     def mypy(self, *arguments):
         return subprocess.run(["mypy", "--strict", "--python-executable", sys.executable, "--cache-dir", self.cache,

@@ -6,6 +6,7 @@
 
 #include "stream/slot_index.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/byte_edits.h"
 
 namespace stipple {
 namespace {
@@ -96,28 +97,19 @@ std::vector<GoldenCase> damages() {
     const StreamHeader header = varied_header({4, 4, 1});
     const StreamBytes whole = bytes_of(header, random_packets(header, 3, 4));
     const auto& begins = whole.begins;
-    const auto flipped = [&](std::size_t at) {
-        std::string bytes = whole.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        return bytes;
-    };
-    const auto without = [&](std::size_t begin, std::size_t end) {
-        std::string bytes = whole.bytes;
-        return bytes.erase(begin, end - begin);
-    };
     std::string twice = whole.bytes;
     twice.insert(begins[2], whole.bytes.substr(begins[1], begins[2] - begins[1]));
     return {{"interrupted", whole.bytes.substr(0, begins[3])},
             {"cut_in_packet", whole.bytes.substr(0, begins[3] - 1)},
             {"cut_in_header", whole.bytes.substr(0, begins[0] - 1)},
-            {"damaged_header", flipped(40)},
-            {"damaged_packet_header", flipped(begins[1] + 8)},
-            {"damaged_payload", flipped(begins[1] + kPacketHeaderBytes)},
-            {"damaged_index", flipped(begins[3] + kPacketHeaderBytes)},
-            {"damaged_end_marker", flipped(begins[4])},
-            {"missing_packet", without(begins[1], begins[2])},
-            {"missing_bytes", without(begins[1] + 10, begins[1] + 20)},
-            {"missing_end_of_last_packet", without(begins[3] - 3, begins[3])},
+            {"damaged_header", flipped(whole.bytes, 40)},
+            {"damaged_packet_header", flipped(whole.bytes, begins[1] + 8)},
+            {"damaged_payload", flipped(whole.bytes, begins[1] + kPacketHeaderBytes)},
+            {"damaged_index", flipped(whole.bytes, begins[3] + kPacketHeaderBytes)},
+            {"damaged_end_marker", flipped(whole.bytes, begins[4])},
+            {"missing_packet", without(whole.bytes, begins[1], begins[2])},
+            {"missing_bytes", without(whole.bytes, begins[1] + 10, begins[1] + 20)},
+            {"missing_end_of_last_packet", without(whole.bytes, begins[3] - 3, begins[3])},
             {"packet_twice", twice},
             {"torn", torn()},
             {"samples_exchanged", samples_exchanged()},
@@ -131,24 +123,18 @@ std::vector<GoldenCase> parts_of_slots() {
     auto packets = random_packets(header, 3, 2);
     const StreamBytes whole = bytes_of(header, packets);
     packets.pop_back();
-    std::string without_last = whole.bytes;
-    without_last.erase(whole.begins[8], whole.begins[9] - whole.begins[8]);
-    std::string two_gaps = whole.bytes;
-    two_gaps.erase(whole.begins[2], whole.begins[8] - whole.begins[2]);
+    std::string two_gaps = without(whole.bytes, whole.begins[2], whole.begins[8]);
     two_gaps.erase(whole.begins[0], whole.begins[1] - whole.begins[0]);
-    return {{"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
-            {"partial_last_slot_with_index", without_last},
-            {"two_gaps_in_a_slot", two_gaps},
-            {"stopped_within_slot", bytes_of(header, packets).bytes}};
+    return {
+        {"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
+        {"partial_last_slot_with_index", without(whole.bytes, whole.begins[8], whole.begins[9])},
+        {"two_gaps_in_a_slot", two_gaps},
+        {"stopped_within_slot", bytes_of(header, packets).bytes}};
 }
 
 PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
     std::string copy = bytes.substr(at, kPacketHeaderBytes);
     return decode_packet_header(as_numbers(copy));
-}
-
-void flip(std::string& bytes, std::size_t at) {
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
 }
 
 /// Good CRCs for packet `i` of `whole`, which was changed in `bytes`.
@@ -165,18 +151,15 @@ std::string sealed(std::string bytes, const StreamBytes& whole, std::size_t i) {
 std::vector<GoldenCase> wrong_offsets(const StreamBytes& whole) {
     const auto [index, marker] = std::pair{whole.begins[3], whole.begins[4]};
     const std::size_t first_offset = index + kPacketHeaderBytes + 8;
-    std::string entry = whole.bytes;
-    flip(entry, first_offset);
     std::string order = whole.bytes;
     std::swap_ranges(&order[first_offset], &order[first_offset + 8],
                      &order[first_offset + kIndexEntryBytes]);
-    order = sealed(order, whole, 3);
-    flip(order, whole.begins[0] + kPacketHeaderBytes);
+    order = flipped(sealed(order, whole, 3), whole.begins[0] + kPacketHeaderBytes);
     std::string offset = whole.bytes;
     const auto numbers = as_numbers(offset);
     store(&numbers[marker + 4], std::uint64_t{whole.begins[2]});
     store(&numbers[marker + 16], crc32c(numbers.subspan(marker, 16), whole.seed()));
-    return {{"wrong_index_entry", sealed(entry, whole, 3)},
+    return {{"wrong_index_entry", sealed(flipped(whole.bytes, first_offset), whole, 3)},
             {"index_out_of_order_after_damage", order},
             {"wrong_end_marker", offset}};
 }
@@ -194,15 +177,13 @@ std::vector<GoldenCase> rules() {
     fields.reserved = 1;
     reserved.replace(begins[1], begins[2] - begins[1],
                      framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
-    std::string unused = whole.bytes;
-    flip(unused, begins[2] - 1);
     std::string after_index = whole.bytes;
     after_index.insert(begins[4], packet(2));
-    std::string no_start = whole.bytes.substr(0, begins[3] + 10);
-    flip(no_start, begins[2] + kPacketHeaderBytes);
+    const std::string no_start =
+        flipped(whole.bytes.substr(0, begins[3] + 10), begins[2] + kPacketHeaderBytes);
     std::vector<GoldenCase> cases{
         {"reserved_not_zero", reserved},
-        {"unused_bits_not_zero", sealed(unused, whole, 1)},
+        {"unused_bits_not_zero", sealed(flipped(whole.bytes, begins[2] - 1), whole, 1)},
         {"packet_after_index", after_index},
         {"no_start_after_damage", no_start},
         {"cut_in_end_marker", whole.bytes.substr(0, whole.bytes.size() - 1)}};

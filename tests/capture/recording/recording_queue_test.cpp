@@ -2,16 +2,15 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 #include <thread>
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -114,15 +113,11 @@ TEST(RecordingQueueTest, ADiskThatStandsStillCostsFramesThatAreCounted) {
 
 TEST(RecordingQueueTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
     const TemporaryFolder folder;
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old{};
-    getrlimit(RLIMIT_FSIZE, &old);
     std::string message;
     {
         RecordingWriter writer(folder / "a", test_session(), "clip.strec");
         RecordingQueue queue(writer, {.bytes = std::size_t{1} << 24U});
-        const rlimit limit{100'000, old.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
+        const FileSizeLimit full_disk(100'000);
         for (std::uint64_t i = 0; i < 20; ++i) queue.push(test_frame(i, "Mono8", 200, 100));
         message = message_of<DeviceError>([&] {
             queue.drain();
@@ -133,8 +128,6 @@ TEST(RecordingQueueTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
         EXPECT_EQ(writer.totals().frames + queue.dropped(), 21U);
         writer.finish({.reason = "disk full"});  // 4 frames of 20 192 bytes leave room for it
     }
-    setrlimit(RLIMIT_FSIZE, &old);
-    std::signal(SIGXFSZ, old_handler);
     expect_parts(message, {"clip.strec", "File too large"});
     RecordingReader reader(folder / "a");
     EXPECT_EQ(read_frames(reader).size(), 4U);
