@@ -80,7 +80,7 @@ LivePreviewOptions show_in(const std::string& file) {
                 [](const std::string& failure) {
                     say_error("no preview: {}; the recording goes on", failure);
                 },
-            .goes_on = [] { return stop_signal() == 0; }};
+            .keep_going = [] { return stop_signal() == 0; }};
 }
 
 void say_slow_preview() {

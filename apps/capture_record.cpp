@@ -49,7 +49,7 @@ std::filesystem::path file_for(const std::string& output) {
 }
 
 nlohmann::ordered_json recording_json(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
+    const auto& hz = recording.frames_hz;
     return {{"file", file},
             {"frames", recording.end.frames},
             {"incomplete", recording.end.incomplete},
@@ -59,11 +59,11 @@ nlohmann::ordered_json recording_json(const std::string& file, const CameraRecor
             {"transport", transport_json(recording.transport)},
             {"payload_bytes", recording.end.payload_bytes},
             {"seconds", recording.seconds},
-            {"frames_per_s", hz ? nlohmann::ordered_json(*hz) : nullptr}};
+            {"frames_hz", hz ? nlohmann::ordered_json(*hz) : nullptr}};
 }
 
 std::string recording_text(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
+    const auto& hz = recording.frames_hz;
     std::string text =
         fmt::format("{}: {}{}, {:.1f} MB", file, counted(recording.end.frames, "frame"),
                     hz ? fmt::format(", {:.1f} per second", *hz) : "",

@@ -46,10 +46,10 @@ struct CompareOptions {
     const bool same_size = result.rows == wanted.rows && result.cols == wanted.cols;
     throw InputError(
         options.result,
-        fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+        fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
                     "reference \"{}\" has {} x {} x {}{}",
-                    result.rows, result.cols, result.planes, options.reference, wanted.rows,
-                    wanted.cols, wanted.planes,
+                    result.cols, result.rows, result.planes, options.reference, wanted.cols,
+                    wanted.rows, wanted.planes,
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 

@@ -213,8 +213,9 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
     if (end == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
     if (!undamaged(found))
-        throw InputError(arguments.stream, fmt::format("{}{}\n  the output is made of what is left",
-                                                       damage_text(found), schedule_hint(found)));
+        throw InputError(arguments.stream,
+                         fmt::format("{}{}\n  the output contains the undamaged part",
+                                     damage_text(found), schedule_hint(found)));
 }
 
 }  // namespace stipple

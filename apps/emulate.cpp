@@ -44,15 +44,16 @@ std::string recording_faults(const std::string& file, const RecordingFootage& fo
     auto faults = footage.recording().faults();
     if (footage.missing_frames() > 0)
         faults.push_back(
-            fmt::format("lacks {}, missing or incomplete (the one before stands in for {})",
-                        counted(footage.missing_frames(), "frame"), footage.held_slots()));
+            fmt::format("has {} ({} replaced by the previous frame)",
+                        counted(footage.missing_frames(), "missing or incomplete frame"),
+                        footage.held_slots()));
     if (faults.empty()) return {};
     return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
 }
 
 void say_rate_warnings(const EmulateOptions& options, const ReadAhead& footage,
                        const SensorParams& sensor) {
-    const auto hz = footage.video_hz();
+    const auto hz = footage.frames_hz();
     if (hz && options.resample.method.empty())
         say_warning(video_rate_warning(options.footage, *hz, sensor));
     if (const auto exposure_us = footage.exposure_us())
@@ -98,9 +99,9 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         if (options.resample.method.empty())
             say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
     }
-    const double slots_per_s = static_cast<double>(progress.done()) / progress.seconds();
-    json.write(emulation_json(recorder, slots_per_s));
-    run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_s)));
+    const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
+    json.write(emulation_json(recorder, slots_per_second));
+    run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_second)));
 }
 
 }  // namespace
@@ -126,7 +127,8 @@ void add_emulate(Command& app, Action& action) {
     add_resample_arguments(command, options->resample, options->reading);
     add_max_value(command, options->reading.max_value);
     command
-        .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
+        .add_option("--truth", options->truth,
+                    "write the reference light, in the formats of \"decode\"")
         .type_name("OUT")
         .output(kVideoName);
     add_waveform_arguments(command, options->waveform);

@@ -86,16 +86,16 @@ FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
     if (footage.shape() != shape)
         throw InputError(
             arguments.truth,
-            fmt::format("has frames of {} x {} x {} (rows x columns x planes), the runs "
+            fmt::format("has frames of {} x {} x {} (width x height x planes), the runs "
                         "have {} x {} x {}",
-                        footage.shape().rows, footage.shape().cols, footage.shape().planes,
-                        shape.rows, shape.cols, shape.planes));
-    const auto most = static_cast<std::size_t>(arguments.page.slots);
-    check_memory(2 * most * shape.sites() * sizeof(float), arguments.truth, "the truth of a report",
-                 input_bytes(arguments.truth));
+                        footage.shape().cols, footage.shape().rows, footage.shape().planes,
+                        shape.cols, shape.rows, shape.planes));
+    const auto max_slots = static_cast<std::size_t>(arguments.page.slots);
+    check_memory(2 * max_slots * shape.sites() * sizeof(float), arguments.truth,
+                 "the truth of a report", input_bytes(arguments.truth));
     std::vector<float> light;
     std::size_t slots = 0;
-    for (auto frame = footage.next(); !frame.empty() && slots < most; frame = footage.next()) {
+    for (auto frame = footage.next(); !frame.empty() && slots < max_slots; frame = footage.next()) {
         throw_if_stopped();
         light.insert(light.end(), frame.begin(), frame.end());
         ++slots;
@@ -196,7 +196,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
                         counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
                         1e-6 * static_cast<double>(page.size())));
     if (const std::string damage = report.damage(); !damage.empty())
-        throw InputError(arguments.output, "shows what is left of damaged streams: " + damage);
+        throw InputError(arguments.output,
+                         "shows only the undamaged part of damaged streams: " + damage);
 }
 
 void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {
@@ -231,7 +232,7 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
 }  // namespace
 
 void add_report(Command& app, Action& action) {
-    Command command = app.add_command("report", "A run as an HTML page to look into");
+    Command command = app.add_command("report", "A run as an interactive HTML page");
     const auto options = std::make_shared<ReportArguments>();
     command.add_option("RUN", options->runs, "sample streams, or folders of them")
         .required()

@@ -6,7 +6,7 @@
 
 namespace stipple {
 
-/// An input of the user (a file, an option, a key) is not usable. `what()` is "place: problem".
+/// An input of the user (a file, an option, a key) is not usable. `what()` is "where: problem".
 /// `where` names the file and, if known, the key or byte offset; `problem` names the fault and the
 /// remedy. Exit code 1.
 class InputError : public std::runtime_error {

@@ -39,18 +39,18 @@ class FootageReader {
     FootageReader& operator=(FootageReader&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
-    /// Number of frames where the source tells; a video file may not.
+    /// Number of frames, if the source declares it; a video file may not.
     [[nodiscard]] std::optional<int> slots() const;
 
-    /// Frames a second at which a video plays or a camera took them, if the source tells.
-    [[nodiscard]] std::optional<double> video_hz() const;
-    /// Exposure time of a frame in microseconds, if the source tells.
+    /// Frame rate at which a video plays or a camera took the frames, if the source declares it.
+    [[nodiscard]] std::optional<double> frames_hz() const;
+    /// Exposure time of a frame in microseconds, if the source declares it.
     [[nodiscard]] std::optional<double> exposure_us() const;
-    /// Whose mosaic the frames are.
+    /// Colour filter array of the frames; kNone: they are no mosaic.
     [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.
     [[nodiscard]] bool gamma_coded() const;
-    /// All that the source tells of its numbers and of the camera.
+    /// What the source declares about its numbers and the camera.
     [[nodiscard]] const SourceTraits& traits() const;
     /// What the source is: "PNG images", "video", ".cine file".
     [[nodiscard]] std::string kind() const;

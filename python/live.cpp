@@ -42,7 +42,7 @@ py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);
     const ReadoutStats& stats = recorder.stats();
-    const auto& hz = live.slots_per_s;
+    const auto& hz = live.slots_per_second;
     dict["slots_per_second"] = hz;
     dict["samples_per_second"] = hz ? std::optional(*hz * static_cast<double>(stats.samples) /
                                                     static_cast<double>(stats.slots))

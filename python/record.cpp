@@ -44,7 +44,7 @@ py::dict recording_dict(const std::string& file, const CameraRecording& recordin
         "lost"_a = lost_dict(recording.session), "outages"_a = recording.session.outages,
         "transport"_a = transport_dict(recording.transport),
         "payload_bytes"_a = recording.end.payload_bytes, "seconds"_a = recording.seconds,
-        "frames_per_s"_a = recording.frames_per_s);
+        "frames_hz"_a = recording.frames_hz);
 }
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,

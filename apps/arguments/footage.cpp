@@ -26,7 +26,7 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
              {"pq", Transfer::kPq},
              {"hlg", Transfer::kHlg},
              {"auto", Transfer::kAuto}},
-            "how the numbers of " + footage + " map to light; auto: as it declares")
+            "transfer function of " + footage + "; auto: the declared one")
         .default_text("linear, with a warning if they look gamma-coded")
         .type_name("NAME");
     add_raw_argument(command, options.raw, footage);
@@ -65,7 +65,7 @@ void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOpt
         .default_text("each frame is a slot")
         .one_of({"hold", "blend", "flow"})
         .type_name("METHOD");
-    command.add_option("--footage-hz", options.frames_hz, "frame rate of the footage")
+    command.add_option("--frames-hz", options.frames_hz, "frame rate of the footage")
         .default_text("that in its file")
         .check(number_check(kMinHz, kMaxHz))
         .type_name("HZ");
@@ -78,9 +78,9 @@ void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOpt
 SlotSource slots_of(ReadAhead& footage, const std::string& source, const ResampleChoice& choice,
                     const FootageOptions& options, double slot_us) {
     if (choice.method.empty()) return {[&footage] { return footage.next(); }, footage.slots()};
-    const auto hz = options.frames_hz ? options.frames_hz : footage.video_hz();
+    const auto hz = options.frames_hz ? options.frames_hz : footage.frames_hz();
     if (!hz)
-        throw InputError(source, "does not tell its frame rate; --resample needs --footage-hz");
+        throw InputError(source, "does not declare its frame rate; --resample needs --frames-hz");
     const bool flow = choice.method == "flow";
     if (flow && footage.filter() != ColourFilter::kNone)
         throw InputError(source,

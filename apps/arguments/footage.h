@@ -27,7 +27,7 @@ struct ResampleChoice {
     std::string method;  ///< hold, blend, flow; empty: each frame is a slot
 };
 
-/// `--resample`, `--footage-hz` and `--scale`.
+/// `--resample`, `--frames-hz` and `--scale`.
 void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOptions& options);
 
 /// Slots of the sensor one after the other, empty at the end.

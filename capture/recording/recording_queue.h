@@ -13,7 +13,7 @@ namespace stipple {
 
 /// Queue between a camera and a disk that may be slower for a while; a thread writes the frames. A
 /// full queue drops frames and counts them. The caller reports each drop to
-/// CaptureSession::count_own_drop, which notes it in the record of the next frame.
+/// CaptureSession::count_queue_drop, which notes it in the record of the next frame.
 class RecordingQueue {
   public:
     /// `writer` must outlive the queue; nobody else uses it before `drain` has returned. The queue

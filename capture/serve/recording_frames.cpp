@@ -10,7 +10,7 @@
 namespace stipple {
 namespace {
 
-constexpr double kFramesPerS = 25;
+constexpr double kFramesHz = 25;
 constexpr double kMinFramesPerS = 0.01;
 constexpr double kMaxFramesPerS = 100000;
 
@@ -38,8 +38,7 @@ void remove_padding(std::vector<std::uint8_t>& payload, const FrameLayout& layou
 
 }  // namespace
 
-RecordingFrames::RecordingFrames(const std::filesystem::path& file,
-                                 std::optional<double> frames_per_s)
+RecordingFrames::RecordingFrames(const std::filesystem::path& file, std::optional<double> frames_hz)
     : file_(file), reader_(file) {
     CapturedFrame first;
     if (!read_complete(first)) throw InputError(file.string(), "holds no complete frame");
@@ -49,17 +48,17 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
     image_.width = layout_.width;
     image_.height = layout_.height;
     image_.formats = {layout_.format};
-    image_.frames_per_s = frames_per_s ? *frames_per_s : recorded_rate(first.record);
+    image_.frames_hz = frames_hz ? *frames_hz : recorded_rate(first.record);
 }
 
 /// By the frame that follows the first.
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
-    if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesPerS;
+    if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesHz;
     const auto frames = static_cast<double>(next.record.id - first.id);
     const auto elapsed_s = static_cast<double>(next.record.device_ns - first.device_ns) * 1e-9;
     const double rate = frames / elapsed_s;
-    return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesPerS;
+    return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesHz;
 }
 
 bool RecordingFrames::read_complete(CapturedFrame& frame) {
