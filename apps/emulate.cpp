@@ -19,8 +19,10 @@
 #include "apps/subcommands.h"
 #include "capture/rate_warning.h"
 #include "capture/recording/read_ahead.h"
+#include "capture/recording/resampled_footage.h"
 #include "core/error.h"
 #include "core/joined.h"
+#include "decoder/motion/late_opencv.h"
 #include "io/frame_writer.h"
 #include "readout/footage_origin.h"
 #include "readout/timing/waveform_file.h"
@@ -34,7 +36,7 @@ struct EmulateOptions {
     std::string truth;  ///< empty: none
     WaveformOptions waveform;
     FootageOptions reading;
-    ResampleChoice resample;
+    std::optional<Resampling> resampling;  ///< none: each frame is a slot
     SensorChoice sensor;
 };
 
@@ -54,8 +56,7 @@ std::string recording_faults(const std::string& file, const RecordingFootage& fo
 void say_rate_warnings(const EmulateOptions& options, const ReadAhead& footage,
                        const SensorParams& sensor) {
     const auto hz = footage.frames_hz();
-    if (hz && options.resample.method.empty())
-        say_warning(video_rate_warning(options.footage, *hz, sensor));
+    if (hz && !options.resampling) say_warning(video_rate_warning(options.footage, *hz, sensor));
     if (const auto exposure_us = footage.exposure_us())
         say_warning(exposure_warning(options.footage, *exposure_us, sensor));
 }
@@ -65,8 +66,12 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
     say_rate_warnings(options, footage, setup.params);
-    const SlotSource slots =
-        slots_of(footage, options.footage, options.resample, options.reading, setup.params.slot_us);
+    ResampledFootage slots(footage, options.footage,
+                           {.method = options.resampling,
+                            .frames_hz = options.reading.frames_hz,
+                            .slot_us = setup.params.slot_us,
+                            .flow = dis_flow,
+                            .min_flow_side = kMinDisFlowSide});
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     std::optional<FrameWriter> truth;
@@ -75,9 +80,10 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         say_leftover(options.truth);
     }
     FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
-    origin.resample = options.resample.method;
+    if (options.resampling)
+        origin.resample = kResamplingNames[static_cast<std::size_t>(*options.resampling)];
     StreamRecorder recorder = open_stream_output(options.output, run, setup, origin);
-    Progress progress(run, "emulating", slots.slots);
+    Progress progress(run, "emulating", slots.slots());
     auto frame = slots.next();
     for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
         recorder.expose(frame);
@@ -96,7 +102,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     if (frame.empty() && footage.recording() != nullptr) {
         const RecordingFootage& frames = *footage.recording();
         say_warning(recording_faults(options.footage, frames));
-        if (options.resample.method.empty())
+        if (!options.resampling)
             say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
     }
     const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
@@ -124,7 +130,7 @@ void add_emulate(Command& app, Action& action) {
     add_settings(command, sensor_sections(options->sensor),
                  "change a key of the sensor or of the schedule");
     add_footage_arguments(command, options->reading);
-    add_resample_arguments(command, options->resample, options->reading);
+    add_resample_arguments(command, options->resampling, options->reading);
     add_max_value(command, options->reading.max_value);
     command
         .add_option("--truth", options->truth,

@@ -71,6 +71,7 @@ FrameResampler::FrameResampler(FrameShape shape, ResamplingOptions options, Sour
       source_(std::move(source)),
       light_(shape.sites()) {
     assert(options_.frames_per_slot > 0);
+    if (std::min(shape.rows, shape.cols) < options_.min_flow_side) options_.flow = {};
 }
 
 bool FrameResampler::have(std::int64_t index) {
