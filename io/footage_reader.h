@@ -28,7 +28,8 @@ struct FootageOptions {
 /// divided by 255 / 65535, floating-point files are taken as they are.
 /// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
 /// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3)
-/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header.
+/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header. ReadAhead
+/// (capture/recording/read_ahead.h) reads recordings of cameras too, and in the background.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.

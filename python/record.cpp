@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "capture/capture_end.h"
@@ -31,8 +30,7 @@ auto creating_from_camera(const CameraTask& task, const fs::path& file, Create&&
     try {
         return opening(task, std::forward<Create>(create));
     } catch (const InputError& error) {
-        if (std::string_view(error.what()).starts_with(file.string() + ": "))
-            check_creatable(file, error);
+        if (error.where() == file.string()) check_creatable(file, error);
         throw;
     }
 }

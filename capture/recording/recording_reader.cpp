@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "capture/payload_hash.h"
 #include "core/error.h"
 #include "stream/crc32c.h"
 #include "stream/file_window.h"
