@@ -60,11 +60,11 @@ nlohmann::ordered_json recording_json(const std::string& file, const CameraRecor
             {"transport", transport_json(recording.transport)},
             {"payload_bytes", recording.end.payload_bytes},
             {"seconds", recording.seconds},
-            {"frames_per_s", or_null(recording.frames_per_s)}};
+            {"frames_hz", or_null(recording.frames_hz)}};
 }
 
 std::string recording_text(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
+    const auto& hz = recording.frames_hz;
     std::string text =
         fmt::format("{}: {}{}, {:.1f} MB", file, counted(recording.end.frames, "frame"),
                     hz ? fmt::format(", {:.1f} per second", *hz) : "",

@@ -33,7 +33,7 @@ nlohmann::ordered_json counts_json(const GigeServerCounts& counts) {
 std::string ready_text(const FrameSource& source, const GigeServerOptions& options) {
     const ServedImage& image = source.image();
     return fmt::format("READY gige:{} {} x {} {} at {:g} frames/s", options.address, image.width,
-                       image.height, image.formats.front()->name, image.frames_per_s);
+                       image.height, image.formats.front()->name, image.frames_hz);
 }
 
 std::string counts_text(const GigeServerCounts& counts) {
@@ -130,10 +130,10 @@ std::string check_serial(const std::string& serial) {
 
 void check_mode(const Command& command, const ServedSourceChoice& source) {
     if (source.mode == ServedMode::kCoded)
-        command.refuse({"--format"}, "is of --mode frames; leave it out");
+        command.refuse({"--format"}, "needs --mode frames; leave it out");
     else
         command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},
-                       "is of the sensor of --mode coded; add that or leave this out");
+                       "needs --mode coded; add it, or leave this out");
 }
 
 void check_faults(const Command& command, const GvspFaults& faults) {
@@ -162,7 +162,7 @@ void add_capture_serve(Command& capture, Action& action) {
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
-        "  stipple capture serve video.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
+        "  stipple capture serve video.mp4 --luminance --format Mono12p --frames-hz 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
     set_action(command, action, options, serve, [command, options] {
         check_mode(command, options->source);

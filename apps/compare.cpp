@@ -47,10 +47,10 @@ struct CompareOptions {
     const bool same_size = result.rows == wanted.rows && result.cols == wanted.cols;
     throw InputError(
         options.result,
-        fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+        fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
                     "reference \"{}\" has {} x {} x {}{}",
-                    result.rows, result.cols, result.planes, options.reference, wanted.rows,
-                    wanted.cols, wanted.planes,
+                    result.cols, result.rows, result.planes, options.reference, wanted.cols,
+                    wanted.rows, wanted.planes,
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
@@ -144,19 +144,27 @@ ReadAhead read_result(const CompareOptions& options) {
         {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
 }
 
-void compare(const CompareOptions& options, const RunOptions& run) {
-    const QualityMetrics metrics = chosen_metrics(options.metrics);
-    check_frame_metrics(options, metrics);
+QualityOptions quality_options(const CompareOptions& options, const QualityMetrics& metrics) {
     QualityOptions quality = options.quality;
     quality.pu21_ssim = has_metric(metrics, "pu21-ssim");
     if (has_metric(metrics, "pu21-csf-psnr")) quality.pixels_per_degree = options.pixels_per_degree;
-    JsonFile json(run);
-    ReadAhead result = read_result(options);
+    return quality;
+}
+
+void warn_of_gamma(const std::string& name, const ReadAhead& result) {
     if (result.gamma_coded())
         say_warning(
             fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
                         "stipple are tone-mapped; compare the .npy or the folder",
-                        options.result));
+                        name));
+}
+
+void compare(const CompareOptions& options, const RunOptions& run) {
+    const QualityMetrics metrics = chosen_metrics(options.metrics);
+    const QualityOptions quality = quality_options(options, metrics);
+    JsonFile json(run);
+    ReadAhead result = read_result(options);
+    warn_of_gamma(options.result, result);
     ReadAhead reference = read_footage(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
     QualityMeter meter(reference.shape(), quality);
@@ -204,6 +212,24 @@ void add_metric_arguments(Command& command, CompareOptions& options) {
         .type_name("P");
 }
 
+void add_quality_arguments(Command& command, CompareOptions& options) {
+    command
+        .add_option(
+            "--peak", options.quality.peak,
+            "peak of PSNR and PU21-PSNR; with --max-value 2, a peak of 2 raises the PSNR by 6 dB")
+        .shows_default()
+        .check(positive_check())
+        .type_name("LIGHT");
+    command
+        .add_option(
+            "--cd-per-unit", options.quality.unit_cd_per_m2,
+            "luminance of light 1.0 for PU21, in cd/m2; an HDR display reaches 1000 and more")
+        .shows_default()
+        .check(positive_check())
+        .type_name("L");
+    add_metric_arguments(command, options);
+}
+
 void add_compare_outputs(Command& command, CompareOptions& options) {
     command
         .add_option("--csv", options.csv,
@@ -243,21 +269,7 @@ void add_compare(Command& app, Action& action) {
         .type_name("N");
     add_max_value(command, options->quality.max_value);
     add_footage_arguments(command, options->footage, "REFERENCE");
-    command
-        .add_option(
-            "--peak", options->quality.peak,
-            "peak of PSNR and PU21-PSNR; with --max-value 2, a peak of 2 raises the PSNR by 6 dB")
-        .shows_default()
-        .check(positive_check())
-        .type_name("LIGHT");
-    command
-        .add_option(
-            "--cd-per-unit", options->quality.unit_cd_per_m2,
-            "luminance of light 1.0 for PU21, in cd/m2; an HDR display reaches 1000 and more")
-        .shows_default()
-        .check(positive_check())
-        .type_name("L");
-    add_metric_arguments(command, *options);
+    add_quality_arguments(command, *options);
     add_compare_outputs(command, *options);
     add_threads(command, action.options);
     command.footer(

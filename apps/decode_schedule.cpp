@@ -71,7 +71,8 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
         case Verdict::kNoneFits:
             throw InputError(arguments.stream,
                              fmt::format("the samples do not follow the schedule, and no shift of "
-                                         "it clearly fits ({}); record which one the chip ran",
+                                         "it clearly fits ({}); store the schedule that the chip "
+                                         "ran in the header",
                                          why));
     }
     return check;

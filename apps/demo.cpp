@@ -89,10 +89,10 @@ void demo(const DemoOptions& options, const RunOptions& run) {
         fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
                     "In {}:\n"
                     "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
-                    "  report.html             all of it, to look into with a browser\n"
+                    "  report.html             all of it as an interactive page\n"
                     "  decoded.mp4             decoded video, tone-mapped\n"
                     "  decoded/                the same as EXR, linear light\n"
-                    "  random.stipple          the recording it was made of",
+                    "  random.stipple          the sample stream of this video",
                     options.scene, truth.slots(), truth.shape().cols, truth.shape().rows,
                     elapsed.count(), trials_table(results), folder.string()));
 }

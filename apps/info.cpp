@@ -99,7 +99,7 @@ void info(const InfoOptions& options, const RunOptions& run) {
 }  // namespace
 
 void add_info(Command& app, Action& action) {
-    Command command = app.add_command("info", "Say what a file is and holds, of any kind");
+    Command command = app.add_command("info", "Kind and contents of a file");
     const auto options = std::make_shared<InfoOptions>();
     command
         .add_option("FILE", options->file,

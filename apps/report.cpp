@@ -86,10 +86,10 @@ FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
     if (footage.shape() != shape)
         throw InputError(
             arguments.truth,
-            fmt::format("has frames of {} x {} x {} (rows x columns x planes), the runs "
+            fmt::format("has frames of {} x {} x {} (width x height x planes), the runs "
                         "have {} x {} x {}",
-                        footage.shape().rows, footage.shape().cols, footage.shape().planes,
-                        shape.rows, shape.cols, shape.planes));
+                        footage.shape().cols, footage.shape().rows, footage.shape().planes,
+                        shape.cols, shape.rows, shape.planes));
     constexpr std::uint64_t kValueBytes = 2 * sizeof(float);  // here, and in the video
     const std::uint64_t bytes = input_bytes(arguments.truth);
     std::vector<float> light;
@@ -218,7 +218,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
                         counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
                         1e-6 * static_cast<double>(page.size())));
     if (const std::string damage = report.damage(); !damage.empty())
-        throw InputError(arguments.output, "shows what is left of damaged streams: " + damage);
+        throw InputError(arguments.output,
+                         "shows only the undamaged part of damaged streams: " + damage);
 }
 
 void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {
@@ -253,7 +254,7 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
 }  // namespace
 
 void add_report(Command& app, Action& action) {
-    Command command = app.add_command("report", "A run as an HTML page to look into");
+    Command command = app.add_command("report", "A run as an interactive HTML page");
     const auto options = std::make_shared<ReportArguments>();
     command.add_option("RUN", options->runs, "sample streams, or folders of them")
         .required()

@@ -270,8 +270,8 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
         !complete && (options.incomplete == IncompletePolicy::kDrop ||
                       (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
     if (dropped) {
-        gap.add(GapCause::kOwnDrop, 1);
-        ++totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+        gap.add(GapCause::kQueueDrop, 1);
+        ++totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)];
         return drop(std::move(frame));
     }
     if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
@@ -333,10 +333,10 @@ std::uint64_t CaptureSession::late_allocations() const {
     return impl_->pool.misses();
 }
 
-void CaptureSession::count_own_drop(const FrameRecord& record) noexcept {
+void CaptureSession::count_queue_drop(const FrameRecord& record) noexcept {
     impl_->gap.add(record.cause, record.lost_before);
-    impl_->gap.add(GapCause::kOwnDrop, 1);
-    ++impl_->totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+    impl_->gap.add(GapCause::kQueueDrop, 1);
+    ++impl_->totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)];
     --impl_->totals.frames;
     if (record.status != FrameStatus::kComplete) --impl_->totals.incomplete;
 }

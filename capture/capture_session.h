@@ -17,7 +17,7 @@ namespace stipple {
 
 /// Treatment of incomplete frames. Missing bytes are zero in any case.
 enum class IncompletePolicy : std::uint8_t {
-    kDrop,  ///< dropped, counted as kOwnDrop
+    kDrop,  ///< dropped, counted as kQueueDrop
     kKeep,  ///< delivered without the list of holes
     kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };
@@ -43,11 +43,11 @@ struct SessionTotals {
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
     std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
-    std::uint64_t outages = 0;               ///< number of times that the camera was gone
+    std::uint64_t outages = 0;               ///< number of times that the camera was lost
     std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out
 };
 
-/// The camera is gone; the session is opening it again.
+/// The camera is lost; the session is reopening it.
 struct Outage {
     std::string reason;
 };
@@ -61,16 +61,16 @@ struct Recovery {
 using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, DeviceLost>;
 
 /// Frames of a camera with complete accounting: ids unwrapped to 64 bits, gaps with the number and
-/// cause of lost frames, and reconnection when the camera is gone. For consecutive delivered frames
+/// cause of lost frames, and reconnection when the camera is lost. For consecutive delivered frames
 /// a and b, b.id = a.id + 1 + b.lost_before.
 ///
 /// The counters of the transport decide the cause of a gap, in this order: no free buffer
 /// (kHostUnderrun), losses of network or socket (kTransport), none (kDevice). The number of frames
-/// lost while the camera was gone is estimated from the earlier frame period. Frames lost before
-/// the first one that arrives count too, if its id tells (frames_before_first); its id is their
-/// number. A frame with an old id is the first of a restarted counter if its stamp is newer, or if
-/// the next frame follows it. Otherwise it is a repeat, and left out. Used from one thread; other
-/// threads open and close the camera.
+/// lost during an outage is estimated from the earlier frame period. Frames lost before the first
+/// one that arrives count too, if its id tells (frames_before_first); its id is their number.
+/// A frame with an old id is the first of a restarted counter if its stamp is newer, or if the next
+/// frame follows it. Otherwise it is a repeat, and left out.
+/// Used from one thread; other threads open and close the camera.
 class CaptureSession {
   public:
     /// Opens the camera with its settings. Called again after an outage, from another thread.
@@ -98,7 +98,7 @@ class CaptureSession {
     [[nodiscard]] std::uint64_t late_allocations() const;
 
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.
-    void count_own_drop(const FrameRecord& record) noexcept;
+    void count_queue_drop(const FrameRecord& record) noexcept;
 
     /// Of the camera when it was last opened.
     [[nodiscard]] const CameraDescription& description() const;

@@ -37,11 +37,11 @@ enum class GapCause : std::uint8_t {
     kDevice = 1,        ///< ids that the camera itself left out
     kTransport = 2,     ///< lost between camera and host
     kHostUnderrun = 3,  ///< no buffer was free
-    kOwnDrop = 4,       ///< our queue was full, or the policy drops incomplete frames
-    kReconnect = 5,     ///< the camera was gone; how many were lost is not known from its ids
+    kQueueDrop = 4,     ///< our queue was full, or the policy drops incomplete frames
+    kReconnect = 5,     ///< the camera was lost; its ids do not tell the number of frames
 };
 inline constexpr std::array<std::string_view, 6> kGapCauseNames{
-    "none", "device", "transport", "host_underrun", "own_drop", "reconnect"};
+    "none", "device", "transport", "host_underrun", "queue_drop", "reconnect"};
 
 /// Which clock gave a device stamp.
 enum class StampSource : std::uint8_t {

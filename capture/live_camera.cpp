@@ -57,7 +57,7 @@ void LiveCamera::run(const std::stop_token& stop) noexcept {
 void LiveCamera::take(SessionEvent event) {
     if (auto* const frame = std::get_if<CapturedFrame>(&event)) {
         if (begun_ && frames_.push(std::move(*frame))) return;
-        if (begun_) session_.count_own_drop(frame->record);
+        if (begun_) session_.count_queue_drop(frame->record);
         session_.give_back(std::move(frame->payload));
     } else if (!std::holds_alternative<NoFrame>(event)) {
         options_.tell(event);

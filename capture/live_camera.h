@@ -28,9 +28,9 @@ struct LiveCameraOptions {
 
 /// A camera with a thread that receives its frames, and a queue of `waiting_frames` frames, fewer
 /// if `max_memory` demands it (waiting_frames); then the description has a warning. A full queue
-/// drops frames; the record of the next frame has their number (kOwnDrop). The memory of all frames
-/// is allocated at the start, and frames are moved, not copied, so the resident memory does not
-/// depend on how many wait.
+/// drops frames; the record of the next frame has their number (kQueueDrop). The memory of all
+/// frames is allocated at the start, and frames are moved, not copied, so the resident memory does
+/// not depend on how many wait.
 class LiveCamera {
   public:
     /// Opens and starts the camera. Frames before `begin` are discarded, except with `from_start`.

@@ -45,7 +45,7 @@ FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t p
 void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view where,
                   std::uint64_t ratio) {
     if (bytes / ratio / 2 > file_bytes)
-        throw InputError(where, fmt::format("announces a image of {} bytes, but the file holds "
+        throw InputError(where, fmt::format("announces an image of {} bytes, but the file holds "
                                             "{}; it is damaged or ends too early",
                                             bytes, file_bytes));
 }

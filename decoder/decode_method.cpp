@@ -18,8 +18,8 @@ namespace stipple {
 namespace {
 
 constexpr NamedDecodeMethod kMethods[] = {
-    {"naive", DecodeMethod::kNaive, "each pixel holds its nearest samples: at once, noisy",
-     kMaxCoreSites, 13, [](Config&, DecodeOptions&) {},
+    {"naive", DecodeMethod::kNaive, "nearest samples of each pixel: fast and noisy", kMaxCoreSites,
+     13, [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) -> std::optional<FluxVideo> {
          return nearest_samples(block.measurements);
      }},

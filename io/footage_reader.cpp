@@ -64,10 +64,10 @@ class ImageSequence {
         if (next_ > 1) load(next_ - 1);
         if (image_.shape != shape_)
             throw InputError(where(),
-                             fmt::format("is {} x {} x {} (rows x columns x planes), but "
+                             fmt::format("is {} x {} x {} (width x height x planes), but "
                                          "the first frame is {} x {} x {}",
-                                         image_.shape.rows, image_.shape.cols, image_.shape.planes,
-                                         shape_.rows, shape_.cols, shape_.planes));
+                                         image_.shape.cols, image_.shape.rows, image_.shape.planes,
+                                         shape_.cols, shape_.rows, shape_.planes));
         if (image_.traits.filter != traits_.filter)
             throw InputError(where(), "has another colour filter array than the first frame");
         std::copy(image_.values.begin(), image_.values.end(), frame.begin());
@@ -158,7 +158,8 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         },
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
-    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->video_hz();
+    if (const auto* video = std::get_if<VideoReader>(&source))
+        traits.frames_hz = video->frames_hz();
     if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
@@ -212,7 +213,7 @@ std::optional<int> FootageReader::slots() const {
     return std::visit(slots_of, impl_->source);
 }
 
-std::optional<double> FootageReader::video_hz() const {
+std::optional<double> FootageReader::frames_hz() const {
     return impl_->traits.frames_hz;
 }
 
@@ -263,8 +264,8 @@ bool FootageReader::read(std::span<float> frame) {
     }
     if (impl_->reduces()) reduce_to_luminance(light, frame);
     if (impl_->options.max_value) {
-        const auto most = static_cast<float>(*impl_->options.max_value);
-        for (float& value : frame) value = std::min(value, most);
+        const auto max_light = static_cast<float>(*impl_->options.max_value);
+        for (float& value : frame) value = std::min(value, max_light);
     }
     return true;
 }

@@ -72,6 +72,7 @@ FrameResampler::FrameResampler(FrameShape shape, ResamplingOptions options, Sour
       light_(shape.sites()) {
     assert(options_.frames_per_slot >= kMinFramesPerSlot &&
            options_.frames_per_slot <= kMaxFramesPerSlot);
+    if (std::min(shape.rows, shape.cols) < options_.min_flow_side) options_.flow = {};
 }
 
 bool FrameResampler::have(std::int64_t index) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry.h"
@@ -24,6 +26,9 @@ enum class Resampling {
     kFlow,   ///< as kBlend; where slots are shorter than frames, frames moved by optical flow
 };
 
+/// By Resampling.
+inline constexpr std::array<std::string_view, 3> kResamplingNames{"hold", "blend", "flow"};
+
 /// Dense motion between images: (x, y) in pixels for each pixel.
 using FlowFunction = std::function<void(PlaneView<const float> from, PlaneView<const float> to,
                                         std::span<float> flow)>;
@@ -32,6 +37,7 @@ struct ResamplingOptions {
     Resampling method = Resampling::kHold;
     double frames_per_slot = 1;  ///< kMinFramesPerSlot to kMaxFramesPerSlot
     FlowFunction flow = {};      ///< of kFlow; empty: frames are blended without motion
+    int min_flow_side = 0;       ///< pixels; smaller frames are blended without motion
 };
 
 /// Resamples linear light in time. Frame j is the mean light of the time [j, j + 1), slot k that of

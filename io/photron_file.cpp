@@ -165,16 +165,17 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
     const std::uint32_t stored = header.count(kStoredBits);
     const std::uint32_t depth = header.count(kDepth);
     if (!same_letters(header.text(kFormat), "mraw"))
-        throw InputError(header.name(), fmt::format("tells of files of the format \"{}\"; MRAW is "
-                                                    "read",
-                                                    header.text(kFormat)));
+        throw InputError(header.name(),
+                         fmt::format("declares the format \"{}\"; only MRAW is supported",
+                                     header.text(kFormat)));
     if (header.has(kColour) && !same_letters(header.text(kColour), "mono"))
-        throw InputError(header.name(), fmt::format("tells of colour (\"{}\"); grey is read",
-                                                    header.text(kColour)));
+        throw InputError(
+            header.name(),
+            fmt::format("declares colour (\"{}\"); only grey is supported", header.text(kColour)));
     if (stored != 8 && stored != 12 && stored != 16)
-        throw InputError(header.name(), fmt::format("tells of {} bits per pixel; 8, 12 and 16 are "
-                                                    "read",
-                                                    stored));
+        throw InputError(
+            header.name(),
+            fmt::format("declares {} bits per pixel; only 8, 12 and 16 are supported", stored));
     PixelFormat format{.name = "MRAW"};
     format.bits_per_pixel = format.significant_bits = static_cast<int>(stored);
     format.packing = stored == 12 ? Packing::kMsbPacked : Packing::kBytes;
@@ -208,9 +209,10 @@ RawVideo open_photron(const fs::path& file) {
         .slots = header.count(kFrames),
         .light_of_dn = light_table(format, 0, white_dn)};
     if (video.shape.cols * format.bits_per_pixel % 8 != 0)
-        throw InputError(header.name(), fmt::format("tells of packed rows of {} pixels, which end "
-                                                    "within a byte; they are not read",
-                                                    video.shape.cols));
+        throw InputError(header.name(),
+                         fmt::format("declares packed rows of {} pixels, which end within a byte; "
+                                     "only whole bytes are supported",
+                                     video.shape.cols));
     video.traits.bits = std::popcount(static_cast<unsigned>(white_dn));
     video.traits.white_dn = white_dn;
     video.traits.frames_hz = header.number(kRate);

@@ -60,14 +60,14 @@ QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
 
 QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
                                                   std::span<const float> reference, int row) {
-    const auto most = static_cast<float>(
+    const auto max_light = static_cast<float>(
         options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
     const auto width = static_cast<std::size_t>(shape_.cols);
     const std::size_t begin = static_cast<std::size_t>(row) * width;
     SquaredErrors sum;
     for (std::size_t i = begin; i < begin + width; ++i) {
-        const float a = std::min(result[i], most);
-        const float b = std::min(reference[i], most);
+        const float a = std::min(result[i], max_light);
+        const float b = std::min(reference[i], max_light);
         result_gamma_[i] = gamma_encoded(a);
         reference_gamma_[i] = gamma_encoded(b);
         const auto x = static_cast<double>(a);
@@ -100,10 +100,10 @@ void QualityMeter::add(std::span<const float> result, std::span<const float> ref
 
 std::vector<float> QualityMeter::pu21_luminance(std::span<const float> light) const {
     const std::size_t pixels = shape_.pixels();
-    const auto most = static_cast<float>(
+    const auto max_light = static_cast<float>(
         options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
     std::vector<float> clipped(light.begin(), light.end());
-    for (float& value : clipped) value = std::min(value, most);
+    for (float& value : clipped) value = std::min(value, max_light);
     std::vector<float> luminance(pixels);
     if (shape_.planes == 3)
         reduce_to_luminance(clipped, luminance);

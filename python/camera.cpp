@@ -64,7 +64,7 @@ bool CameraTask::is_replay() const {
 
 void SessionWarnings::take(const SessionEvent& event) {
     if (const auto* const outage = std::get_if<Outage>(&event))
-        take(fmt::format("the camera is gone ({}); opening it anew", outage->reason));
+        take(fmt::format("camera lost ({}); reopening it", outage->reason));
     if (const auto* const recovery = std::get_if<Recovery>(&event))
         take(fmt::format("the camera is back after {:.1f} s", recovery->gone_s));
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) take(lost->warning);

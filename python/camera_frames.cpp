@@ -16,8 +16,8 @@
 namespace stipple::python {
 namespace {
 
-/// How often a wait looks for Ctrl-C.
-constexpr std::chrono::milliseconds kPatience{100};
+/// Interval at which a wait looks for Ctrl-C.
+constexpr std::chrono::milliseconds kPollInterval{100};
 
 /// The frames of a camera that runs, handed over without a copy.
 class CameraFrames {
@@ -43,7 +43,7 @@ class CameraFrames {
             bool came = false;
             {
                 const py::gil_scoped_release released;
-                came = camera_->next(*frame, kPatience);
+                came = camera_->next(*frame, kPollInterval);
             }
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             warnings_.pass_on();

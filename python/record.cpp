@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "capture/capture_end.h"
@@ -31,8 +30,7 @@ auto creating_from_camera(const CameraTask& task, const fs::path& file, Create&&
     try {
         return opening(task, std::forward<Create>(create));
     } catch (const InputError& error) {
-        if (std::string_view(error.what()).starts_with(file.string() + ": "))
-            check_creatable(file, error);
+        if (error.where() == file.string()) check_creatable(file, error);
         throw;
     }
 }
@@ -46,7 +44,7 @@ py::dict recording_dict(const std::string& file, const CameraRecording& recordin
                     "outages"_a = recording.session.outages,
                     "transport"_a = transport_dict(recording.transport),
                     "payload_bytes"_a = recording.end.payload_bytes,
-                    "seconds"_a = recording.seconds, "frames_per_s"_a = recording.frames_per_s);
+                    "seconds"_a = recording.seconds, "frames_hz"_a = recording.frames_hz);
 }
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,

@@ -115,7 +115,7 @@ std::string options_of(const toml::table& provenance) {
         add("--scale", fmt::format("{}", *scale));
     if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
     if (const auto hz = footage["frames_hz"].value<double>())
-        add("--footage-hz", fmt::format("{}", *hz));
+        add("--frames-hz", fmt::format("{}", *hz));
     if (const auto max_value = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *max_value));
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);

@@ -19,7 +19,7 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
                     "settings of the camera, a file of lines Feature = value")
         .type_name("FILE")
         .input();
-    command.add_option("--buffers", arguments.buffers.frames, "frames that the host can hold")
+    command.add_option("--buffers", arguments.buffers.frames, "number of frame buffers on the host")
         .shows_default()
         .check(whole_check(CameraBuffers::kMinFrames, CameraBuffers::kMaxFrames))
         .type_name("N");
@@ -57,7 +57,7 @@ void add_session_arguments(Command& command, SessionOptions& options) {
         .check(whole_check(0, kMaxStallMs))
         .type_name("MS");
     command.add_flag(
-        "--no-reconnect", [&options] { options.reconnect = false; }, "end when the camera is gone");
+        "--no-reconnect", [&options] { options.reconnect = false; }, "end when the camera is lost");
 }
 
 void check_session_arguments(const Command& command, const CameraArguments& camera) {

@@ -1,18 +1,13 @@
 #include "apps/arguments/footage.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <memory>
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/arguments/checks.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "decoder/portz2013/late_opencv.h"
-#include "io/frame_resampler.h"
 #include "scenes/scene.h"
 
 namespace stipple {
@@ -20,7 +15,7 @@ namespace stipple {
 void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
         .add_choice("--transfer", options.transfer, kTransfers,
-                    "how the numbers of " + footage + " map to light; auto: as it declares")
+                    "transfer function of " + footage + "; auto: the declared one")
         .default_text("linear, with a warning if they look gamma-coded")
         .type_name("NAME");
     add_raw_argument(command, options.raw, footage);
@@ -49,17 +44,20 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
         .type_name("V");
 }
 
-void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOptions& options) {
+void add_resample_arguments(Command& command, std::optional<Resampling>& method,
+                            FootageOptions& options) {
     constexpr double kMinHz = 0.001;
     constexpr double kMaxHz = 1e9;
+    std::vector<std::pair<std::string, std::optional<Resampling>>> methods;
+    for (std::size_t i = 0; i < kResamplingNames.size(); ++i)
+        methods.emplace_back(kResamplingNames[i], static_cast<Resampling>(i));
     command
-        .add_option("--resample", choice.method,
+        .add_choice("--resample", method, methods,
                     "make slots of frames of another rate: hold the frame before, blend light, or "
                     "move it by optical flow")
         .default_text("each frame is a slot")
-        .one_of({"hold", "blend", "flow"})
         .type_name("METHOD");
-    command.add_option("--footage-hz", options.frames_hz, "frame rate of the footage")
+    command.add_option("--frames-hz", options.frames_hz, "frame rate of the footage")
         .default_text("that in its file")
         .check(number_check(kMinHz, kMaxHz))
         .type_name("HZ");
@@ -67,42 +65,6 @@ void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOpt
         .shows_default()
         .check(positive_check())
         .type_name("FACTOR");
-}
-
-SlotSource slots_of(ReadAhead& footage, const std::string& source, const ResampleChoice& choice,
-                    const FootageOptions& options, double slot_us) {
-    if (choice.method.empty()) return {[&footage] { return footage.next(); }, footage.slots()};
-    const auto hz = options.frames_hz ? options.frames_hz : footage.video_hz();
-    if (!hz)
-        throw InputError(source, "does not tell its frame rate; --resample needs --footage-hz");
-    const bool flow = choice.method == "flow";
-    if (flow && footage.filter() != ColourFilter::kNone)
-        throw InputError(source,
-                         "is the mosaic of a colour filter array, whose colours --resample flow "
-                         "would mix; use blend");
-    const FrameShape shape = footage.shape();
-    const double frames_per_slot = *hz * slot_us * 1e-6;
-    if (!(frames_per_slot >= kMinFramesPerSlot && frames_per_slot <= kMaxFramesPerSlot))
-        throw InputError(
-            source,
-            fmt::format(
-                "has {:.4g} frames/s, which are {:.4g} a slot of {:g} us; --resample takes {:g} "
-                "to {:g}, so check the rate (--footage-hz) and sensor.slot_us",
-                *hz, frames_per_slot, slot_us, kMinFramesPerSlot, kMaxFramesPerSlot));
-    const bool is_small = std::min(shape.rows, shape.cols) < kMinDisFlowSide;
-    const auto resampler = std::make_shared<FrameResampler>(
-        shape,
-        ResamplingOptions{.method = flow                       ? Resampling::kFlow
-                                    : choice.method == "blend" ? Resampling::kBlend
-                                                               : Resampling::kHold,
-                          .frames_per_slot = frames_per_slot,
-                          .flow = is_small ? FlowFunction() : dis_flow},
-        [&footage] { return footage.next(); });
-    SlotSource slots{[resampler] { return resampler->next(); }, {}};
-    if (const auto frames = footage.slots())
-        slots.slots = static_cast<int>(std::min<std::int64_t>(
-            resampled_slots(*frames, frames_per_slot), std::numeric_limits<int>::max()));
-    return slots;
 }
 
 ReadAhead read_footage(const std::string& source, const FootageOptions& options) {

@@ -34,8 +34,7 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
                 "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
     return std::make_unique<FootageFrames>(
-        choice.path, choice.reading, choice.frames_per_s.value_or(ServedImage::kUsualFramesPerS),
-        format);
+        choice.path, choice.reading, choice.frames_hz.value_or(ServedImage::kUsualFramesHz), format);
 }
 
 }  // namespace
@@ -51,11 +50,11 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
                     {{"frames", ServedMode::kFrames}, {"coded", ServedMode::kCoded}},
                     "send frames as they are, or the coded samples of a sensor")
         .type_name("MODE");
-    command.add_option("--fps", source.frames_per_s, "frames or slots per second")
+    command.add_option("--frames-hz", source.frames_hz, "frame rate, or slot rate of mode coded")
         .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}",
-                                  ServedImage::kUsualFramesPerS))
-        .check(number_check(ServedImage::kMinFramesPerS, ServedImage::kMaxFramesPerS))
-        .type_name("N");
+                                  ServedImage::kUsualFramesHz))
+        .check(number_check(ServedImage::kMinFramesHz, ServedImage::kMaxFramesHz))
+        .type_name("HZ");
     command.add_option("--format", source.format, "pixel format of footage, in mode frames")
         .default_text("Mono8, RGB8 for colour")
         .type_name("NAME");
@@ -72,13 +71,13 @@ std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice
     if (coded)
         return std::make_unique<CodedFrames>(
             choice.path, origin_of(choice.path, choice.reading, [] { throw_if_stopped(); }),
-            choice.sensor, choice.frames_per_s);
+            choice.sensor, choice.frames_hz);
     if (!is_recording(choice.path)) return open_footage(choice);
     if (!choice.format.empty())
         throw InputError("--format " + choice.format,
                          "a recording is served in the format it was recorded in; leave it out");
     check_recording_options(choice.path, choice.reading);
-    return std::make_unique<RecordingFrames>(choice.path, choice.frames_per_s);
+    return std::make_unique<RecordingFrames>(choice.path, choice.frames_hz);
 }
 
 }  // namespace stipple

@@ -22,7 +22,7 @@ nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
     return json;
 }
 
-std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_s) {
+std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_second) {
     const SensorSetup& setup = recorder.setup();
     const ReadoutStats& stats = recorder.stats();
     const std::string per_sample =
@@ -37,7 +37,7 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         counted(recorder.samples(), "sample"), setup.params.bit_depth,
         any ? per_sample : ": no exposure ended within the footage",
         100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
-        slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
+        slots_per_second ? fmt::format(", {} slots/s", rounded(*slots_per_second)) : "");
     if (const ReadoutCost* cost = recorder.readout_cost())
         text.append(1, '\n').append(readout_text(*cost));
     return text;

@@ -13,7 +13,7 @@ namespace stipple {
 
 nlohmann::ordered_json live_json(const LiveReport& report) {
     const LiveEmulation& live = report.emulation;
-    nlohmann::ordered_json json = emulation_json(report.recorder, live.slots_per_s);
+    nlohmann::ordered_json json = emulation_json(report.recorder, live.slots_per_second);
     json["frames"] = live.latencies.count();
     json["frames_hz"] = or_null(live.rate.hz());
     json["slots_hz"] = 1e6 / report.recorder.setup().params.slot_us;
@@ -45,7 +45,7 @@ std::string live_text(const LiveReport& report, const std::string& output,
         "incomplete{}\n"
         "lost: {}; incomplete: {}{}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
-        output, emulation_text(report.recorder, live.slots_per_s),
+        output, emulation_text(report.recorder, live.slots_per_second),
         counted(live.latencies.count(), "frame"), counted(live.late_slots, "slot"),
         late_after_slots, live.held_slots,
         live.unheld_slots == 0 ? "" : fmt::format(", {} left out", live.unheld_slots),

@@ -110,9 +110,9 @@ std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::s
     const FrameShape shape = decoded_shape(run->reader.header());
     if (shape != shape_)
         throw InputError(stream.string(),
-                         fmt::format("has frames of {} x {} x {} (rows x columns x planes), the "
+                         fmt::format("has frames of {} x {} x {} (width x height x planes), the "
                                      "report has {} x {} x {}",
-                                     shape.rows, shape.cols, shape.planes, shape_.rows, shape_.cols,
+                                     shape.cols, shape.rows, shape.planes, shape_.cols, shape_.rows,
                                      shape_.planes));
     run->read(options_);
     slots_ = std::max(slots_, run->loads.slots());

@@ -205,7 +205,7 @@ class Memory:
 
 def start_camera(stipple, footage, rate, options, figures):
     camera = subprocess.Popen(
-        [*stipple, "capture", "serve", footage, "--format", "Mono8", "--fps", f"{rate:g}", "--repeat",
+        [*stipple, "capture", "serve", footage, "--format", "Mono8", "--frames-hz", f"{rate:g}", "--repeat",
          "--address", ADDRESS, "--json", figures, *options], stdout=subprocess.PIPE, text=True)
     line = camera.stdout.readline()
     if not line.startswith("READY"):

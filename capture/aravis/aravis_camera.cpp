@@ -5,7 +5,7 @@
 
 #include "capture/aravis/aravis_device.h"
 #include "capture/aravis/aravis_stream.h"
-#include "capture/recording/recording_format.h"
+#include "capture/payload_hash.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/parsed_number.h"

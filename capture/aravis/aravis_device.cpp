@@ -111,11 +111,11 @@ constexpr std::array<NumberFeature, 4> kNumbers{{
 /// The values that an integer feature takes.
 std::string range_of(ArvDevice* device, const char* feature) {
     GlibError error;
-    gint64 least = 0, most = 0;
-    arv_device_get_integer_feature_bounds(device, feature, &least, &most, error.slot());
+    gint64 min = 0, max = 0;
+    arv_device_get_integer_feature_bounds(device, feature, &min, &max, error.slot());
     if (error.any()) return {};
     const gint64 step = arv_device_get_integer_feature_increment(device, feature, nullptr);
-    return fmt::format("; it takes {} to {}{}", least, most,
+    return fmt::format("; it takes {} to {}{}", min, max,
                        step > 1 ? fmt::format(" in steps of {}", step) : "");
 }
 
@@ -210,13 +210,13 @@ void AravisDevice::Impl::set_number(const std::string& where, const NumberFeatur
     const auto number = parsed_number<double>(value);
     if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
     // Aravis sets some to the nearest value that can be.
-    double least = 0, most = 0;
+    double min = 0, max = 0;
     GlibError no_bounds;
-    feature.bounds(camera, &least, &most, no_bounds.slot());
-    const double rounding = 1e-6 * std::abs(most);
-    if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
+    feature.bounds(camera, &min, &max, no_bounds.slot());
+    const double rounding = 1e-6 * std::abs(max);
+    if (!no_bounds.any() && !(*number >= min - rounding && *number <= max + rounding))
         throw InputError(where,
-                         fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
+                         fmt::format("{} cannot be set; it takes {} to {}", value, min, max));
     GlibError error;
     feature.set(camera, *number, error.slot());
     if (error.any())

@@ -165,7 +165,8 @@ void AravisStream::Impl::check_buffers() const {
                     buffers.frames, bytes, max_memory(), kMaxPayloadBytes));
 }
 
-/// A leader may be forged: it is believed as far as bytes came, or the camera itself says so.
+/// A leader may be forged: its size is trusted up to the bytes that came, or up to the size that
+/// the camera itself states.
 bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) const {
     if (said.format == nullptr || said.width <= 0 || said.height <= 0) return false;
     const std::size_t bytes = said.payload_bytes();
@@ -378,7 +379,7 @@ Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {
 }
 
 void AravisStream::stop() noexcept {
-    // A camera that is gone would be waited for.
+    // The wait for a lost camera would not end.
     if (impl_->running && !impl_->lost) arv_camera_stop_acquisition(impl_->camera, nullptr);
     impl_->running = false;
 }

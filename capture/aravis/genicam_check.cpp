@@ -71,9 +71,9 @@ class ValueCosts {
     }
 
     /// The first feature whose value takes more than `most`; empty if there is none.
-    [[nodiscard]] std::string costly_feature(double most) {
+    [[nodiscard]] std::string costly_feature(double max_cost) {
         for (const auto& [name, feature] : features_)
-            if (cost(name, 0) > most) return name;
+            if (cost(name, 0) > max_cost) return name;
         return {};
     }
 

@@ -73,7 +73,7 @@ struct CameraRecorder::Impl {
         return std::min(waiting.frames, reserved_frames(camera)) + 1;
     }
 
-    void run(const GoesOn& goes_on);
+    void run(const ProgressCallback& progress);
     void take(SessionEvent event);
     void take(CapturedFrame frame);
     void note_failure();
@@ -92,11 +92,11 @@ struct CameraRecorder::Impl {
     CameraRecording result;
 };
 
-void CameraRecorder::Impl::run(const GoesOn& goes_on) {
+void CameraRecorder::Impl::run(const ProgressCallback& progress) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     try {
-        while (goes_on(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
+        while (progress(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
                !result.lost && !queue.failed())
             take(session.next(kPollInterval));
     } catch (...) {
@@ -120,7 +120,7 @@ void CameraRecorder::Impl::take(CapturedFrame frame) {
         return;
     }
     ++refused;
-    session.count_own_drop(record);
+    session.count_queue_drop(record);
     session.give_back(std::move(frame.payload));
 }
 
@@ -148,7 +148,7 @@ void CameraRecorder::Impl::finish() {
         end.reason = end_reason();
         end.lost = session.totals().lost;
         // Frames that the queue took and could not write after all.
-        end.lost[static_cast<std::size_t>(GapCause::kOwnDrop)] += queue.dropped() - refused;
+        end.lost[static_cast<std::size_t>(GapCause::kQueueDrop)] += queue.dropped() - refused;
         end.transport = result.transport;
         writer.finish(end);
     } catch (...) {
@@ -163,7 +163,7 @@ void CameraRecorder::Impl::finish() {
     }
     result.kept = output.committed();
     result.session = session.totals();
-    result.frames_per_s = rate.hz();
+    result.frames_hz = rate.hz();
 }
 
 CameraRecorder::CameraRecorder(CaptureSession::Opener open, const CameraSettings& settings,
@@ -180,8 +180,8 @@ const std::filesystem::path& CameraRecorder::file() const {
     return impl_->output.final_path();
 }
 
-CameraRecording CameraRecorder::record(const GoesOn& goes_on) {
-    impl_->run(goes_on);
+CameraRecording CameraRecorder::record(const ProgressCallback& progress) {
+    impl_->run(progress);
     impl_->finish();
     return std::move(impl_->result);
 }

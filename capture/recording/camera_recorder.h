@@ -31,7 +31,7 @@ struct CameraRecording {
     SessionTotals session;
     TransportCounts transport;
     double seconds = 0;  ///< from the first wait for a frame to the last
-    std::optional<double> frames_per_s;
+    std::optional<double> frames_hz;
     bool kept = false;               ///< the file is in place; it is where a frame is in it
     std::optional<DeviceLost> lost;  ///< the camera that is gone, or a replay at its end
     std::exception_ptr failure;      ///< of the disk (DeviceError), or no memory
@@ -44,7 +44,7 @@ class CameraRecorder {
   public:
     /// Asked before each wait for a frame, every 100 ms at least, with the frames that are taken so
     /// far; false ends the recording.
-    using GoesOn = std::function<bool(std::uint64_t frames, const SessionTotals& totals)>;
+    using ProgressCallback = std::function<bool(std::uint64_t frames, const SessionTotals& totals)>;
 
     /// Opens and starts the camera; `settings` are what the file says it was set to.
     /// \throws InputError, DeviceError as CaptureSession, PendingOutput and RecordingWriter.
@@ -58,10 +58,10 @@ class CameraRecorder {
     /// Under which name the recording appears.
     [[nodiscard]] const std::filesystem::path& file() const;
 
-    /// Records until a limit is reached, `goes_on` says no or the camera is lost, and puts the file
-    /// in place, as far as it goes. Called once. \throws DeviceError, std::bad_alloc if it cannot
-    /// be put in place.
-    [[nodiscard]] CameraRecording record(const GoesOn& goes_on);
+    /// Records until a limit is reached, `progress` says no or the camera is lost, and puts the
+    /// file in place, as far as it goes. Called once. \throws DeviceError, std::bad_alloc if it
+    /// cannot be put in place.
+    [[nodiscard]] CameraRecording record(const ProgressCallback& progress);
 
   private:
     struct Impl;

@@ -16,7 +16,7 @@ namespace stipple {
 
 /// Queue between a camera and a disk that may be slower for a while; a thread writes the frames. A
 /// full queue drops frames and counts them. The caller reports each drop to
-/// CaptureSession::count_own_drop, which notes it in the record of the next frame.
+/// CaptureSession::count_queue_drop, which notes it in the record of the next frame.
 class RecordingQueue {
   public:
     /// Takes the memory of a frame that is written.

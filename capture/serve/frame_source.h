@@ -21,7 +21,7 @@ struct ServedImage {
     int height = 0;
     std::vector<const PixelFormat*> formats;  ///< at least one; the first is the default
     bool croppable = true;  ///< false: the region is fixed, for the bytes are no image
-    double frames_per_s = kUsualFramesPerS;    ///< unless the client asks for another rate
+    double frames_hz = kUsualFramesHz;  ///< unless the client asks for another rate
     std::optional<std::uint64_t> frames = {};  ///< from a start to the end, if known
     std::uint32_t exposure_map_id = 0;         ///< CRC of the exposure schedule, 0 without
     /// Header of the sample stream as hexadecimal digits; empty unless the frames are its packets.

@@ -199,7 +199,7 @@ void GigeServer::Impl::stream(const GigeStreamSettings& settings) {
     sender.forget();
     source.start(*settings.format);
     offset = next_number = 0;
-    const nanoseconds period(static_cast<std::int64_t>(1e9 / settings.frames_per_s));
+    const nanoseconds period(static_cast<std::int64_t>(1e9 / settings.frames_hz));
     auto due = Clock::now();
     const nanoseconds begin = device_time(due);
     std::optional<std::uint64_t> first;

@@ -35,8 +35,7 @@ void remove_padding(std::vector<std::uint8_t>& payload, const FrameLayout& layou
 
 }  // namespace
 
-RecordingFrames::RecordingFrames(const std::filesystem::path& file,
-                                 std::optional<double> frames_per_s)
+RecordingFrames::RecordingFrames(const std::filesystem::path& file, std::optional<double> frames_hz)
     : file_(file), reader_(file) {
     CapturedFrame first;
     if (!read_complete(first)) throw InputError(file.string(), "holds no complete frame");
@@ -46,20 +45,20 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
     image_.width = layout_.width;
     image_.height = layout_.height;
     image_.formats = {layout_.format};
-    image_.frames_per_s = frames_per_s ? *frames_per_s : recorded_rate(first.record);
+    image_.frames_hz = frames_hz ? *frames_hz : recorded_rate(first.record);
 }
 
 /// By the frame that follows the first.
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
     if (first.stamp_source == StampSource::kNone || !read_complete(next))
-        return ServedImage::kUsualFramesPerS;
+        return ServedImage::kUsualFramesHz;
     FrameRate frames;
     frames.add(first);
     frames.add(next.record);
     const double rate = frames.hz().value_or(0);
-    const bool usable = rate >= ServedImage::kMinFramesPerS && rate <= ServedImage::kMaxFramesPerS;
-    return usable ? rate : ServedImage::kUsualFramesPerS;
+    const bool usable = rate >= ServedImage::kMinFramesHz && rate <= ServedImage::kMaxFramesHz;
+    return usable ? rate : ServedImage::kUsualFramesHz;
 }
 
 bool RecordingFrames::read_complete(CapturedFrame& frame) {

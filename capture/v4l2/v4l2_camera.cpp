@@ -91,8 +91,8 @@ CameraDescription V4l2Camera::description() const {
     about.features["OffsetX"] = std::to_string(format_.layout.offset_x);
     about.features["OffsetY"] = std::to_string(format_.layout.offset_y);
     about.features["PixelFormat"] = format_.layout.format->name;
-    if (format_.frames_per_s > 0)
-        about.features["AcquisitionFrameRate"] = fmt::format("{:.6g}", format_.frames_per_s);
+    if (format_.frames_hz > 0)
+        about.features["AcquisitionFrameRate"] = fmt::format("{:.6g}", format_.frames_hz);
     about.transport_facts = format_.facts;
     about.transport_facts["bus"] = device_.bus();
     about.transport_facts["driver"] = device_.driver();

@@ -52,18 +52,18 @@ class Parser {
         throw InputError(fmt::format("{}:{}", where_, line_), problem);
     }
 
-    double number(std::istringstream& words, std::string_view what, double least, double most) {
+    double number(std::istringstream& words, std::string_view what, double min, double max) {
         std::string word;
         if (!(words >> word)) fail(fmt::format("{} is missing", what));
         const auto value = parsed_number<double>(word);
         if (!value) fail(fmt::format("{} \"{}\" is not a number", what, word));
-        if (!(*value >= least && *value <= most))
-            fail(fmt::format("{} {} is outside {}..{}", what, word, least, most));
+        if (!(*value >= min && *value <= max))
+            fail(fmt::format("{} {} is outside {}..{}", what, word, min, max));
         return *value;
     }
 
-    int integer(std::istringstream& words, std::string_view what, double most) {
-        const double value = number(words, what, 1, most);
+    int integer(std::istringstream& words, std::string_view what, double max) {
+        const double value = number(words, what, 1, max);
         if (value != std::floor(value)) fail(fmt::format("{} is not a whole number", what));
         return static_cast<int>(value);
     }

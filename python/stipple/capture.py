@@ -10,7 +10,7 @@ recording or footage. All functions take
 
 settings: features of the camera, {"PixelFormat": "Mono12p", "ExposureTime": 2000}.
 config: a file of such settings; `settings` come after it.
-buffers: frames that the host can hold, 2 to 1024.
+buffers: number of frame buffers on the host, 2 to 1024.
 
 and all but `record_coded`
 
@@ -52,7 +52,7 @@ def frames(
     (row, col)) are views of it.
 
     queue: frames that may wait, 1 to 4096. Those that find it full are dropped, and counted in lost_before
-        of the next one (cause "own_drop").
+        of the next one (cause "queue_drop").
     """
     task = _stipple.CameraTask(address, settings, config, buffers, (incomplete, stall_ms, reconnect), (None, None))
     return CameraFrames(task, queue)

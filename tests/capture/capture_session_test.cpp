@@ -152,13 +152,13 @@ TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
             const CapturedFrame frame = wait_for<CapturedFrame>(session);
             EXPECT_EQ(frame.record.id, previous + 1 + frame.record.lost_before);
             EXPECT_EQ(frame.record.cause,
-                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kOwnDrop);
+                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kQueueDrop);
             EXPECT_EQ(frame.holes.empty(), one.policy == IncompletePolicy::kKeep ||
                                                frame.record.status == FrameStatus::kComplete);
             previous = frame.record.id;
         }
         EXPECT_EQ(previous, 3U);
-        EXPECT_EQ(lost(session, GapCause::kOwnDrop), one.dropped);
+        EXPECT_EQ(lost(session, GapCause::kQueueDrop), one.dropped);
         EXPECT_EQ(session.totals().frames, one.frames);
         EXPECT_EQ(session.totals().incomplete, one.frames - 2);
     }
@@ -181,12 +181,12 @@ TEST(CaptureSessionTest, ALatePacketOfAFrameThatWasAccountedForIsNoFrame) {
 TEST(CaptureSessionTest, AFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
     CaptureSession session(plays({frames({1, 3, 4})}), {});
     static_cast<void>(next_record(session));
-    session.count_own_drop(next_record(session));
+    session.count_queue_drop(next_record(session));
     const FrameRecord record = next_record(session);
     EXPECT_EQ(record.id, 3U);
     EXPECT_EQ(record.lost_before, 2U);  // one of the camera, one of ours
     EXPECT_EQ(lost(session, GapCause::kDevice), 1U);
-    EXPECT_EQ(lost(session, GapCause::kOwnDrop), 1U);
+    EXPECT_EQ(lost(session, GapCause::kQueueDrop), 1U);
     EXPECT_EQ(session.totals().frames, 2U);
 }
 

@@ -98,7 +98,7 @@ TEST_F(LiveCameraTest, AConsumerThatStandsStillCostsFramesButNoMemory) {
     EXPECT_EQ(camera.peak(), kWaiting);
     EXPECT_EQ(camera.late_allocations(), 0U);
     const SessionTotals totals = camera.stop();
-    EXPECT_EQ(totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)], 150 - taken);
+    EXPECT_EQ(totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)], 150 - taken);
     // Each frame lies where the camera has put it, in one of the places of the pool.
     EXPECT_LE(script_.places.size(), kWaiting + 1 + CaptureSession::kOwnFrames);
     for (const std::uint8_t* const place : places) EXPECT_TRUE(script_.places.contains(place));

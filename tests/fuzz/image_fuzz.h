@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-/// Reads a image as light and, if it can be one, as digital numbers. What passes has all its
+/// Reads an image as light and, if it can be one, as digital numbers. What passes has all its
 /// numbers.
 inline void read_image(std::span<const std::uint8_t> bytes, const char* extension) {
     const NamedMemoryFile file(bytes, extension);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "capture/frame_unpack.h"
+#include "capture/payload_hash.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

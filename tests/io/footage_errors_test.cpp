@@ -58,7 +58,7 @@ TEST_F(FootageErrorsTest, NamesFilesOfUnknownKind) {
 
 TEST_F(FootageErrorsTest, NamesEmptyAndForeignFiles) {
     for (const char* name : {"a.png", "a.tiff", "a.exr", "a.npy", "a.mp4", "a.mkv", "a.avi"})
-        for (const char* content : {"", "hello, this is not a image"}) {
+        for (const char* content : {"", "hello, this is not an image"}) {
             write_text(folder_ / name, content);
             expect_parts(error_of(folder_ / name), {name});
         }
@@ -122,9 +122,9 @@ TEST_F(FootageErrorsTest, NamesATiffWithSeveralPagesAmongImages) {
 TEST_F(FootageErrorsTest, NamesTheImageThatDiffersInSizeOrPlanes) {
     write_flat(folder_ / "f0.png", 4, 6, CV_8UC1, 1);
     write_flat(folder_ / "f1.png", 4, 5, CV_8UC1, 1);
-    expect_parts(error_of(folder_.path()), {"f1.png: is 4 x 5 x 1", "4 x 6 x 1"});
+    expect_parts(error_of(folder_.path()), {"f1.png: is 5 x 4 x 1", "6 x 4 x 1"});
     write_flat(folder_ / "f1.png", 4, 6, CV_8UC3, {1, 1, 1});
-    expect_parts(error_of(folder_.path()), {"f1.png: is 4 x 6 x 3", "4 x 6 x 1"});
+    expect_parts(error_of(folder_.path()), {"f1.png: is 6 x 4 x 3", "6 x 4 x 1"});
 }
 
 TEST_F(FootageErrorsTest, NamesFileFrameRowColumnAndPlaneOfBadLight) {

@@ -62,7 +62,7 @@ class RecordTest(CameraTest):
         told = self.figures("capture", "record", "replay:dn.npy", "-o", "program.strec", "--set",
                             "camera.AcquisitionFrameRate=0", "--set", "camera.PixelFormat=Mono16", "--buffers", 1024)
         self.assertEqual(list(recording.figures), list(told))
-        measured = {"file", "seconds", "frames_per_s"}
+        measured = {"file", "seconds", "frames_hz"}
         self.assertEqual({key: value for key, value in recording.figures.items() if key not in measured},
                          {key: value for key, value in told.items() if key not in measured})
         program = stipple.Recording.open(self.folder / "program.strec")
@@ -111,7 +111,7 @@ class RecordTest(CameraTest):
 
     def test_a_camera_is_recorded(self):
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
-        address = self.serve("light.npy", "--repeat", "--format", "Mono16", "--fps", 100)
+        address = self.serve("light.npy", "--repeat", "--format", "Mono16", "--frames-hz", 100)
         recording = stipple.capture.record(address, self.folder / "clip.strec", frames=10)
         frames = list(recording)
         self.assertEqual(len(frames), 10)
@@ -168,7 +168,7 @@ class RecordTest(CameraTest):
 
     def test_a_camera_that_is_gone_is_an_OSError_and_leaves_a_recording(self):
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
-        address = self.serve("light.npy", "--fps", 200)  # it ends
+        address = self.serve("light.npy", "--frames-hz", 200)  # it ends
         with self.assertRaisesRegex(OSError, f"{address}: camera lost: "):
             stipple.capture.record(address, self.folder / "clip.strec", reconnect=False, stall_ms=200)
         self.assertGreater(len(list(stipple.Recording.open(self.folder / "clip.strec"))), 0)

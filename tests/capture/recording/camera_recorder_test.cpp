@@ -23,13 +23,13 @@ std::deque<ScriptedStep> scripted(const std::vector<CapturedFrame>& frames) {
 class CameraRecorderTest : public ::testing::Test {
   protected:
     CameraRecording record(std::deque<ScriptedStep> steps, CameraRecorderOptions options,
-                           const CameraRecorder::GoesOn& goes_on) {
+                           const CameraRecorder::ProgressCallback& progress) {
         options.session.reconnect = false;
         CameraRecorder recorder(plays({std::move(steps)}, test_session().camera), {{"Gain", "2"}},
                                 file_, std::move(options));
         EXPECT_EQ(recorder.description().model, test_session().camera.model);
         EXPECT_EQ(recorder.file(), file_);
-        return recorder.record(goes_on);
+        return recorder.record(progress);
     }
 
     TemporaryFolder folder_;
@@ -47,8 +47,8 @@ TEST_F(CameraRecorderTest, TheFileHoldsAsManyFramesAsTheLimit) {
     EXPECT_FALSE(recording.failure);
     EXPECT_FALSE(recording.lost);
     EXPECT_EQ(recording.end.frames, 5U);
-    ASSERT_TRUE(recording.frames_per_s);
-    EXPECT_NEAR(*recording.frames_per_s, 200, 1e-9);  // test_frame: 5 ms apart
+    ASSERT_TRUE(recording.frames_hz);
+    EXPECT_NEAR(*recording.frames_hz, 200, 1e-9);  // test_frame: 5 ms apart
     RecordingReader reader(file_);
     EXPECT_EQ(reader.session().settings, (CameraSettings{{"Gain", "2"}}));
     const auto read = read_frames(reader);

@@ -68,7 +68,7 @@ struct CountingCamera {
     bool push_next(RecordingQueue& queue) {
         CapturedFrame frame = test_frame(next++, "Mono8", 200, 100);
         frame.record.lost_before = lost;
-        if (lost > 0) frame.record.cause = GapCause::kOwnDrop;
+        if (lost > 0) frame.record.cause = GapCause::kQueueDrop;
         const bool taken = queue.push(std::move(frame));
         lost = taken ? 0 : lost + 1;
         return taken;
