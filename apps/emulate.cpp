@@ -17,6 +17,7 @@
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
+#include "capture/level_warning.h"
 #include "capture/rate_warning.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"
@@ -64,6 +65,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
     say_rate_warnings(options, footage, setup.params);
+    say_warning(black_level_warning(options.footage, footage.traits(), setup.params));
     const SlotSource slots =
         slots_of(footage, options.footage, options.resample, options.reading, setup.params.slot_us);
     JsonFile json(run);

@@ -31,6 +31,8 @@ class ReadAhead {
     [[nodiscard]] std::optional<double> video_hz() const;
     /// As FootageReader::exposure_us; a recording does not tell.
     [[nodiscard]] std::optional<double> exposure_us() const;
+    /// As FootageReader::traits; empty of a recording.
+    [[nodiscard]] SourceTraits traits() const;
     /// Whose mosaic the frames are.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.
