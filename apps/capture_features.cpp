@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -8,10 +7,8 @@
 #include "apps/report/column_width.h"
 #include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
 #include "apps/subcommands.h"
-#include "capture/camera_kind.h"
-#include "core/error.h"
+#include "capture/camera_feature.h"
 #include "core/joined.h"
 #include "stream/plain_text.h"
 
@@ -24,30 +21,6 @@ struct FeaturesOptions {
     std::string address;
     std::string pattern;  ///< empty: all
 };
-
-/// Upper and lower case are equal. A pattern without wildcards matches any part of the name.
-bool matches(const std::string& name, const std::string& pattern) {
-    const bool is_part = pattern.find_first_of("*?[") == std::string::npos;
-    const std::string whole = is_part ? "*" + pattern + "*" : pattern;
-    return fnmatch(whole.c_str(), name.c_str(), FNM_CASEFOLD) == 0;
-}
-
-std::vector<CameraFeature> features_of(const FeaturesOptions& options) {
-    const CameraKind& kind = camera_kind(options.address);
-    if (kind.features == nullptr)
-        throw InputError(options.address,
-                         "has no features; gige:IP, usb:SERIAL and v4l2:/dev/videoN have");
-    std::vector<CameraFeature> features = kind.features(options.address);
-    const std::size_t all = features.size();
-    std::erase_if(features, [&](const CameraFeature& feature) {
-        return !matches(feature.name, options.pattern);
-    });
-    if (features.empty() && all > 0)
-        throw InputError(
-            fmt::format("\"{}\"", options.pattern),
-            fmt::format("matches none of the {} of {}", counted(all, "feature"), options.address));
-    return features;
-}
 
 ordered_json features_json(const FeaturesOptions& options,
                            const std::vector<CameraFeature>& features) {
@@ -101,7 +74,7 @@ std::string features_text(const std::vector<CameraFeature>& features) {
 
 void list_features(const FeaturesOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    const std::vector<CameraFeature> features = features_of(options);
+    const std::vector<CameraFeature> features = camera_features(options.address, options.pattern);
     json.write(features_json(options, features));
     run.say(features.empty() ? "no features" : features_text(features));
 }

@@ -18,6 +18,7 @@
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
+#include "capture/level_warning.h"
 #include "capture/rate_warning.h"
 #include "capture/recording/read_ahead.h"
 #include "capture/recording/resampled_footage.h"
@@ -119,6 +120,7 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
     say_rate_warnings(options, footage, setup.params);
+    say_warning(black_level_warning(options.footage, footage.traits(), setup.params));
     ResampledFootage slots = slots_of(footage, options, setup.params.slot_us);
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());

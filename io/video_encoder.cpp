@@ -73,9 +73,11 @@ std::string x265_parameters(const VideoCoding& coding) {
     std::string text = fmt::format("log-level=none:info=0:pools={}:frame-threads=1", kThreads);
     if (coding.curve == VideoCurve::kPq)
         text += fmt::format(
-            ":hdr10=1:master-display=G({},{})B({},{})R({},{})WP({},{})L({:.0f},{:.0f})", kGreen[0],
-            kGreen[1], kBlue[0], kBlue[1], kRed[0], kRed[1], kWhite[0], kWhite[1],
-            coding.peak_cd * kLuminanceUnits, kMinDisplayCd * kLuminanceUnits);
+            ":hdr10=1:max-cll={},{}"
+            ":master-display=G({},{})B({},{})R({},{})WP({},{})L({:.0f},{:.0f})",
+            kUnknownMaxCll, kUnknownMaxFall, kGreen[0], kGreen[1], kBlue[0], kBlue[1], kRed[0],
+            kRed[1], kWhite[0], kWhite[1], coding.peak_cd * kLuminanceUnits,
+            kMinDisplayCd * kLuminanceUnits);
     return text;
 }
 

@@ -21,14 +21,14 @@ void visit_emulation_figures(const StreamRecorder& recorder, const Add& add) {
 
 /// The speed of an emulation; std::nullopt where it is not known.
 template <typename Add>
-void visit_speed_figures(const StreamRecorder& recorder, std::optional<double> slots_per_s,
+void visit_speed_figures(const StreamRecorder& recorder, std::optional<double> slots_per_second,
                          const Add& add) {
     const ReadoutStats& stats = recorder.stats();
     std::optional<double> samples_per_s;
-    if (slots_per_s)
+    if (slots_per_second)
         samples_per_s =
-            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
-    add("slots_per_second", slots_per_s);
+            *slots_per_second * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
+    add("slots_per_second", slots_per_second);
     add("samples_per_second", samples_per_s);
 }
 

@@ -12,10 +12,10 @@
 namespace stipple {
 
 nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
-                                      std::optional<double> slots_per_s) {
+                                      std::optional<double> slots_per_second) {
     auto json = json_of([&](const auto& add) {
         visit_emulation_figures(recorder, add);
-        visit_speed_figures(recorder, slots_per_s, add);
+        visit_speed_figures(recorder, slots_per_second, add);
     });
     if (const ReadoutCost* cost = recorder.readout_cost())
         json["readout"] = readout_json(*cost, recorder.light_throughput());

@@ -96,7 +96,8 @@ RunReport::RunReport(RunReportOptions options, FrameShape shape, const FluxVideo
       videos_(shape, area_, options_.quality, truth) {
     if (area_.rows < shape.rows || area_.cols < shape.cols)
         notes_.push_back(fmt::format(
-            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on (--crop).",
+            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on (report "
+            "--crop).",
             area_.cols, area_.rows, shape.cols, shape.rows, area_.first_col, area_.first_row));
     if (truth == nullptr) return;
     videos_.add({"truth", "the light that the sensor saw", {}});

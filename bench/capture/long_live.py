@@ -290,7 +290,7 @@ def print_totals(live, slots, memory):
         slots.fault("`live` gave no figures")
     else:
         lost = sum(live["lost"].values())
-        dropped = live["lost"]["own_drop"]
+        dropped = live["lost"]["queue_drop"]
         print(f"frames complete: {live['frames']}\n"
               f"frames incomplete: {live['incomplete']}\n"
               f"frames dropped, queue full: {dropped}\n"

@@ -62,6 +62,11 @@ std::optional<double> ReadAhead::exposure_us() const {
     return footage == nullptr ? std::nullopt : footage->exposure_us();
 }
 
+SourceTraits ReadAhead::traits() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage == nullptr ? SourceTraits{} : footage->traits();
+}
+
 ColourFilter ReadAhead::filter() const {
     return std::visit([](const auto& reader) { return reader.filter(); }, reader_);
 }

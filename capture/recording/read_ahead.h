@@ -31,6 +31,8 @@ class ReadAhead {
     [[nodiscard]] std::optional<double> frames_hz() const;
     /// As FootageReader::exposure_us; unknown for a recording.
     [[nodiscard]] std::optional<double> exposure_us() const;
+    /// As FootageReader::traits; empty of a recording.
+    [[nodiscard]] SourceTraits traits() const;
     /// Colour filter array of the frames; kNone: they are no mosaic.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.

@@ -13,9 +13,9 @@ namespace stipple {
 
 /// What a source of frames for a served camera has to offer.
 struct ServedImage {
-    static constexpr double kUsualFramesPerS = 25;  ///< where neither user nor source names a rate
-    static constexpr double kMinFramesPerS = 0.01;
-    static constexpr double kMaxFramesPerS = 100'000;
+    static constexpr double kUsualFramesHz = 25;  ///< where neither user nor source names a rate
+    static constexpr double kMinFramesHz = 0.01;
+    static constexpr double kMaxFramesHz = 100'000;
 
     int width = 0;
     int height = 0;

@@ -74,7 +74,7 @@ Values values_of(const ServedImage& image) {
     add("height", image.height);
     add("col_step", gige_width_step(image));
     add("row_step", image.formats.front()->filter == ColourFilter::kNone ? 1 : 2);
-    add("min_frames_per_s", ServedImage::kMinFramesPerS);
+    add("min_frames_hz", ServedImage::kMinFramesHz);
     // The register holds it as a float, which may be the larger.
     add("max_frames_hz",
         std::max(image.frames_hz, static_cast<double>(static_cast<float>(image.frames_hz))));

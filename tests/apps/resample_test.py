@@ -81,7 +81,7 @@ class ResampleTest(ProgramTest):
         for method in ("hold", "blend", "flow"):
             for hz in ("1e-300", "1e-3", "1e12", "1e300"):
                 with self.subTest(method=method, hz=hz):
-                    self.fails(INPUT, ["clip.raw: has ", "frames/s", "--footage-hz"], "emulate", "clip.raw", "--raw",
+                    self.fails(INPUT, ["clip.raw: has ", "frames/s", "--frames-hz"], "emulate", "clip.raw", "--raw",
                                f"16x16:mono8:hz={hz}", "-o", "x.stipple", *SLOT, "--resample", method)
 
     def test_factors_that_are_no_light_are_refused(self):

@@ -199,7 +199,7 @@ class ServeTest(ProgramTest):
         scene = self.scene()
         for fault, missing in ((["--fault-begin-at", 4], 4), (["--fault-first-block", 500], 0),
                                (["--fault-gap-at", 0, "--fault-gap", 400], 0)):
-            address = self.serve(scene, "--fps", 50, *fault)
+            address = self.serve(scene, "--frames-hz", 50, *fault)
             figures = json.loads(self.record(address, "clip.strec", "--frames", 3, "--force",
                                              "--json", "-").stdout)
             self.assertEqual(figures["missing_before_first"], missing, fault)

@@ -83,7 +83,7 @@ TEST(CaptureSessionTest, NothingIsLostByACameraWhoseIdsBeginElsewhere) {
 
 TEST(CaptureSessionTest, AFirstFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
     CaptureSession session(begins_with(6, 51), {});
-    session.count_own_drop(next_record(session));
+    session.count_queue_drop(next_record(session));
     EXPECT_EQ(next_record(session).lost_before, 6U);
     EXPECT_EQ(session.totals().missing_before_first, 6U);
 }
