@@ -161,6 +161,7 @@ void warn_of_gamma(const std::string& name, const ReadAhead& result) {
 
 void compare(const CompareOptions& options, const RunOptions& run) {
     const QualityMetrics metrics = chosen_metrics(options.metrics);
+    check_frame_metrics(options, metrics);
     const QualityOptions quality = quality_options(options, metrics);
     JsonFile json(run);
     ReadAhead result = read_result(options);

@@ -45,8 +45,8 @@ struct LiveTask {
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);
-    dict.attr("update")(
-        dict_of([&](const auto& add) { visit_speed_figures(recorder, live.slots_per_second, add); }));
+    dict.attr("update")(dict_of(
+        [&](const auto& add) { visit_speed_figures(recorder, live.slots_per_second, add); }));
     py::list late;
     for (const LateSlot& slot : live.late)
         late.append(py::dict("slot"_a = slot.slot, "arrival_monotonic_ns"_a = slot.arrival_ns,

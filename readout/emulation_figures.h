@@ -26,8 +26,8 @@ void visit_speed_figures(const StreamRecorder& recorder, std::optional<double> s
     const ReadoutStats& stats = recorder.stats();
     std::optional<double> samples_per_s;
     if (slots_per_second)
-        samples_per_s =
-            *slots_per_second * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
+        samples_per_s = *slots_per_second * static_cast<double>(stats.samples) /
+                        static_cast<double>(stats.slots);
     add("slots_per_second", slots_per_second);
     add("samples_per_second", samples_per_s);
 }

@@ -33,8 +33,9 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
                 "--format " + choice.format,
                 "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
-    return std::make_unique<FootageFrames>(
-        choice.path, choice.reading, choice.frames_hz.value_or(ServedImage::kUsualFramesHz), format);
+    return std::make_unique<FootageFrames>(choice.path, choice.reading,
+                                           choice.frames_hz.value_or(ServedImage::kUsualFramesHz),
+                                           format);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct ServedImage {
     int width = 0;
     int height = 0;
     std::vector<const PixelFormat*> formats;  ///< at least one; the first is the default
-    bool croppable = true;  ///< false: the region is fixed, for the bytes are no image
+    bool croppable = true;              ///< false: the region is fixed, for the bytes are no image
     double frames_hz = kUsualFramesHz;  ///< unless the client asks for another rate
     std::optional<std::uint64_t> frames = {};  ///< from a start to the end, if known
     std::uint32_t exposure_map_id = 0;         ///< CRC of the exposure schedule, 0 without
