@@ -1,4 +1,4 @@
-"""Cameras: which there are, their frames, recordings of them, and a chip emulated on them while they run.
+"""Cameras: which there are, their frames, recordings of them, and a chip emulated on them while they run::
 
     for camera in stipple.capture.list(): print(camera.address, camera.model)
     with stipple.capture.frames("gige:192.168.0.5") as frames:
