@@ -1,6 +1,6 @@
-"""Cameras: which there are, their frames, recordings of them, and a chip emulated on them while they run::
+"""Lists cameras, takes and records their frames, and emulates a chip on them while they run::
 
-    for camera in stipple.capture.list(): print(camera.address, camera.model)
+    addresses = [camera.address for camera in stipple.capture.list()]
     with stipple.capture.frames("gige:192.168.0.5") as frames:
         for frame in frames: ...
     recording = stipple.capture.record("gige:192.168.0.5", "clip.strec", seconds=10)

@@ -139,7 +139,7 @@ class ProportionTest(ProgramTest):
     def test_the_limit_of_memory_can_be_told(self):
         self.write_stream(rows=64, cols=64)
         decode = ("decode", "clip.stipple", "-o", "x.npy")
-        self.refuses(["clip.stipple: needs 6 MiB", "than the 4 MiB that --max-memory says",
+        self.refuses(["clip.stipple: needs 7 MiB", "than the 4 MiB that --max-memory says",
                       "--max-memory 64M allows it"], *decode, "--max-memory", "4M")
         self.succeed(*decode, "--max-memory", "0.5G")
         for size in ("", "4", "G", "12Q", "1K", "-1G", "nanG", "1e30G"):
