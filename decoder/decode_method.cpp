@@ -33,7 +33,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      }},
     {"best", DecodeMethod::kBest,
      "collaborative filter of similar patches: slower, 2 to 3 dB better than fast", kMaxCoreSites,
-     55, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
+     58, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_collaborative(task.measurements, task.noise, task.options.best,
