@@ -85,8 +85,7 @@ std::unique_ptr<FrameWriter> open_truth(const EmulateOptions& options, FrameShap
 
 FootageOrigin footage_origin(const EmulateOptions& options) {
     FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
-    if (options.resampling)
-        origin.resample = kResamplingNames[static_cast<std::size_t>(*options.resampling)];
+    if (options.resampling) origin.resample = name_in(kResamplings, *options.resampling);
     return origin;
 }
 

@@ -83,6 +83,7 @@ struct CaptureSession::Impl {
     [[nodiscard]] std::uint64_t lost_at_start(const FrameRecord& record);
     void note_reconnection(const FrameRecord& record);
     void count_lost(std::uint64_t frames);
+    void count_lost(GapCause cause, std::uint64_t frames);
     [[nodiscard]] bool begins_anew(const FrameRecord& record) const;
     [[nodiscard]] bool follows_doubtful(const FrameRecord& record) const;
     void drop_doubtful();
@@ -172,8 +173,7 @@ void CaptureSession::Impl::note_reconnection(const FrameRecord& record) {
         missed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, silent_ns / period_ns - 1));
     }
     ids.restart(camera->wire_id_period(), missed);
-    gap.add(GapCause::kReconnect, missed);
-    totals.lost[static_cast<std::size_t>(GapCause::kReconnect)] += missed;
+    count_lost(GapCause::kReconnect, missed);
     reconnected = false;
 }
 
@@ -190,7 +190,10 @@ void CaptureSession::Impl::count_lost(std::uint64_t frames) {
     const TransportCounts before = counted;
     const bool explained = incomplete_since;
     count_transport(true);
-    const GapCause cause = cause_of(before, counted, explained);
+    count_lost(cause_of(before, counted, explained), frames);
+}
+
+void CaptureSession::Impl::count_lost(GapCause cause, std::uint64_t frames) {
     gap.add(cause, frames);
     totals.lost[static_cast<std::size_t>(cause)] += frames;
 }
@@ -270,8 +273,7 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
         !complete && (options.incomplete == IncompletePolicy::kDrop ||
                       (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
     if (dropped) {
-        gap.add(GapCause::kQueueDrop, 1);
-        ++totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)];
+        count_lost(GapCause::kQueueDrop, 1);
         return drop(std::move(frame));
     }
     if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
@@ -335,8 +337,7 @@ std::uint64_t CaptureSession::late_allocations() const {
 
 void CaptureSession::count_queue_drop(const FrameRecord& record) noexcept {
     impl_->gap.add(record.cause, record.lost_before);
-    impl_->gap.add(GapCause::kQueueDrop, 1);
-    ++impl_->totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)];
+    impl_->count_lost(GapCause::kQueueDrop, 1);
     --impl_->totals.frames;
     if (record.status != FrameStatus::kComplete) --impl_->totals.incomplete;
 }

@@ -6,10 +6,10 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/named_value.h"
 #include "core/plane.h"
 
 namespace stipple {
@@ -26,8 +26,8 @@ enum class Resampling {
     kFlow,   ///< as kBlend; where slots are shorter than frames, frames moved by optical flow
 };
 
-/// By Resampling.
-inline constexpr std::array<std::string_view, 3> kResamplingNames{"hold", "blend", "flow"};
+inline constexpr auto kResamplings = std::to_array<NamedValue<Resampling>>(
+    {{"hold", Resampling::kHold}, {"blend", Resampling::kBlend}, {"flow", Resampling::kFlow}});
 
 /// Dense motion between images: (x, y) in pixels for each pixel.
 using FlowFunction = std::function<void(PlaneView<const float> from, PlaneView<const float> to,

@@ -5,12 +5,14 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "capture/camera_kind.h"
 #include "capture/image_camera.h"
+#include "capture/live_camera.h"
 #include "capture/session_figures.h"
 #include "core/config.h"
 #include "core/error.h"
@@ -56,6 +58,13 @@ CaptureSession::Opener CameraTask::opener() const {
     return [address = address, settings = settings, buffers = buffers] {
         return open_image_camera(address, settings, buffers);
     };
+}
+
+std::size_t queue_of(std::size_t frames) {
+    constexpr std::size_t kMax = LiveCameraOptions::kMaxWaitingFrames;
+    if (frames < 1 || frames > kMax)
+        throw InputError("queue", fmt::format("{} is outside 1..{}", frames, kMax));
+    return frames;
 }
 
 bool CameraTask::is_replay() const {

@@ -1,7 +1,5 @@
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,19 +14,13 @@
 namespace stipple::python {
 namespace {
 
-/// Interval at which a wait looks for Ctrl-C.
-constexpr std::chrono::milliseconds kPollInterval{100};
-
 /// The frames of a camera that runs, handed over without a copy.
 class CameraFrames {
   public:
     CameraFrames(CameraTask task, std::size_t queue_frames) : task_(std::move(task)) {
-        constexpr std::size_t kMax = LiveCameraOptions::kMaxWaitingFrames;
-        if (queue_frames < 1 || queue_frames > kMax)
-            throw InputError("queue", fmt::format("{} is outside 1..{}", queue_frames, kMax));
         const py::gil_scoped_release released;
         LiveCameraOptions options{.session = task_.session,
-                                  .waiting_frames = queue_frames,
+                                  .waiting_frames = queue_of(queue_frames),
                                   .from_start = task_.is_replay(),
                                   .tell = {}};
         options.tell = [this](const SessionEvent& event) { warnings_.take(event); };
@@ -43,7 +35,7 @@ class CameraFrames {
             bool came = false;
             {
                 const py::gil_scoped_release released;
-                came = camera_->next(*frame, kPollInterval);
+                came = camera_->next(*frame, kSignalInterval);
             }
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             warnings_.pass_on();

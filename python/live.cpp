@@ -161,12 +161,10 @@ void bind_live(py::module_& module) {
                          const std::string& overrun, double black_level_dn,
                          std::size_t queue_frames, double late_after_slots,
                          std::optional<PreviewTask> preview) {
-            if (queue_frames < 1 || queue_frames > 4096)
-                throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
             if (!(late_after_slots > 0))
                 throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
-            LiveTask task{sensor_of(sensor), schedule,         black_level_dn,
-                          queue_frames,      late_after_slots, std::move(preview)};
+            LiveTask task{sensor_of(sensor),      schedule,         black_level_dn,
+                          queue_of(queue_frames), late_after_slots, std::move(preview)};
             task.sensor.choice.seed = seed;
             task.sensor.choice.overrun = overrun_policy(overrun);
             return task;

@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <future>
 #include <memory>
@@ -21,9 +20,6 @@ namespace stipple::python {
 namespace {
 
 using namespace pybind11::literals;
-
-/// How often a wait looks for Ctrl-C.
-constexpr std::chrono::milliseconds kPatience{100};
 
 /// A decoded frame as Python sees it.
 struct FrameArrays {
@@ -104,7 +100,7 @@ bool ShownPreview::pass_on() noexcept {
 void ShownPreview::finish(bool give_up) {
     if (give_up) stopped_ = true;
     const auto ended = std::async(std::launch::async, [this] { preview_.finish([] {}); });
-    while (ended.wait_for(kPatience) != std::future_status::ready) {
+    while (ended.wait_for(kSignalInterval) != std::future_status::ready) {
         const py::gil_scoped_acquire gil;
         if (raised_ || PyErr_CheckSignals() == 0) continue;
         raised_ = std::make_exception_ptr(py::error_already_set());

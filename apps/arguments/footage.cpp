@@ -1,9 +1,6 @@
 #include "apps/arguments/footage.h"
 
-#include <cstddef>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/arguments/checks.h"
 #include "apps/standard_error.h"
@@ -48,11 +45,8 @@ void add_resample_arguments(Command& command, std::optional<Resampling>& method,
                             FootageOptions& options) {
     constexpr double kMinHz = 0.001;
     constexpr double kMaxHz = 1e9;
-    std::vector<std::pair<std::string, std::optional<Resampling>>> methods;
-    for (std::size_t i = 0; i < kResamplingNames.size(); ++i)
-        methods.emplace_back(kResamplingNames[i], static_cast<Resampling>(i));
     command
-        .add_choice("--resample", method, methods,
+        .add_choice("--resample", method, kResamplings,
                     "make slots of frames of another rate: hold the frame before, blend light, or "
                     "move it by optical flow")
         .default_text("each frame is a slot")

@@ -23,9 +23,8 @@ std::optional<int> take_number(std::string_view& text) {
 
 }  // namespace
 
-PixelArea middle_area(FrameShape frame, int most_rows, int most_cols) {
-    PixelArea area{.rows = std::min(frame.rows, most_rows),
-                   .cols = std::min(frame.cols, most_cols)};
+PixelArea middle_area(FrameShape frame, int max_rows, int max_cols) {
+    PixelArea area{.rows = std::min(frame.rows, max_rows), .cols = std::min(frame.cols, max_cols)};
     area.first_row = (frame.rows - area.rows) / 2;
     area.first_col = (frame.cols - area.cols) / 2;
     return area;

@@ -24,7 +24,7 @@ struct PixelArea {
 inline constexpr PixelArea kLargestReportArea{.rows = 480, .cols = 640};
 
 /// The middle of `frame`, with at most so many pixels.
-[[nodiscard]] PixelArea middle_area(FrameShape frame, int most_rows, int most_cols);
+[[nodiscard]] PixelArea middle_area(FrameShape frame, int max_rows, int max_cols);
 
 /// "320x240+100+50": width, height, first column, first row; without a place it lies at (0, 0).
 /// Nothing for other texts, and for an area without pixels.

@@ -70,7 +70,7 @@ class ValueCosts {
         }
     }
 
-    /// The first feature whose value takes more than `most`; empty if there is none.
+    /// The first feature whose value takes more than `max_cost`; empty if there is none.
     [[nodiscard]] std::string costly_feature(double max_cost) {
         for (const auto& [name, feature] : features_)
             if (cost(name, 0) > max_cost) return name;

@@ -36,10 +36,11 @@ SessionRecord session_record(const CameraDescription& camera, const CameraSettin
 /// Frames of 10 s, for which a disk seldom stands still; memory for them is allocated in advance.
 std::size_t reserved_frames(const Camera& camera) {
     constexpr std::chrono::seconds kDiskPause{10};
-    constexpr std::int64_t kFewest = 64, kUsual = 256, kMost = 4096;
+    constexpr std::int64_t kMinFrames = 64, kUsualFrames = 256, kMaxFrames = 4096;
     const std::chrono::nanoseconds period = nominal_period(camera.description());
-    if (period.count() == 0) return kUsual;
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(kDiskPause / period, kFewest, kMost));
+    if (period.count() == 0) return kUsualFrames;
+    return static_cast<std::size_t>(
+        std::clamp<std::int64_t>(kDiskPause / period, kMinFrames, kMaxFrames));
 }
 
 std::string text_of(const std::exception_ptr& failure) {
