@@ -113,8 +113,6 @@ void decode_slots(const fs::path& stream, DecodeMethod method, std::int64_t slot
     StreamReader reader(stream);
     DecodeOptions options;
     options.method = method;
-    options.where = stream.string();
-    options.input_bytes = input_bytes(stream);
     Progress progress(run, fmt::format("{}, {}", stream.filename().string(), named(method).name),
                       std::min(reader.slots().value_or(slots), slots));
     decode(
