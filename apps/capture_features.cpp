@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "apps/report/column_width.h"
-#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/camera_feature.h"
 #include "core/joined.h"
+#include "report/json_figures.h"
 #include "stream/plain_text.h"
 
 namespace stipple {

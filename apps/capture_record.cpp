@@ -12,7 +12,6 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
@@ -25,6 +24,7 @@
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 namespace {

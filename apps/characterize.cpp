@@ -17,14 +17,11 @@
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/camera_report.h"
-#include "apps/report/chart.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/own_command.h"
 #include "apps/report/progress.h"
 #include "apps/report/text_file.h"
-#include "apps/run_report/report_page.h"
-#include "apps/run_report/run_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -34,6 +31,8 @@
 #include "metrics/emva1288/series_evaluation.h"
 #include "readout/flat_field.h"
 #include "readout/sensor_file.h"
+#include "report/chart.h"
+#include "report/run_report.h"
 #include "sensor_model/configured_figures.h"
 
 namespace stipple {
@@ -130,9 +129,7 @@ bool write_result(const PendingOutput& folder, const std::string& name, std::str
 }
 
 std::string page_of(const CameraReport& camera, const std::string& title) {
-    auto data = empty_report_json(title, own_command());
-    data["camera"] = camera_json(camera);
-    return report_page(title, data, {});
+    return camera_page(title, own_command(), camera_json(camera).dump());
 }
 
 /// Draws the charts into the folder, and a page of them, as far as they can be. Returns how many

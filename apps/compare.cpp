@@ -17,7 +17,6 @@
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/quality_metrics.h"
 #include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
@@ -26,6 +25,7 @@
 #include "io/footage_files.h"
 #include "io/pending_output.h"
 #include "metrics/video_quality.h"
+#include "report/quality_metrics.h"
 
 namespace stipple {
 namespace {

@@ -21,7 +21,6 @@
 #include "apps/standard_error.h"
 #include "core/config.h"
 #include "core/error.h"
-#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
@@ -43,8 +42,6 @@ DecodeOptions options_of(const DecodeArguments& arguments) {
                         : Config(arguments.options, arguments.settings, "decoder");
     DecodeOptions options = read_decode_options(method, config);
     options.fill_gaps = arguments.fill_gaps;
-    options.where = arguments.stream;
-    if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
     return options;
 }
 

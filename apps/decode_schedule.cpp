@@ -8,9 +8,9 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_figures.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 namespace {

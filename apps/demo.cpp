@@ -11,10 +11,10 @@
 #include "apps/report/json_file.h"
 #include "apps/report/own_command.h"
 #include "apps/report/text_file.h"
-#include "apps/run_report/run_report.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
+#include "report/run_report.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 
 #include "apps/arguments/run_options.h"
 #include "apps/report/demo_report.h"
-#include "apps/run_report/run_report.h"
 #include "core/flux_video.h"
+#include "report/run_report.h"
 
 namespace stipple {
 

@@ -10,16 +10,16 @@
 #include "apps/info_recording.h"
 #include "apps/info_settings.h"
 #include "apps/interrupt.h"
-#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
-#include "apps/report/stream_text.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "readout/provenance.h"
 #include "readout/timing/stretched_slots.h"
+#include "report/json_figures.h"
+#include "report/stream_text.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
@@ -23,6 +22,7 @@
 #include "io/footage_reader.h"
 #include "io/photron_file.h"
 #include "io/video_reader.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -12,7 +12,6 @@
 #include "apps/key_list.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
-#include "apps/report/schedule_text.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/joined.h"
@@ -21,6 +20,7 @@
 #include "io/footage_files.h"
 #include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
+#include "report/schedule_text.h"
 #include "scenes/scene.h"
 #include "sensor_model/sensor_keys.h"
 

@@ -17,10 +17,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/own_command.h"
 #include "apps/report/progress.h"
-#include "apps/report/stream_text.h"
 #include "apps/report/text_file.h"
-#include "apps/run_report/report_page.h"
-#include "apps/run_report/run_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -28,6 +25,8 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "report/run_report.h"
+#include "report/stream_text.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -114,8 +113,6 @@ void decode_slots(const fs::path& stream, DecodeMethod method, std::int64_t slot
     StreamReader reader(stream);
     DecodeOptions options;
     options.method = method;
-    options.where = stream.string();
-    options.input_bytes = input_bytes(stream);
     Progress progress(run, fmt::format("{}, {}", stream.filename().string(), named(method).name),
                       std::min(reader.slots().value_or(slots), slots));
     decode(
@@ -194,14 +191,14 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
     std::optional<FluxVideo> truth;
     if (!arguments.truth.empty()) truth = read_truth(arguments, shape);
     RunReport report(page_options(arguments, streams, truth), shape, truth ? &*truth : nullptr);
-    if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera));
+    if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera).dump());
     std::vector<std::size_t> decoded;
     decoded.reserve(streams.size());
     for (const ShownStream& stream : add_streams(report, streams))
         decoded.push_back(add_videos(report, stream, arguments, run));
     report.feature(decoded.front());
     report.fit();
-    const auto data = report.json();
+    const auto data = nlohmann::ordered_json::parse(report.json());
     const std::string page = report.page();
     write_text(output, page);
     json.write({{"file", arguments.output},

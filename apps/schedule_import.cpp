@@ -6,12 +6,12 @@
 #include "apps/arguments/checks.h"
 #include "apps/arguments/output_names.h"
 #include "apps/report/json_file.h"
-#include "apps/report/schedule_text.h"
 #include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
+#include "report/schedule_text.h"
 #include "stream/stream_header.h"
 
 namespace stipple {

@@ -5,10 +5,10 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
-#include "apps/report/schedule_text.h"
 #include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "readout/schedules/code_schedule.h"
+#include "report/schedule_text.h"
 
 namespace stipple {
 namespace {

@@ -8,8 +8,8 @@
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/report/schedule_chart.h"
-#include "apps/report/schedule_text.h"
 #include "apps/subcommands.h"
+#include "report/schedule_text.h"
 
 namespace stipple {
 namespace {

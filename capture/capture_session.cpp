@@ -9,8 +9,9 @@
 
 #include "capture/camera_reopener.h"
 #include "capture/camera_timing.h"
-#include "capture/frame_gap.h"
 #include "capture/frame_ids.h"
+#include "capture/loss_counter.h"
+#include "capture/repeat_filter.h"
 
 namespace stipple {
 namespace {
@@ -20,27 +21,6 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr int kStallPeriods = 5;
-/// How often the transport's counters are read while nothing is amiss: reading them costs more than
-/// a frame of a fast camera does.
-constexpr milliseconds kCountEvery{200};
-
-/// From one frame to the next, by which a counter that began anew is known.
-constexpr std::uint64_t kMaxSteps = 8;
-
-TransportCounts sum(TransportCounts a, const TransportCounts& b) {
-    a.underruns += b.underruns;
-    a.packets_resent += b.packets_resent;
-    a.packets_missing += b.packets_missing;
-    a.socket_drops += b.socket_drops;
-    a.link_faults += b.link_faults;
-    a.size_mismatches += b.size_mismatches;
-    return a;
-}
-
-/// Whether both are stamped, by the same clock.
-bool have_stamps(const FrameRecord& a, const FrameRecord& b) {
-    return a.stamp_source == b.stamp_source && a.stamp_source != StampSource::kNone;
-}
 
 }  // namespace
 
@@ -55,15 +35,9 @@ struct CaptureSession::Impl {
     FrameIds ids{2};
     std::uint32_t epoch = 0;
     SessionTotals totals;
-    FrameGap gap;
-    bool reconnected = false;               ///< no frame since
-    std::optional<CapturedFrame> doubtful;  ///< a repeat, or the first of a counter that began anew
-    std::optional<CapturedFrame> coming;    ///< that showed it was the latter
-
-    TransportCounts earlier_epochs;
-    TransportCounts counted;  ///< of this epoch, at `counted_at`
-    Clock::time_point counted_at;
-    bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
+    LossCounter losses;
+    RepeatFilter repeats;
+    bool reconnected = false;  ///< no frame since
 
     Clock::time_point last_sign;             ///< start, or the last frame that was no repeat
     nanoseconds silence{};                   ///< time of waiting in vain since then
@@ -77,17 +51,12 @@ struct CaptureSession::Impl {
     [[nodiscard]] SessionEvent begin_outage(std::string reason);
     [[nodiscard]] SessionEvent wait_for_camera(milliseconds timeout);
     [[nodiscard]] SessionEvent wait_for_frame(milliseconds timeout);
-    void count_transport(bool now);
-    void count_last_underruns();
     void number(FrameRecord& record);
     [[nodiscard]] std::uint64_t lost_at_start(const FrameRecord& record);
     void note_reconnection(const FrameRecord& record);
     void count_lost(std::uint64_t frames);
     void count_lost(GapCause cause, std::uint64_t frames);
-    [[nodiscard]] bool begins_anew(const FrameRecord& record) const;
-    [[nodiscard]] bool follows_doubtful(const FrameRecord& record) const;
-    void drop_doubtful();
-    [[nodiscard]] NoFrame drop(CapturedFrame frame);
+    void drop_repeat(std::optional<CapturedFrame> frame);
     [[nodiscard]] SessionEvent take(CapturedFrame frame);
     [[nodiscard]] SessionEvent deliver(CapturedFrame frame);
 };
@@ -97,10 +66,9 @@ void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
     camera->use(pool);
     description = camera->description();
     layout = camera->layout();
-    counted = {};
-    counted_at = last_sign = Clock::now();
+    last_sign = Clock::now();
+    losses.begin_epoch(last_sign);
     silence = {};
-    incomplete_since = false;
     first_frame.reset();
 }
 
@@ -128,10 +96,9 @@ SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
         camera->stop();
         return DeviceLost{std::move(reason)};
     }
-    drop_doubtful();
+    drop_repeat(repeats.take_doubtful());
     period_before = period();
-    count_transport(true);
-    earlier_epochs = sum(earlier_epochs, std::exchange(counted, {}));
+    losses.end_epoch(*camera, Clock::now());
     std::erase_if(reopeners, [](const auto& old) { return old->is_done(); });
     reopeners.push_back(std::make_unique<CameraReopener>(std::move(camera), open));
     return Outage{std::move(reason)};
@@ -144,23 +111,6 @@ SessionEvent CaptureSession::Impl::wait_for_camera(milliseconds timeout) {
     take_over(std::move(back));
     reconnected = true;
     return Recovery{gone_s};
-}
-
-void CaptureSession::Impl::count_transport(bool now) {
-    if (!now && Clock::now() - counted_at < kCountEvery) return;
-    const std::uint64_t unexplained = counted.underruns;
-    counted = camera->counts();
-    // An underrun always costs a frame: where none is missing yet, frames from before it wait.
-    if (!now && first_frame) counted.underruns = unexplained;
-    counted_at = Clock::now();
-    incomplete_since = false;
-}
-
-/// Of a replay, after its last frame: no other will tell that they are missing.
-void CaptureSession::Impl::count_last_underruns() {
-    const std::uint64_t before = counted.underruns;
-    count_transport(true);
-    totals.lost[static_cast<std::size_t>(GapCause::kHostUnderrun)] += counted.underruns - before;
 }
 
 /// Frames that the camera would have sent while it was gone.
@@ -185,17 +135,14 @@ std::uint64_t CaptureSession::Impl::lost_at_start(const FrameRecord& record) {
     return frames;
 }
 
-/// For the cause that the transport has counted since the last look.
 void CaptureSession::Impl::count_lost(std::uint64_t frames) {
-    const TransportCounts before = counted;
-    const bool explained = incomplete_since;
-    count_transport(true);
-    count_lost(cause_of(before, counted, explained), frames);
+    losses.count_unexplained(*camera, frames, Clock::now());
+    totals.lost = losses.lost();
 }
 
 void CaptureSession::Impl::count_lost(GapCause cause, std::uint64_t frames) {
-    gap.add(cause, frames);
-    totals.lost[static_cast<std::size_t>(cause)] += frames;
+    losses.count(cause, frames);
+    totals.lost = losses.lost();
 }
 
 void CaptureSession::Impl::number(FrameRecord& record) {
@@ -216,49 +163,25 @@ void CaptureSession::Impl::number(FrameRecord& record) {
     if (lost > 0) {
         count_lost(lost);
     } else {
-        count_transport(false);
+        losses.note_frame(*camera, !first_frame, Clock::now());
     }
-    if (record.status != FrameStatus::kComplete) incomplete_since = true;
+    if (record.status != FrameStatus::kComplete) losses.note_incomplete();
 }
 
-/// Of a frame with a past id: its clock went on, or, of a camera without clock, its counter stands.
-bool CaptureSession::Impl::begins_anew(const FrameRecord& record) const {
-    return have_stamps(record, *last_frame) ? record.device_ns > last_frame->device_ns
-                                            : record.wire_id == last_frame->wire_id;
-}
-
-bool CaptureSession::Impl::follows_doubtful(const FrameRecord& record) const {
-    const FrameRecord& first = doubtful->record;
-    const std::uint64_t steps = ids.steps(first.wire_id, record.wire_id);
-    const bool is_older = have_stamps(record, first) && record.device_ns < first.device_ns;
-    return steps > 0 && steps <= kMaxSteps && !is_older;
-}
-
-void CaptureSession::Impl::drop_doubtful() {
-    if (!doubtful) return;
-    ++totals.repeated;
-    static_cast<void>(drop(*std::exchange(doubtful, {})));
-}
-
-/// Without a count.
-NoFrame CaptureSession::Impl::drop(CapturedFrame frame) {
-    pool.give_back(std::move(frame.payload));
-    return {};
+/// Counts it, unless a packet that was resent late made it.
+void CaptureSession::Impl::drop_repeat(std::optional<CapturedFrame> frame) {
+    if (!frame) return;
+    if (frame->record.status == FrameStatus::kComplete) ++totals.repeated;
+    pool.give_back(std::move(frame->payload));
 }
 
 SessionEvent CaptureSession::Impl::take(CapturedFrame frame) {
-    const FrameRecord& record = frame.record;
-    const bool is_past = !reconnected && ids.is_past(record.wire_id);
-    // A packet that was resent too late: Aravis makes a frame of it again, long after the frame.
-    if (is_past && record.status != FrameStatus::kComplete) return drop(std::move(frame));
-    if (is_past && doubtful && follows_doubtful(record)) {
-        coming = std::move(frame);
-        return deliver(*std::exchange(doubtful, {}));
-    }
-    drop_doubtful();
-    if (!is_past || begins_anew(record)) return deliver(std::move(frame));
-    doubtful = std::move(frame);
-    return NoFrame{};
+    const bool all_are_new = reconnected || !last_frame;
+    RepeatFilter::Sorted sorted =
+        repeats.take(std::move(frame), ids, all_are_new ? nullptr : &*last_frame);
+    drop_repeat(std::move(sorted.left_out));
+    if (!sorted.next) return NoFrame{};
+    return deliver(std::move(*sorted.next));
 }
 
 SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
@@ -274,19 +197,20 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
                       (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
     if (dropped) {
         count_lost(GapCause::kQueueDrop, 1);
-        return drop(std::move(frame));
+        pool.give_back(std::move(frame.payload));
+        return NoFrame{};
     }
     if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
+    const FrameGap gap = losses.take_gap();
     record.lost_before = gap.total();
     record.cause = gap.cause();
-    gap = {};
     if (totals.frames++ == 0) totals.missing_before_first = record.lost_before;
     if (!complete) ++totals.incomplete;
     return frame;
 }
 
 SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
-    if (coming) return deliver(*std::exchange(coming, {}));
+    if (auto waiting = repeats.take_waiting()) return deliver(std::move(*waiting));
     const auto limit = stall_timeout();
     if (limit) {
         const auto left = std::chrono::ceil<milliseconds>(*limit - silence);
@@ -299,7 +223,8 @@ SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return take(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
         if (!lost->at_end && !lost->bad_file) return begin_outage(std::move(lost->reason));
-        count_last_underruns();
+        losses.count_last_underruns(*camera, Clock::now());
+        totals.lost = losses.lost();
         return std::move(*lost);
     }
     if (limit && silence >= *limit)
@@ -336,7 +261,7 @@ std::uint64_t CaptureSession::late_allocations() const {
 }
 
 void CaptureSession::count_queue_drop(const FrameRecord& record) noexcept {
-    impl_->gap.add(record.cause, record.lost_before);
+    impl_->losses.add_to_gap(record.cause, record.lost_before);
     impl_->count_lost(GapCause::kQueueDrop, 1);
     --impl_->totals.frames;
     if (record.status != FrameStatus::kComplete) --impl_->totals.incomplete;
@@ -355,8 +280,7 @@ const SessionTotals& CaptureSession::totals() const {
 }
 
 TransportCounts CaptureSession::transport() const {
-    return impl_->camera ? sum(impl_->earlier_epochs, impl_->camera->counts())
-                         : impl_->earlier_epochs;
+    return impl_->losses.transport(impl_->camera.get());
 }
 
 }  // namespace stipple

@@ -13,6 +13,7 @@ set(stipple_libraries_known
     "PkgConfig::OpenEXR | | OpenEXR"
     "tinyxml2::tinyxml2 | tinyxml2 | tinyxml2"
     "hwy::hwy | hwy | libhwy"
+    "ZLIB::ZLIB | ZLIB | zlib"
     "OpenSSL::Crypto | OpenSSL | libcrypto"
     "Eigen3::Eigen | Eigen3 |"
     "nlohmann_json::nlohmann_json | nlohmann_json |"

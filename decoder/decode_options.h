@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "core/config.h"
-#include "core/memory_limit.h"
 #include "decoder/best/collaborative.h"
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
@@ -20,9 +16,7 @@ struct DecodeOptions {
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
     StageSink stages = {};
-    bool fill_gaps = false;                     ///< decode missing slots, whatever their number
-    std::string where = "sample stream";        ///< name of the input in messages
-    std::uint64_t input_bytes = kEndlessInput;  ///< size of the file
+    bool fill_gaps = false;  ///< decode missing slots, whatever their number
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

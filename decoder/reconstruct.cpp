@@ -60,7 +60,7 @@ class PacketBuffer {
         const std::int64_t max_missing =
             max_missing_slots(present_, decoded_shape(reader_.header()));
         if (!options_.fill_gaps && missing_ > max_missing)
-            throw InputError(options_.where,
+            throw InputError(reader_.name(),
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
                                          "decode them too, give --fill-gaps",
                                          slots_, slot - 1, missing_, missing_ + present_));
@@ -183,16 +183,17 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
 /// Slots with few samples take few bytes, but are frames. \throws InputError if the first `slots`
 /// slots are more than 2^25 values of light (128 MB), and more than 128 for a sample or, of a file
 /// of less than 1 MB, more than 2^26 (256 MB).
-void check_proportion(const StreamHeader& header, const DecodeOptions& options, std::int64_t slots,
+void check_proportion(const StreamReader& reader, const DecodeOptions& options, std::int64_t slots,
                       std::uint64_t samples) {
+    const StreamHeader& header = reader.header();
     const auto values = [&](FrameShape shape) {
         return static_cast<double>(slots) * static_cast<double>(shape.sites());
     };
     const double light = values(decoded_shape(header));
     const bool sampled = values(header.shape) <= 128 * static_cast<double>(samples) &&
-                         (light <= 0x1p26 || options.input_bytes >= kSmallInput);
+                         (light <= 0x1p26 || reader.input_bytes() >= kSmallInput);
     if (options.fill_gaps || light <= 0x1p25 || sampled) return;
-    throw InputError(options.where,
+    throw InputError(reader.name(),
                      fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
                                  "to decode them nevertheless, give --fill-gaps",
                                  slots - 1, samples, light * sizeof(float) * 1e-6));
@@ -200,9 +201,9 @@ void check_proportion(const StreamHeader& header, const DecodeOptions& options, 
 
 /// \throws InputError as check_memory for a block of slots. A small file is one for it that has
 /// less than a byte for 32 voxels, as no common schedule and bit depth make it.
-void check_block(const StreamHeader& header, const DecodeOptions& options, const HaloRange& slots) {
+void check_block(const StreamReader& reader, const DecodeOptions& options, const HaloRange& slots) {
     constexpr std::uint64_t kVoxelsAByte = 32;
-    const FrameShape shape = decoded_shape(header);
+    const FrameShape shape = decoded_shape(reader.header());
     std::uint64_t tile_pixels = 0;
     for (const auto& [rows, cols] : frame_tiles(shape, named(options.method).max_tile_sites))
         tile_pixels = std::max(tile_pixels, static_cast<std::uint64_t>((rows.end - rows.begin) *
@@ -211,13 +212,13 @@ void check_block(const StreamHeader& header, const DecodeOptions& options, const
     const auto core_slots = static_cast<std::uint64_t>(slots.core_end - slots.core_begin);
     const std::uint64_t voxels =
         block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
-    const bool small = voxels / kVoxelsAByte > options.input_bytes;
+    const bool small = voxels / kVoxelsAByte > reader.input_bytes();
     check_memory(
         core_slots * shape.sites() * sizeof(float) + voxels * named(options.method).voxel_bytes,
-        options.where,
+        reader.name(),
         fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols, shape.rows,
                     named(options.method).name),
-        small ? options.input_bytes : kEndlessInput);
+        small ? reader.input_bytes() : kEndlessInput);
 }
 
 }  // namespace
@@ -240,8 +241,8 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
         buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
         const HaloRange slots = slot_range(report.slots, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
-        check_proportion(header, options, slots.core_end, buffer.counts().samples());
-        check_block(header, options, slots);
+        check_proportion(reader, options, slots.core_end, buffer.counts().samples());
+        check_block(reader, options, slots);
         buffer.drop_below(slots.begin);
         const auto block_progress = [&](double fraction) {
             return progress(static_cast<double>(slots.core_begin) +

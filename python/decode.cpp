@@ -61,9 +61,7 @@ void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& p
         [&](double done) { return progress.reach(done); });
 }
 
-py::array decode_stream(const StreamFile& stream, DecodeTask task, const py::object& tell) {
-    task.options.where = stream.name();
-    task.options.input_bytes = input_bytes(stream.path());
+py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const py::object& tell) {
     StreamReader reader = stream.reader(task.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
     const FrameShape shape = decoded_shape(reader.header());
     const auto known = reader.slots();
@@ -71,7 +69,7 @@ py::array decode_stream(const StreamFile& stream, DecodeTask task, const py::obj
     auto frames = std::make_unique<std::vector<float>>();
     if (known) {
         const std::uint64_t values = static_cast<std::uint64_t>(*slots) * shape.sites();
-        check_memory(values * sizeof(float), task.options.where, "the decoded video");
+        check_memory(values * sizeof(float), stream.name(), "the decoded video");
         frames->reserve(values);
     }
     CallProgress progress(tell, slots);

@@ -81,7 +81,9 @@ StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file, py::object figures)
       reader_(path_) {}
 
 StreamReader StreamFile::reader(ReadPolicy policy) const {
-    return reading(path_, [&] { return StreamReader(path_, policy); });
+    StreamReader reader = reading(path_, [&] { return StreamReader(path_, policy); });
+    reader.use_name(name());
+    return reader;
 }
 
 std::string StreamFile::name() const {

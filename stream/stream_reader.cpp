@@ -42,6 +42,11 @@ struct Opened {
     std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
 };
 
+/// Of a file that is not followed.
+std::uint64_t bytes_of(const FileWindow& window, const WaitForMore& wait) {
+    return wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput);
+}
+
 Opened read_header(FileWindow& window, const std::string& where, ReadPolicy policy,
                    const WaitForMore& wait) {
     const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), where);
@@ -51,7 +56,7 @@ Opened read_header(FileWindow& window, const std::string& where, ReadPolicy poli
                          fmt::format("the file ends within its header of {} bytes", bytes));
     std::optional<DueCounts> counts;
     const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
-                          wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput)};
+                          bytes_of(window, wait)};
     StreamHeader decoded = decode_header(header, where, use);
     Opened result{std::move(decoded), framing_of(header), std::move(counts)};
     window.skip(bytes);
@@ -80,6 +85,7 @@ struct StreamReader::Impl {
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
           window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
+          input_bytes(bytes_of(window, wait)),
           stream(read_header(window, where, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
           order(stream.header.shape.rows),
@@ -117,6 +123,7 @@ struct StreamReader::Impl {
     bool any_schedule;
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
     FileWindow window;
+    std::uint64_t input_bytes;
     Opened stream;
     std::optional<std::int64_t> slots;
     PacketOrder order;
@@ -332,6 +339,18 @@ StreamReader& StreamReader::operator=(StreamReader&&) noexcept = default;
 
 const StreamHeader& StreamReader::header() const {
     return impl_->stream.header;
+}
+
+const std::string& StreamReader::name() const {
+    return impl_->where;
+}
+
+void StreamReader::use_name(std::string name) {
+    impl_->where = std::move(name);
+}
+
+std::uint64_t StreamReader::input_bytes() const {
+    return impl_->input_bytes;
 }
 
 void StreamReader::use_schedule(ExposureSchedule schedule) {

@@ -76,6 +76,12 @@ class StreamReader {
     StreamReader& operator=(StreamReader&&) noexcept;
 
     [[nodiscard]] const StreamHeader& header() const;
+    /// Name of the stream in messages: the path of its file, or that of `use_name`.
+    [[nodiscard]] const std::string& name() const;
+    void use_name(std::string name);
+    /// Size of the file, as check_memory takes it: kEndlessInput of a pipe and of a file that is
+    /// followed.
+    [[nodiscard]] std::uint64_t input_bytes() const;
     /// Replaces the schedule of the file for later calls of `header` and `next`.
     /// Precondition: no packet has been read.
     void use_schedule(ExposureSchedule schedule);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "apps/report/chart.h"
+#include "report/chart.h"
 
 namespace stipple {
 namespace {

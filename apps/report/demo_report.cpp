@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/quality_json.h"
+#include "report/quality_json.h"
 
 namespace stipple {
 

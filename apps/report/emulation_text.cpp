@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
 #include "apps/report/readout_text.h"
 #include "readout/emulation_figures.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 

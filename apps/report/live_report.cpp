@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/emulation_text.h"
-#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
 #include "apps/report/session_report.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/json_figures.h"
 #include "apps/report/number_text.h"
 #include "readout/timing/readout_figures.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 namespace {

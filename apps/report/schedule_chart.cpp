@@ -6,10 +6,10 @@
 #include <bit>
 #include <map>
 
-#include "apps/report/chart.h"
 #include "apps/report/text_file.h"
 #include "core/error.h"
 #include "io/footage_files.h"
+#include "report/chart.h"
 
 namespace stipple {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/schedule_text.h"
 #include "core/exposure_schedule.h"
+#include "report/schedule_text.h"
 
 namespace stipple {
 

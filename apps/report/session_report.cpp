@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/report/json_figures.h"
 #include "apps/standard_error.h"
 #include "capture/session_figures.h"
+#include "report/json_figures.h"
 
 namespace stipple {
 

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "apps/report/chart.h"
 #include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
+#include "report/chart.h"
 
 namespace stipple {
 

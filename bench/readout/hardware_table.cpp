@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/report/chart.h"
 #include "core/config.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "readout/timing/readout_rate.h"
+#include "report/chart.h"
 #include "tests/pipeline/clip.h"
 #include "tests/readout/timing/sensor_timing.h"
 

@@ -17,6 +17,7 @@ HEADERS = {  # to begin with, of each module
                 "recording/recording_writer.h"),
     "metrics": ("video_quality.h",),
     "scenes": ("scene.h",),
+    "report": ("run_report.h",),
 }
 
 

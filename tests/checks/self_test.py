@@ -28,6 +28,7 @@ TABLE = """| module | may include |
 | decoder | stream, core |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |
+| report | readout, decoder, metrics, stream, io, core |
 | apps, python, tests, bench | everything |
 """
 
@@ -84,6 +85,13 @@ class ChecksTest(unittest.TestCase):
                  "core/b-inl.h": kernel, "core/c.h": "#pragma once\n" + kernel}
         self.assertEqual(self.places(headers.check, files), ["core/a.h:3", "core/c.h:2"])
 
+    def test_an_inner_header_stays_inside(self):
+        foreign, inner = "#pragma once\n#include <nlohmann/json_fwd.hpp>\n", '#pragma once\n#include "core/b.h"\n'
+        files = {"core/CMakeLists.txt": "stipple_module(core\n    HEADERS a.h d.h)\n"
+                 "target_sources(stipple_core PRIVATE b.h\n    c.h)\n",
+                 "core/a.h": inner, "core/b.h": foreign, "core/c.h": foreign + inner, "core/d.h": foreign}
+        self.assertEqual(self.places(headers.check, files), ["core/a.h:2", "core/d.h:2"])
+
     def test_a_header_has_pragma_once(self):
         self.assertEqual(self.places(headers.check, {"core/a.h": "int f();\n"}), ["core/a.h:1"])
 
@@ -125,7 +133,7 @@ class ChecksTest(unittest.TestCase):
             self.assertIn(f"{tested.LIST}:5", found, line)
 
     def test_all_lists_of_modules_are_equal(self):
-        every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "readout", "capture")
+        every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "readout", "capture", "report")
         page = "".join(f"| `{name}/` | x |\n" for name in (*every, "apps", "python", "tests")) + TABLE
         files = {f"{name}/CMakeLists.txt": "" for name in (*every, "apps", "python", "tests")}
         files |= {modules.BUILD: f"set(STIPPLE_MODULES {' '.join(every)})\n", modules.PAGE: page,

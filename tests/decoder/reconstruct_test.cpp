@@ -226,6 +226,26 @@ TEST_F(ReconstructTest, GoesOnAfterALongGapAtOnce) {
     EXPECT_GT(x.back(), 0.2F);  // '4' is 52 DN, 0.41
 }
 
+// 8 slots of 4 million pixels that the chip dropped: at 58 bytes a voxel more than 256 MiB.
+TEST_F(ReconstructTest, ASmallFileTakesLittleMemory) {
+    constexpr int kSide = 2000;
+    StreamHeader header = record(disc(1, {2, 2, 1}), {1, 1, 1, {0, 1}, {{0, 1}}}).header;
+    header.shape = {kSide, kSide, 1};
+    std::vector<SamplePacket> packets;
+    for (std::int64_t slot = 0; slot < 8; ++slot)
+        packets.push_back({slot, 0, kSide, SamplePacket::kDropped, {}});
+    const std::string bytes = bytes_of(header, packets).bytes;
+    write_text(folder_ / "small.stipple", bytes);
+    StreamReader reader(folder_ / "small.stipple");
+    EXPECT_EQ(reader.input_bytes(), bytes.size());
+    reader.use_name("a small file");
+    expect_parts(message_of<InputError>([&] {
+                     return decode(reader, DecodeMethod::kFast,
+                                   [](std::int64_t, std::span<const float>) { return true; });
+                 }),
+                 {"a small file: needs", "a file of less than 1 MB may take"});
+}
+
 TEST_F(ReconstructTest, RefusesAGapThatNoRecordingHas) {
     const FrameShape shape{2, 2, 1};
     const StreamHeader header = record(disc(1, shape), {1, 1, 1, {0, 1}, {{0, 1}}}).header;

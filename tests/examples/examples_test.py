@@ -100,14 +100,20 @@ class ExamplesTest(unittest.TestCase):
         return folder
 
     def test_without_components_all_are_there(self):
-        """The last one links all others but three."""
+        """The last two link all others."""
         source = self.project("whole", "find_package(stipple REQUIRED)", "add_executable(whole main.cpp)",
-                              "target_link_libraries(whole PRIVATE stipple::decoder stipple::metrics"
-                              " stipple::scenes stipple::capture)")
+                              "target_link_libraries(whole PRIVATE stipple::scenes stipple::capture stipple::report)")
         (source / "main.cpp").write_text("#include <stipple/capture/camera_listing.h>\n"
-                                         "int main() { return stipple::list_cameras().cameras.empty() ? 0 : 1; }\n")
+                                         "#include <stipple/report/run_report.h>\n"
+                                         "int main() {\n"
+                                         "    static_cast<void>(stipple::list_cameras());\n"
+                                         "    stipple::RunReport report({.title = \"By hand\"}, {4, 4, 1}, nullptr);\n"
+                                         "    const std::string page = report.page();\n"
+                                         "    return page.find(\"<title>By hand\") == std::string::npos;\n"
+                                         "}\n")
         self.configure(source, "whole_build")
         self.run_command(os.environ["CMAKE"], "--build", "whole_build")
+        self.run_command(self.folder / "whole_build/whole")
 
     def test_an_unknown_component_is_named(self):
         source = self.project("wrong", "find_package(stipple REQUIRED COMPONENTS lens)")
