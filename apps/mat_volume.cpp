@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/index.h"
+#include "core/input_file.h"
 #include "core/memory_limit.h"
 
 #ifdef STIPPLE_MATIO
@@ -99,11 +101,31 @@ NpyVolume volume_of(const matvar_t& variable, const std::string& where) {
             .values = {}};
 }
 
+/// Whether the elements of a MATLAB 5 file, each a type, a length and so many bytes, fill it after
+/// its header of 128 bytes. matio takes a file for whole that ends within an element.
+bool is_whole(const std::string& file) {
+    check_memory(std::filesystem::file_size(file), file, "the file");
+    const std::vector<std::uint8_t> bytes = read_file(file);
+    constexpr std::size_t kHeader = 128, kTag = 8;
+    if (bytes.size() < kHeader) return false;
+    const bool big_endian = bytes[126] == 'M';
+    std::size_t at = kHeader;
+    while (at < bytes.size() && bytes.size() - at >= kTag) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            length |= std::size_t{bytes[at + 4 + (big_endian ? 3 - i : i)]} << (8 * i);
+        at += kTag + length;
+    }
+    return at == bytes.size();
+}
+
 }  // namespace
 
 NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
     const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
     if (!mat) throw InputError(file, "cannot be read as a .mat file");
+    if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5 && !is_whole(file))
+        throw InputError(file, "is cut off or damaged: its elements do not fill it");
     const std::string where = fmt::format("{}: variable \"{}\"", file, name);
     const MatVariable described(Mat_VarReadInfo(mat.get(), name.c_str()));
     if (!described) throw InputError(where, "is missing; other names: --variable, --mask-variable");
