@@ -53,7 +53,7 @@ FlatField::FlatField(SensorParams params, std::uint64_t seed)
 
 FlatField::~FlatField() = default;
 
-const std::vector<std::uint16_t>& FlatField::photograph(double photons) {
+const std::vector<std::uint16_t>& FlatField::capture(double photons) {
     std::ranges::fill(impl_->light, static_cast<float>(photons / impl_->params.photons_per_unit));
     impl_->sensor.expose(impl_->light, impl_->packet);
     return impl_->packet.dn;

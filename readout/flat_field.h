@@ -33,7 +33,7 @@ class FlatField {
     FlatField& operator=(const FlatField&) = delete;
 
     /// The DN of the next image, by row and column; valid until the next call.
-    [[nodiscard]] const std::vector<std::uint16_t>& photograph(double photons);
+    [[nodiscard]] const std::vector<std::uint16_t>& capture(double photons);
 
   private:
     struct Impl;

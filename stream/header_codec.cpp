@@ -43,8 +43,8 @@ constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProven
 struct Field {
     std::size_t offset;
     const char* name;
-    double least;
-    double most;
+    double min;
+    double max;
 };
 
 constexpr Field kHeaderLength{12, "header bytes", kMinHeaderBytes, kMaxHeaderBytes};
@@ -72,10 +72,10 @@ constexpr std::size_t kScheduleCrc = 88;
 constexpr std::size_t kReserved = 10;  ///< two bytes
 
 void check(const Field& field, double value, std::string_view where) {
-    if (value >= field.least && value <= field.most) return;  // false for NaN
+    if (value >= field.min && value <= field.max) return;  // false for NaN
     fail_at(where, field.offset,
-            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.least,
-                        field.most));
+            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.min,
+                        field.max));
 }
 
 /// The part of a header that is numbers.

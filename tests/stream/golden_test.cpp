@@ -2,12 +2,12 @@
 // change of the format: STIPPLE_UPDATE_GOLDEN=1 build/release/stream_test --gtest_filter='Golden*'
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "tests/stream/golden_cases.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/golden_file.h"
 #include "tests/support/source_tree.h"
 
 namespace stipple {
@@ -20,10 +20,6 @@ const std::filesystem::path kFolder = project_path("tests/golden/stream");
 const std::filesystem::path kFolder3 = project_path("tests/golden/stream_version_3");
 /// As this library wrote and read them when it knew version 1 only.
 const std::filesystem::path kFolder1 = project_path("tests/golden/stream_version_1");
-
-bool updating() {
-    return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;
-}
 
 Json to_json(const ExposureSchedule& schedule) {
     Json pixels = Json::array();
@@ -114,22 +110,6 @@ Json description(const std::string& bytes) {
     return text;
 }
 
-/// A line per field, and per element of a list.
-std::string pretty(const Json& text) {
-    std::string lines = "{";
-    for (const auto& [key, value] : text.items()) {
-        lines += (lines.size() > 1 ? ",\n" : "\n") + Json(key).dump() + ": ";
-        if (!value.is_array() || value.empty()) {
-            lines += value.dump();
-            continue;
-        }
-        for (std::size_t i = 0; i < value.size(); ++i)
-            lines += (i == 0 ? "[\n  " : ",\n  ") + value[i].dump();
-        lines += "]";
-    }
-    return lines + "\n}\n";
-}
-
 struct GoldenFile {
     std::filesystem::path path;  ///< without extension
     std::string bytes;
@@ -143,20 +123,14 @@ std::vector<GoldenFile> golden_files() {
 }
 
 TEST(GoldenTest, EachFileIsWrittenAsEver) {
-    for (const auto& [path, bytes] : golden_files()) {
-        const auto file = path.string() + ".stipple";
-        if (updating()) write_text(file, bytes);
-        EXPECT_TRUE(read_text(file) == bytes) << file;
-    }
+    for (const auto& [path, bytes] : golden_files())
+        expect_golden_bytes(path.string() + ".stipple", bytes);
 }
 
 TEST(GoldenTest, EachFileReadsAsItsDescriptionSays) {
-    for (const auto& [path, bytes] : golden_files()) {
-        const std::string text = pretty(description(read_text(path.string() + ".stipple")));
-        const auto file = path.string() + ".json";
-        if (updating()) write_text(file, text);
-        EXPECT_EQ(read_text(file), text) << file;
-    }
+    for (const auto& [path, bytes] : golden_files())
+        expect_golden_text(path.string() + ".json",
+                           golden_text(description(read_text(path.string() + ".stipple"))));
 }
 
 TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
@@ -165,7 +139,8 @@ TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
         if (entry.path().extension() != ".stipple") continue;
         auto json = entry.path();
         json.replace_extension(".json");
-        EXPECT_EQ(read_text(json), pretty(description(read_text(entry.path())))) << entry.path();
+        EXPECT_EQ(read_text(json), golden_text(description(read_text(entry.path()))))
+            << entry.path();
         ++files;
     }
     EXPECT_EQ(files, 24);
