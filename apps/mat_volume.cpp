@@ -119,6 +119,18 @@ bool is_whole(const std::string& file) {
     return at == bytes.size();
 }
 
+/// The first names of variables, quoted.
+std::string names_in(mat_t* mat) {
+    constexpr std::size_t kMaxNames = 8;
+    std::size_t count = 0;
+    char* const* names = Mat_GetDir(mat, &count);
+    if (names == nullptr || count == 0) return "no variable";
+    std::string text;
+    for (const char* name : std::span(names, std::min(count, kMaxNames)))
+        text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+    return count > kMaxNames ? text + ", ..." : text;
+}
+
 }  // namespace
 
 NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
@@ -128,7 +140,10 @@ NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
         throw InputError(file, "is cut off or damaged: its elements do not fill it");
     const std::string where = fmt::format("{}: variable \"{}\"", file, name);
     const MatVariable described(Mat_VarReadInfo(mat.get(), name.c_str()));
-    if (!described) throw InputError(where, "is missing; other names: --variable, --mask-variable");
+    if (!described)
+        throw InputError(where, fmt::format("is missing; the file holds {}; other names: "
+                                            "--variable, --mask-variable",
+                                            names_in(mat.get())));
     NpyVolume volume = volume_of(*described, where);
     const std::size_t values = index(volume.layers) * index(volume.rows) * index(volume.cols);
     check_memory(2 * sizeof(double) * values, where, "the array");

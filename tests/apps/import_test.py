@@ -141,7 +141,7 @@ class ImportTest(ProgramTest):
         self.imported("--noise-free")
         self.succeed("decode", "mat.stipple", "-o", "mat.npy", "--method", "naive")
         np.testing.assert_array_equal(self.array("mat.npy"), self.decoded())
-        self.fails(INPUT, ['variable "orig": is missing'], "import", "clip.mat", "-o", "x.stipple", "--variable", "orig")
+        self.fails(INPUT, ['variable "orig": is missing', 'holds "meas", "mask"'], "import", "clip.mat", "-o", "x.stipple", "--variable", "orig")
         for length in (0, 60, 128, 200, len(content) - 200):
             (self.folder / "cut.mat").write_bytes(content[:length])
             self.fails(INPUT, ["cut.mat"], "import", "cut.mat", "-o", "x.stipple")
