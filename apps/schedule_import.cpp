@@ -56,8 +56,8 @@ void add_schedule_import(Command& schedule, Action& action) {
     command
         .add_option(
             "VOLUME", options->volume,
-            ".npy of (slots, rows, columns): masks of 0 and 1 or of 0 and 255, an exposure for "
-            "each pixel")
+            ".npy of (slots, rows, columns): masks from 0 to 1 or to 255, grey ones too, an "
+            "exposure for each pixel")
         .type_name("FILE.npy")
         .required()
         .input();

@@ -31,6 +31,7 @@ void set_action(
 
 void add_synth(Command& app, Action& action);     ///< a scene rendered to footage
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
+void add_import(Command& app, Action& action);    ///< measurements and masks to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference
 void add_info(Command& app, Action& action);      ///< contents of a file of any kind

@@ -150,7 +150,54 @@ double ExposureSchedule::samples_per_pixel_slot() const {
     return static_cast<double>(exposures_.size()) / pixel_slots;
 }
 
+void ExposureSchedule::set_weights(std::vector<float> weights) {
+    const std::size_t pixels = first_.size() - 1;
+    const std::size_t period = index(period_slots_);
+    if (weights.size() != pixels * period)
+        throw InputError(kWhere, fmt::format("{} weights for a tile of {} x {} pixels and {} slots",
+                                             weights.size(), tile_rows_, tile_cols_, period));
+    const auto columns = static_cast<std::size_t>(tile_cols_);
+    std::vector<std::uint8_t> open(period);
+    bool all_one = true;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        std::ranges::fill(open, std::uint8_t{0});
+        for (std::size_t i = first_[pixel]; i < first_[pixel + 1]; ++i)
+            for (std::uint64_t rest = exposures_[i].open_slots; rest != 0; rest &= rest - 1)
+                open[(exposures_[i].first_slot + index(std::countr_zero(rest))) % period] = 1;
+        for (std::size_t slot = 0; slot < period; ++slot) {
+            const float weight = weights[slot * pixels + pixel];
+            const bool good = open[slot] != 0 ? weight >= kMinSlotWeight && weight <= kMaxSlotWeight
+                                              : weight == 0;
+            if (!good)
+                throw InputError(
+                    kWhere, fmt::format("pixel ({}, {}) slot {}: weight {} of {} slot is not {}",
+                                        pixel / columns, pixel % columns, slot, weight,
+                                        open[slot] != 0 ? "an open" : "a closed",
+                                        open[slot] != 0 ? "in 2^-20..2^20" : "0"));
+            all_one = all_one && (open[slot] == 0 || weight == 1);
+        }
+    }
+    weights_ = all_one ? std::vector<float>{} : std::move(weights);
+}
+
+double ExposureSchedule::light_slots(int tile_row, int tile_col, const Exposure& exposure) const {
+    if (!weighted()) return exposure.light_slots();
+    double sum = 0;
+    for (std::uint64_t rest = exposure.open_slots; rest != 0; rest &= rest - 1) {
+        const auto slot = exposure.first_slot + static_cast<std::uint32_t>(std::countr_zero(rest));
+        const auto phase = static_cast<int>(slot % static_cast<std::uint32_t>(period_slots_));
+        sum += static_cast<double>(weight(phase, tile_row, tile_col));
+    }
+    return sum;
+}
+
 double ExposureSchedule::light_throughput() const {
+    if (!weighted()) return open_fraction();
+    const double light = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    return light / static_cast<double>(weights_.size());
+}
+
+double ExposureSchedule::open_fraction() const {
     const double pixel_slots = 1.0 * tile_rows_ * tile_cols_ * period_slots_;
     double light_slots = 0;
     for (const Exposure& e : exposures_) light_slots += e.light_slots();
@@ -158,13 +205,13 @@ double ExposureSchedule::light_throughput() const {
 }
 
 bool ExposureSchedule::gapless() const {
-    return light_throughput() == 1.0;
+    return open_fraction() == 1.0;
 }
 
 bool ExposureSchedule::operator==(const ExposureSchedule& other) const {
     return tile_rows_ == other.tile_rows_ && tile_cols_ == other.tile_cols_ &&
            period_slots_ == other.period_slots_ && first_ == other.first_ &&
-           exposures_ == other.exposures_;
+           exposures_ == other.exposures_ && weights_ == other.weights_;
 }
 
 std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int first_row, int rows,

@@ -15,6 +15,8 @@ namespace stipple {
 inline constexpr int kMaxExposureSlots = 64;  ///< bits of `Exposure::open_slots`
 inline constexpr int kMaxPeriodSlots = 65535;
 inline constexpr int kMaxTileSide = kMaxFrameSide;
+inline constexpr float kMinSlotWeight = 0x1p-20F;
+inline constexpr float kMaxSlotWeight = 0x1p20F;
 
 /// One exposure of one pixel: the slots in which its shutter is open. Bit i of `open_slots` is
 /// slot `first_slot + i`; bit 0 is set. It is read out at the end of its last open slot.
@@ -44,6 +46,8 @@ struct DuePixel {
 /// Which pixel exposes when: a tile of rows x cols pixels, repeated over the array, whose
 /// exposures repeat every `period_slots`. No two exposures of a pixel share a slot, so each
 /// (pixel, slot) belongs to at most one exposure and the sampling operator has A A^T diagonal.
+/// With weights an exposure collects weight x light in each slot, as behind a grey mask; without
+/// them all weights are 1.
 class ExposureSchedule {
   public:
     /// `exposures[first[p] .. first[p + 1])` belong to tile pixel p = row * tile_cols + col.
@@ -52,6 +56,22 @@ class ExposureSchedule {
     /// clear, or two exposures of a pixel open in one slot.
     ExposureSchedule(int tile_rows, int tile_cols, int period_slots,
                      std::vector<std::uint32_t> first, std::vector<Exposure> exposures);
+
+    /// Gives each open (slot, pixel) of the tile a weight of 2^-20..2^20. Order (slot of the
+    /// period, row, col); closed slots have the weight 0. Weights that are all 1 count as none.
+    /// \throws InputError naming the pixel and the slot of the first weight outside these limits.
+    void set_weights(std::vector<float> weights);
+    [[nodiscard]] bool weighted() const { return !weights_.empty(); }
+    /// In the order of `set_weights`; empty without weights.
+    [[nodiscard]] std::span<const float> weights() const { return weights_; }
+    /// Weight of a tile pixel in slot `phase` (0 .. period - 1). Precondition: weighted().
+    [[nodiscard]] float weight(int phase, int tile_row, int tile_col) const {
+        return weights_[index(phase) * (first_.size() - 1) + pixel(tile_row, tile_col)];
+    }
+
+    /// Sum of the weights of the open slots of an exposure of a tile pixel; without weights their
+    /// number.
+    [[nodiscard]] double light_slots(int tile_row, int tile_col, const Exposure& exposure) const;
 
     [[nodiscard]] int tile_rows() const { return tile_rows_; }
     [[nodiscard]] int tile_cols() const { return tile_cols_; }
@@ -65,7 +85,7 @@ class ExposureSchedule {
 
     /// Samples per pixel and slot, on average; its inverse is the compression ratio.
     [[nodiscard]] double samples_per_pixel_slot() const;
-    /// Fraction of all (pixel, slot) pairs that collect light.
+    /// Fraction of all (pixel, slot) pairs that collect light; with weights their mean weight.
     [[nodiscard]] double light_throughput() const;
     /// True if every pixel collects light in every slot.
     [[nodiscard]] bool gapless() const;
@@ -94,6 +114,7 @@ class ExposureSchedule {
     /// `zeros` has a zero per slot of the period before and after the call; clearing it for each
     /// pixel would take seconds.
     void check_pixel(int pixel, std::span<int> zeros);
+    [[nodiscard]] double open_fraction() const;
     void assign_stores();
     void list_due_pixels();
 
@@ -108,6 +129,7 @@ class ExposureSchedule {
                                         ///< empty unless there are two stores
     std::vector<std::uint32_t> first_due_;  ///< by phase * tile_rows + tile_row
     std::vector<DuePixel> due_;
+    std::vector<float> weights_;
 };
 
 /// Calls `visit(col, due_pixel)` for each pixel of array row `row` that is read out at the end of

@@ -23,6 +23,7 @@ struct Slice {
     const float* y;
     const float* variance;
     const float* step;
+    const float* weight;  ///< null without weights
     float* v;
 };
 
@@ -35,6 +36,7 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const f
             .y = &m.sum[voxel],
             .variance = &m.variance[voxel],
             .step = step + slot * pixels + run.begin % pixels,
+            .weight = m.weight.empty() ? nullptr : &m.weight[voxel],
             .v = v + voxel};
 }
 
@@ -48,18 +50,19 @@ std::uint8_t state_in(std::uint8_t state) {
     return second == (kChain == Chain::kSecond) ? state : 0;
 }
 
-/// Adds a slot to the sums of v and step over each exposure; `correction` is (y - sum v) /
-/// (variance + sum step) where an exposure ends, else anything.
-template <Chain kChain>
+/// Adds a slot to the sums of w v and w^2 step over each exposure, w the weight of a voxel;
+/// `correction` is (y - sum w v) / (variance + sum w^2 step) where an exposure ends, else anything.
+template <Chain kChain, bool kWeighted>
 void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_step,
             float* HWY_RESTRICT correction) {
     const std::uint8_t* HWY_RESTRICT states = s.state;
     for (std::size_t i = 0; i < s.sites; ++i) {
         const std::uint8_t state = state_in<kChain>(states[i]);
         const float keep = (state & Measurements::kFirst) != 0 ? 0.0F : 1.0F;
-        const float open = (state & Measurements::kOpen) != 0 ? 1.0F : 0.0F;
+        const float weight = kWeighted ? s.weight[i] : 1.0F;
+        const float open = (state & Measurements::kOpen) != 0 ? weight : 0.0F;
         sum_v[i] = keep * sum_v[i] + open * s.v[i];
-        sum_step[i] = keep * sum_step[i] + open * s.step[i];
+        sum_step[i] = keep * sum_step[i] + (kWeighted ? open * weight : open) * s.step[i];
         const float missing = s.y[i] - sum_v[i];
         const bool explained = (state & Measurements::kSaturated) != 0 && missing < 0;
         correction[i] = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
@@ -67,19 +70,20 @@ void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_s
 }
 
 /// Moves the open voxels of a slot; `correction` is that of the exposure each is in.
-template <Chain kChain>
+template <Chain kChain, bool kWeighted>
 void distribute(const Slice& s, const float* HWY_RESTRICT ending, float* HWY_RESTRICT correction) {
     const std::uint8_t* HWY_RESTRICT states = s.state;
     float* HWY_RESTRICT v = s.v;
     for (std::size_t i = 0; i < s.sites; ++i) {
         const std::uint8_t state = state_in<kChain>(states[i]);
         correction[i] = (state & Measurements::kLast) != 0 ? ending[i] : correction[i];
-        const float move = s.step[i] * correction[i];
+        const float step = kWeighted ? s.weight[i] * s.step[i] : s.step[i];
+        const float move = step * correction[i];
         v[i] += (state & Measurements::kOpen) != 0 ? move : 0.0F;
     }
 }
 
-template <Chain kChain>
+template <Chain kChain, bool kWeighted>
 void prox_chain(const Measurements& m, const SiteRun& run, const float* step, float* v) {
     const auto slots = static_cast<std::size_t>(m.slots);
     // 128 KB, of which each slot uses a row: to zero all would take longer than the sums.
@@ -87,17 +91,22 @@ void prox_chain(const Measurements& m, const SiteRun& run, const float* step, fl
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up<kChain>(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
+        add_up<kChain, kWeighted>(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
-        distribute<kChain>(slice(m, run, slot, step, v), ending[slot], correction);
+        distribute<kChain, kWeighted>(slice(m, run, slot, step, v), ending[slot], correction);
 }
 
 /// Chains share no voxel, so one after the other is both at once.
+template <bool kWeighted>
+void prox_chains(const Measurements& m, const SiteRun& run, const float* step, float* v) {
+    if (!m.interleaved) return prox_chain<Chain::kOnly, kWeighted>(m, run, step, v);
+    prox_chain<Chain::kFirst, kWeighted>(m, run, step, v);
+    prox_chain<Chain::kSecond, kWeighted>(m, run, step, v);
+}
+
 void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
-    if (!m.interleaved) return prox_chain<Chain::kOnly>(m, run, step, v);
-    prox_chain<Chain::kFirst>(m, run, step, v);
-    prox_chain<Chain::kSecond>(m, run, step, v);
+    m.weight.empty() ? prox_chains<false>(m, run, step, v) : prox_chains<true>(m, run, step, v);
 }
 
 }  // namespace stipple::HWY_NAMESPACE

@@ -25,10 +25,11 @@ inline constexpr int kMaxRunSlots = 128;
 
 /// Proximal map of the data term, in place:
 ///   argmin_x  sum_t (x_t - v_t)^2 / (2 step_t) + sum_k (y_k - (A x)_k)^2 / (2 variance_k).
-/// Exposures share no voxel, so it has the closed form x_t = v_t + step_t (y - sum v) / (variance +
-/// sum step). A saturated exposure only increases its voxels. `v` contains all voxels. `step` has
-/// one value per slot and pixel, order (slot, row, col), for all planes. The same bits for any SIMD
-/// target. Precondition: the run lies within one plane; run and slots are within the limits above.
+/// Exposures share no voxel, so it has the closed form x_t = v_t + w_t step_t (y - sum w v) /
+/// (variance + sum w^2 step), w the weights. A saturated exposure only increases its voxels. `v`
+/// contains all voxels. `step` has one value per slot and pixel, order (slot, row, col), for all
+/// planes. The same bits for any SIMD target. Precondition: the run lies within one plane; run and
+/// slots are within the limits above.
 void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
                std::span<float> v) noexcept;
 

@@ -23,7 +23,7 @@ constexpr float kExpectedErrors = 20;  ///< of the light that neighbours have
 struct SiteSum {
     int samples = 0;
     int saturated = 0;
-    int open_slots = 0;
+    float light_slots = 0;  ///< sum of the weights of the open slots
     float light = 0;
     float variance = 0;
     float at_least = 0;  ///< the most light per slot that a saturated sample proves
@@ -33,29 +33,26 @@ struct SiteSum {
     [[nodiscard]] bool all_dark() const { return light <= kDarkErrors * error(); }
     [[nodiscard]] bool sound() const { return samples > 0 && !all_saturated() && !all_dark(); }
     /// Light per slot, no less than what is proven.
-    [[nodiscard]] float level() const {
-        return std::max(light / static_cast<float>(open_slots), at_least);
-    }
+    [[nodiscard]] float level() const { return std::max(light / light_slots, at_least); }
 };
 
 /// Sums of one row of sites; where two chains interleave, their open slots are shared out evenly.
 void sum_row(const Measurements& m, std::size_t begin, std::span<SiteSum> row) {
-    std::vector<int> open(row.size(), 0);
+    std::vector<float> open(row.size(), 0);
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t first = index(slot) * m.shape.sites() + begin;
         for (std::size_t i = 0; i < row.size(); ++i) {
             const std::uint8_t state = m.state[first + i];
-            open[i] += state & Measurements::kOpen;
+            if ((state & Measurements::kOpen) != 0) open[i] += m.weight_at(first + i);
             if ((state & Measurements::kLast) == 0) continue;
             SiteSum& site = row[i];
             ++site.samples;
-            site.open_slots += open[i];
+            site.light_slots += open[i];
             site.light += m.sum[first + i];
             site.variance += m.variance[first + i];
             if ((state & Measurements::kSaturated) != 0) {
                 ++site.saturated;
-                site.at_least =
-                    std::max(site.at_least, m.sum[first + i] / static_cast<float>(open[i]));
+                site.at_least = std::max(site.at_least, m.sum[first + i] / open[i]);
             }
             open[i] = 0;
         }
@@ -90,7 +87,7 @@ bool is_stuck(const SiteSum& site, const Surroundings& beside) {
     if (site.samples < kMinSamples || beside.with_samples < kMinNeighbours) return false;
     if (beside.sound < beside.with_samples - kMaxUnsound) return false;
     if (site.all_saturated()) return site.at_least > kHotTimes * beside.brightest;
-    const float expected = beside.darkest * static_cast<float>(site.open_slots);
+    const float expected = beside.darkest * site.light_slots;
     return site.all_dark() && expected > kExpectedErrors * site.error();
 }
 
@@ -100,6 +97,7 @@ void mask_site(Measurements& m, std::size_t site) {
         m.state[i] = 0;
         m.sum[i] = 0;
         m.variance[i] = 0;
+        if (!m.weight.empty()) m.weight[i] = 1;
     }
 }
 

@@ -74,7 +74,7 @@ bool overlap(const FrameExposure& a, const FrameExposure& b) {
 }  // namespace
 
 std::optional<std::vector<FrameExposure>> frame_exposures(const Measurements& measurements) {
-    if (measurements.interleaved) return {};
+    if (measurements.interleaved || !measurements.weight.empty()) return {};
     ExposureList list;
     std::size_t sites = 0;
     for (std::size_t i = 0; i < measurements.shape.sites(); ++i) {

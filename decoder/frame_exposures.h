@@ -21,7 +21,8 @@ struct FrameExposure {
 
 /// The frames of a block in temporal order, if all sites have the same exposures, as in a
 /// conventional camera or one with a flutter shutter. Samples may be missing. Nothing otherwise,
-/// and if each slot is a frame, because there are then no slots between frames.
+/// if exposures are weighted, and if each slot is a frame, because there are then no slots between
+/// frames.
 [[nodiscard]] std::optional<std::vector<FrameExposure>> frame_exposures(
     const Measurements& measurements);
 

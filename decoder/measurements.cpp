@@ -57,6 +57,8 @@ class Collector {
         const PixelResponse& response = responses_.at(row, col);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
             write(voxel, sample.dn[plane], span, response);
+        if (schedule_.weighted())
+            write_weights(index(first), span, {last_slot - sample.span_slots + 1, row, col});
     }
 
     struct Span {
@@ -85,6 +87,29 @@ class Collector {
             response.dark_variance_per_slot() * static_cast<float>(open_slots);
         out_.variance_per_light[last_voxel] = response.noise().per_light();
         out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
+    }
+
+    struct FirstSlot {
+        std::int64_t slot;
+        int row;
+        int col;
+    };
+
+    /// `first` is the slot of the window in which the exposure begins.
+    void write_weights(std::size_t first, const Span& span, const FirstSlot& at) {
+        const auto pixel =
+            row_major(at.row - window_.first_row, at.col - window_.first_col, window_.shape.cols);
+        for (int i = 0; i < span.slots; ++i) {
+            if ((span.open_slots >> static_cast<unsigned>(i) & 1U) == 0) continue;
+            const float weight =
+                schedule_.weight(static_cast<int>((at.slot + i) % schedule_.period_slots()),
+                                 at.row % schedule_.tile_rows(), at.col % schedule_.tile_cols());
+            std::size_t voxel = (first + index(i)) * window_.shape.sites() + pixel;
+            for (int plane = 0; plane < window_.shape.planes; ++plane) {
+                if ((out_.state[voxel] & Measurements::kOpen) != 0) out_.weight[voxel] = weight;
+                voxel += window_.shape.pixels();
+            }
+        }
     }
 
     [[nodiscard]] Span span_of(std::int64_t last_slot, int row, int col, int span_slots) const {
@@ -141,6 +166,7 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
         result.dark_variance.resize(window.voxels());
         result.variance_per_light.resize(window.voxels());
     }
+    if (header.schedule.weighted()) result.weight.assign(window.voxels(), 1.0F);
     Collector collector(header, window, result);
     parallel_for(0, static_cast<int>(packets.size()),
                  [&](int i) { collector.add(packets[index(i)]); });

@@ -53,6 +53,13 @@ struct Measurements {
     std::vector<float> dark_variance = {};
     std::vector<float> variance_per_light = {};
 
+    /// If exposures are weighted: the weight of each observed voxel, 1 of all others. Otherwise
+    /// empty, and all weights are 1.
+    std::vector<float> weight = {};
+
+    [[nodiscard]] float weight_at(std::size_t voxel) const {
+        return weight.empty() ? 1.0F : weight[voxel];
+    }
     /// Precondition: dark_variance is not empty, voxel is the last of an exposure.
     [[nodiscard]] float variance_at(std::size_t voxel, float light) const {
         return dark_variance[voxel] + variance_per_light[voxel] * (light > 0 ? light : 0);

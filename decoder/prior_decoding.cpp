@@ -28,7 +28,9 @@ std::optional<FluxVideo> decode_with_prior(
     const auto exposures = frame_exposures(measurements);
     if (!exposures) {
         mask_defects(measurements);
-        return decode({measurements, noise, block.options, block.progress});
+        DecodeOptions options = block.options;
+        if (block.calibration.noise_free) options.best = without_noise(options.best);
+        return decode({measurements, noise, options, block.progress});
     }
     Measurements frames = measurements_of_frames(measurements, *exposures, noise);
     mask_defects(frames);

@@ -213,12 +213,13 @@ void check_block(const StreamReader& reader, const DecodeOptions& options, const
     const std::uint64_t voxels =
         block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
     const bool small = voxels / kVoxelsAByte > reader.input_bytes();
-    check_memory(
-        core_slots * shape.sites() * sizeof(float) + voxels * named(options.method).voxel_bytes,
-        reader.name(),
-        fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols, shape.rows,
-                    named(options.method).name),
-        small ? reader.input_bytes() : kEndlessInput);
+    const std::uint64_t weight_bytes = header.schedule.weighted() ? sizeof(float) : 0;
+    check_memory(core_slots * shape.sites() * sizeof(float) +
+                     voxels * (named(options.method).voxel_bytes + weight_bytes),
+                 reader.name(),
+                 fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
+                             shape.rows, named(options.method).name),
+                 small ? reader.input_bytes() : kEndlessInput);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 
 #include "core/parallel.h"
 #include "decoder/measurements.h"
@@ -27,7 +28,7 @@ std::size_t chain(std::uint8_t state) {
 }
 
 /// Sums of voxels whose state has a bit of `kept` stay as they are.
-template <bool kInterleaved>
+template <bool kInterleaved, bool kWeighted>
 void sample_all(const Measurements& measurements, std::span<const float> x, std::span<float> sums,
                 std::uint8_t kept) {
     const std::size_t sites = measurements.shape.sites();
@@ -39,14 +40,16 @@ void sample_all(const Measurements& measurements, std::span<const float> x, std:
                 const auto state = measurements.state[frame + site];
                 float& sum = light[chain<kInterleaved>(state) * count + site - begin];
                 if ((state & Measurements::kFirst) != 0) sum = 0;
-                if ((state & Measurements::kOpen) != 0) sum += x[frame + site];
+                if ((state & Measurements::kOpen) != 0)
+                    sum += kWeighted ? measurements.weight[frame + site] * x[frame + site]
+                                     : x[frame + site];
                 if ((state & kept) == 0)
                     sums[frame + site] = (state & Measurements::kLast) != 0 ? sum : 0;
             }
     });
 }
 
-template <bool kInterleaved>
+template <bool kInterleaved, bool kWeighted>
 void spread_all(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
     const std::size_t sites = measurements.shape.sites();
     for_each_run(sites, [&](std::size_t begin, std::size_t end) {
@@ -58,17 +61,29 @@ void spread_all(const Measurements& measurements, std::span<const float> sums, s
                 const auto state = measurements.state[frame + site];
                 float& value = values[chain<kInterleaved>(state) * count + site - begin];
                 if ((state & Measurements::kLast) != 0) value = sums[frame + site];
-                x[frame + site] = (state & Measurements::kOpen) != 0 ? value : 0;
+                const float light = kWeighted ? measurements.weight[frame + site] * value : value;
+                x[frame + site] = (state & Measurements::kOpen) != 0 ? light : 0;
             }
         }
     });
 }
 
+/// Calls body(interleaved, weighted), both std::bool_constant.
+template <typename Body>
+void with_kind(const Measurements& measurements, const Body& body) {
+    const auto with_weights = [&](auto interleaved) {
+        measurements.weight.empty() ? body(interleaved, std::false_type{})
+                                    : body(interleaved, std::true_type{});
+    };
+    measurements.interleaved ? with_weights(std::true_type{}) : with_weights(std::false_type{});
+}
+
 void sample_but(std::uint8_t kept, const Measurements& measurements, std::span<const float> x,
                 std::span<float> sums) {
     assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
-    measurements.interleaved ? sample_all<true>(measurements, x, sums, kept)
-                             : sample_all<false>(measurements, x, sums, kept);
+    with_kind(measurements, [&](auto interleaved, auto weighted) {
+        sample_all<interleaved(), weighted()>(measurements, x, sums, kept);
+    });
 }
 
 }  // namespace
@@ -79,8 +94,9 @@ void sample(const Measurements& measurements, std::span<const float> x, std::spa
 
 void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x) {
     assert(x.size() == measurements.voxels() && sums.size() == measurements.voxels());
-    measurements.interleaved ? spread_all<true>(measurements, sums, x)
-                             : spread_all<false>(measurements, sums, x);
+    with_kind(measurements, [&](auto interleaved, auto weighted) {
+        spread_all<interleaved(), weighted()>(measurements, sums, x);
+    });
 }
 
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,

@@ -75,11 +75,14 @@ void check_shape(const std::vector<std::uint64_t>& shape, std::string_view where
 
 }  // namespace
 
-NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where) {
+NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where,
+                           NpyImages images) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const NpyDictionary dictionary = find_npy_dictionary(text.substr(0, kMaxNpyHeaderBytes), where);
-    const NpyFields fields = read_npy_fields(dictionary.text, where);
+    NpyFields fields = read_npy_fields(dictionary.text, where);
     const ValueType& type = type_of(fields.descr, where);
+    if (images == NpyImages::kOneLayer && fields.shape.size() == 2)
+        fields.shape.insert(fields.shape.begin(), 1);
     check_shape(fields.shape, where);
     check_memory(
         bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], where,
@@ -101,13 +104,13 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view wh
     return volume;
 }
 
-NpyVolume read_npy_volume(const std::filesystem::path& file) {
+NpyVolume read_npy_volume(const std::filesystem::path& file, NpyImages images) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error && size > kMaxValues * 8 + kMaxNpyHeaderBytes)
         throw InputError(file.string(), "is too long for a volume of at most 2^26 values");
     const std::vector<std::uint8_t> bytes = read_file(file);
-    return parse_npy_volume(std::as_bytes(std::span(bytes)), file.string());
+    return parse_npy_volume(std::as_bytes(std::span(bytes)), file.string(), images);
 }
 
 }  // namespace stipple

@@ -23,12 +23,17 @@ struct NpyVolume {
     }
 };
 
+/// Whether two dimensions, (rows, columns), are a volume of one layer.
+enum class NpyImages { kRefused, kOneLayer };
+
 /// The volume in `bytes`, a whole .npy file: three dimensions of 1..65535, at most 2^26 values,
 /// booleans, integers or floating-point numbers, little-endian, C order.
 /// \throws InputError at `where` for anything else.
-[[nodiscard]] NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where);
+[[nodiscard]] NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where,
+                                         NpyImages images = NpyImages::kRefused);
 
 /// \throws InputError as above, or if the file cannot be read.
-[[nodiscard]] NpyVolume read_npy_volume(const std::filesystem::path& file);
+[[nodiscard]] NpyVolume read_npy_volume(const std::filesystem::path& file,
+                                        NpyImages images = NpyImages::kRefused);
 
 }  // namespace stipple

@@ -4,12 +4,15 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 #include <vector>
 
 #include "core/config.h"
+#include "core/index.h"
 #include "core/light.h"
+#include "core/memory_limit.h"
 #include "io/output_file.h"
 #include "io/pending_output.h"
 #include "python/bindings.h"
@@ -66,9 +69,22 @@ std::optional<std::string> problem_of(const ChosenSchedule& schedule, const py::
         set_up_sensor(sensor_of(sensor).description, schedule.choice, schedule.shape));
 }
 
-/// The text of a schedule file of these exposures: an array as `exposures_of` makes.
+/// Gives a schedule the weights of an array as `weights_of` makes.
+void set_weights(ExposureSchedule& schedule,
+                 const py::array_t<float, py::array::c_style | py::array::forcecast>& weights) {
+    const std::vector<py::ssize_t> shape{schedule.period_slots(), schedule.tile_rows(),
+                                         schedule.tile_cols()};
+    if (!std::equal(shape.begin(), shape.end(), weights.shape(), weights.shape() + weights.ndim()))
+        throw InputError("weights", fmt::format("are no array (slots, rows, columns) of {} x {} x "
+                                                "{}, the period and the tile",
+                                                shape[0], shape[1], shape[2]));
+    schedule.set_weights({weights.data(), weights.data() + weights.size()});
+}
+
+/// The text of a schedule file of these exposures: arrays as `exposures_of` and, unless it is None,
+/// `weights_of` make them.
 std::string text_of(const py::array_t<ExposureRow>& rows, Tile tile, int period_slots,
-                    const std::string& name) {
+                    const std::string& name, const py::object& weights) {
     if (tile.first < 1 || tile.second < 1 || rows.ndim() != 1)
         throw InputError("exposures", "give one axis, and a tile of at least 1 x 1 pixels");
     const auto pixels =
@@ -91,9 +107,10 @@ std::string text_of(const py::array_t<ExposureRow>& rows, Tile tile, int period_
         exposures.insert(exposures.end(), of_pixel.begin(), of_pixel.end());
         first.push_back(static_cast<std::uint32_t>(exposures.size()));
     }
-    return code_text(ExposureSchedule(tile.first, tile.second, period_slots, std::move(first),
-                                      std::move(exposures)),
-                     name);
+    ExposureSchedule schedule(tile.first, tile.second, period_slots, std::move(first),
+                              std::move(exposures));
+    if (!weights.is_none()) set_weights(schedule, weights);
+    return code_text(schedule, name);
 }
 
 void bind_figures(py::class_<ChosenSchedule>& schedule) {
@@ -120,7 +137,8 @@ void bind_figures(py::class_<ChosenSchedule>& schedule) {
     add("samples_per_pixel_slot", std::mem_fn(&Plan::samples_per_pixel_slot),
         "Its inverse is the compression ratio.");
     add("light_throughput", std::mem_fn(&Plan::light_throughput),
-        "Share of all pixels and slots that collects light.");
+        "Share of all pixels and slots that collects light; with weights their mean.");
+    add("weighted", std::mem_fn(&Plan::weighted), "Whether some weight of an open slot is not 1.");
 }
 
 }  // namespace
@@ -133,6 +151,26 @@ py::array exposures_of(const ExposureSchedule& schedule) {
                 rows.push_back({static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(col),
                                 exposure.first_slot, exposure.open_slots});
     return py::array_t<ExposureRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+py::array weights_of(const ExposureSchedule& schedule) {
+    const int period = schedule.period_slots();
+    const int rows = schedule.tile_rows();
+    const int cols = schedule.tile_cols();
+    check_memory(sizeof(float) * index(period) * index(rows) * index(cols), "weights", "the array");
+    py::array_t<float> array({period, rows, cols});
+    std::fill_n(array.mutable_data(), array.size(), 0.0F);
+    auto weights = array.mutable_unchecked<3>();
+    for (int row = 0; row < rows; ++row)
+        for (int col = 0; col < cols; ++col)
+            for (const Exposure& exposure : schedule.exposures(row, col))
+                for (int i = 0; i < exposure.span_slots(); ++i) {
+                    if ((exposure.open_slots >> static_cast<unsigned>(i) & 1U) == 0) continue;
+                    const int slot = (static_cast<int>(exposure.first_slot) + i) % period;
+                    weights(slot, row, col) =
+                        schedule.weighted() ? schedule.weight(slot, row, col) : 1.0F;
+                }
+    return array;
 }
 
 SensorSetup set_up(const ChosenSensor& sensor, const py::object& schedule, FrameShape footage,
@@ -186,6 +224,11 @@ Raises ValueError for a key or value that the file may not have, OSError for a m
             R"(All exposures of the tile: an array with the fields row, col (of the tile),
 first_slot (0 .. period_slots - 1) and open_slots, whose bit i says that the shutter is open in slot
 first_slot + i. An exposure is read at the end of its last open slot.)")
+        .def(
+            "weights", [](const ChosenSchedule& self) { return weights_of(self.made.schedule); },
+            R"(The share of its light that each pixel of the tile collects in each slot of the
+period: an array (slot, row, col), 0 where the shutter is closed and 1 where it is open without a
+grey mask. A sample is the sum of weight x light over the open slots of its exposure.)")
         .def("check", &problem_of, py::arg("sensor") = "paper",
              "Why the sensor cannot do it: too few charge stores or too little time; or None.")
         .def("save", &save, py::arg("path"), py::arg("force") = false,
@@ -197,7 +240,8 @@ first_slot + i. An exposure is read at the end of its last open slot.)")
                                plan.period_slots());
         });
     bind_figures(schedule);
-    module.def("schedule_text", &text_of);
+    module.def("schedule_text", &text_of, py::arg("exposures"), py::arg("tile"),
+               py::arg("period_slots"), py::arg("name"), py::arg("weights") = py::none());
 }
 
 }  // namespace stipple::python

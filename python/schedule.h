@@ -21,6 +21,10 @@ struct ChosenSchedule {
 /// All exposures of the tile: an array with the fields row, col, first_slot and open_slots.
 [[nodiscard]] pybind11::array exposures_of(const ExposureSchedule& schedule);
 
+/// The weight of each slot and pixel: (slot of the period, row, col of the tile), 0 in closed slots
+/// and 1 in open ones of a schedule without weights. \throws InputError if memory does not suffice.
+[[nodiscard]] pybind11::array weights_of(const ExposureSchedule& schedule);
+
 /// The sensor with the schedule, a ChosenSchedule of Python or a name or path, for this footage.
 /// \throws InputError as set_up_sensor, or if the schedule was made for something else.
 [[nodiscard]] SensorSetup set_up(const ChosenSensor& sensor, const pybind11::object& schedule,

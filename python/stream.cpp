@@ -74,6 +74,9 @@ void bind_stream(py::module_& module) {
             "exposures",
             [](const StreamFile& self) { return exposures_of(self.header().schedule); },
             "The exposures of its schedule, as Schedule.exposures().")
+        .def(
+            "weights", [](const StreamFile& self) { return weights_of(self.header().schedule); },
+            "The weights of its schedule, as Schedule.weights().")
         .def("slots", &StreamFile::slots, "Number of slots. Reads an interrupted stream through.")
         .def("samples", &StreamFile::samples, py::arg("slot"),
              R"(The samples of a slot: an array with the fields row, col, plane, exposure_slots

@@ -2,10 +2,29 @@
 
 #include <utility>
 
+#include "core/index.h"
+#include "core/parallel.h"
 #include "readout/light_throughput.h"
 #include "sensor_model/colour_mosaic.h"
 
 namespace stipple {
+namespace {
+
+/// The light of a slot behind the grey mask of a schedule with weights.
+void mask(const ExposureSchedule& schedule, std::int64_t slot, FrameShape shape,
+          std::span<const float> frame, std::span<float> masked) {
+    const auto phase = static_cast<int>(slot % schedule.period_slots());
+    parallel_for(0, shape.planes * shape.rows, [&](int line) {
+        const int tile_row = line % shape.rows % schedule.tile_rows();
+        const std::size_t begin = index(line) * index(shape.cols);
+        for (int col = 0; col < shape.cols; ++col) {
+            const float weight = schedule.weight(phase, tile_row, col % schedule.tile_cols());
+            masked[begin + index(col)] = weight * frame[begin + index(col)];
+        }
+    });
+}
+
+}  // namespace
 
 StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance) {
     return {.shape = setup.shape,
@@ -33,6 +52,12 @@ std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
         mosaic_.resize(setup_.shape.pixels());
         take_mosaic(filter, setup_.footage, frame, mosaic_);
         frame = mosaic_;
+    }
+    const ExposureSchedule& schedule = setup_.schedule.schedule;
+    if (schedule.weighted()) {
+        masked_.resize(setup_.shape.sites());
+        mask(schedule, stats().slots, setup_.shape, frame, masked_);
+        frame = masked_;
     }
     sensor_.expose(frame, packets_[0]);
     return readout_cost_ ? split_at_overrun(readout_cost_->add_next())

@@ -24,7 +24,8 @@ class Emulator {
     /// `setup` must outlive the emulator.
     explicit Emulator(const SensorSetup& setup);
 
-    /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)). The
+    /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
+    /// the grey mask of the slot if the schedule has weights: its photons are counted. The
     /// packets of the slot, valid until the next call: one, or two if the last rows do not fit the
     /// slot and are dropped.
     [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
@@ -53,6 +54,7 @@ class Emulator {
     std::array<SamplePacket, 2> packets_;
     double dropped_light_ = 0;   ///< as `light_due`
     std::vector<float> mosaic_;  ///< of light in colour behind colour filters
+    std::vector<float> masked_;  ///< light behind a grey mask
 };
 
 }  // namespace stipple

@@ -13,6 +13,19 @@ double transmittance(const CalibrationTile& tile, int row, int col) {
         .responsivity;
 }
 
+/// Slots of light that a due pixel has collected.
+double light_slots(const ExposureSchedule& schedule, std::int64_t slot, int row, int col,
+                   const DuePixel& pixel) {
+    if (!schedule.weighted()) return pixel.light_slots;
+    const std::int64_t begin = slot - pixel.span_slots + 1;
+    const int tile_row = row % schedule.tile_rows();
+    const int tile_col = col % schedule.tile_cols();
+    const auto exposures = schedule.exposures(tile_row, tile_col);
+    const auto first = static_cast<std::uint32_t>(begin % schedule.period_slots());
+    return schedule.light_slots(tile_row, tile_col,
+                                *std::ranges::find(exposures, first, &Exposure::first_slot));
+}
+
 }  // namespace
 
 double light_throughput(const ExposureSchedule& schedule, const CalibrationTile& tile,
@@ -21,11 +34,12 @@ double light_throughput(const ExposureSchedule& schedule, const CalibrationTile&
     double light = 0;
     for (int row = 0; row < shape.rows; ++row)
         for (int col = 0; col < shape.cols; ++col) {
-            int open = 0;
-            for (const Exposure& exposure :
-                 schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols()))
-                open += exposure.light_slots();
-            light += open * transmittance(tile, row, col);
+            const int tile_row = row % schedule.tile_rows();
+            const int tile_col = col % schedule.tile_cols();
+            double collected = 0;
+            for (const Exposure& exposure : schedule.exposures(tile_row, tile_col))
+                collected += schedule.light_slots(tile_row, tile_col, exposure);
+            light += collected * transmittance(tile, row, col);
         }
     return light / (schedule.period_slots() * static_cast<double>(shape.pixels()));
 }
@@ -35,7 +49,8 @@ double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
     double light = 0;
     for (int row = rows.first_row; row < rows.end_row; ++row)
         visit_due_pixels(schedule, rows.slot, row, rows.cols, [&](int col, const DuePixel& pixel) {
-            light += pixel.light_slots * transmittance(tile, row, col);
+            light +=
+                light_slots(schedule, rows.slot, row, col, pixel) * transmittance(tile, row, col);
         });
     return light;
 }

@@ -2,13 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "report/json_figures.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {
 namespace {
+
+/// Least and most of the weights of open slots.
+std::pair<float, float> open_weights(const ExposureSchedule& schedule) {
+    std::pair range{kMaxSlotWeight, kMinSlotWeight};
+    for (const float weight : schedule.weights())
+        if (weight > 0) range = {std::min(range.first, weight), std::max(range.second, weight)};
+    return range;
+}
 
 /// What only some sensors have, a line each.
 std::string special_text(const StreamHeader& header) {
@@ -21,6 +31,12 @@ std::string special_text(const StreamHeader& header) {
     if (!calibration.tile.pixels.empty())
         text += fmt::format("pixels       differ, tile {} x {}\n", calibration.tile.rows,
                             calibration.tile.cols);
+    if (calibration.noise_free) text += "noise        none but rounding\n";
+    if (header.schedule.weighted()) {
+        const auto [least, most] = open_weights(header.schedule);
+        text +=
+            fmt::format("masks        grey, weights of open slots {:.4g} .. {:.4g}\n", least, most);
+    }
     return text;
 }
 

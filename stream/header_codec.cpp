@@ -13,6 +13,7 @@
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"
 #include "stream/schedule_codec.h"
+#include "stream/weight_codec.h"
 
 namespace stipple {
 namespace {
@@ -21,7 +22,8 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'P', 'L', '\r', '\n', 0x1A};
 constexpr std::array<std::uint8_t, 4> kRecording{0x89, 'S', 'T', 'R'};  // recording_format.md
-constexpr std::uint16_t kVersion = 2;  ///< that is written; 1 is read, too
+constexpr std::uint16_t kVersion = 2;        ///< that is written; 1 is read, too
+constexpr std::uint16_t kWeightVersion = 3;  ///< the same, if bytes 86 and 87 are not both 0
 constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
@@ -30,7 +32,8 @@ constexpr std::size_t kMinHeaderBytes = kFixedBytes + 1 + kCrcBytes;  ///< a sch
 constexpr std::size_t kMaxScheduleBytes = std::size_t{1} << 28U;
 constexpr std::size_t kMaxCalibrationBytes = 12 + 16 * kMaxCalibrationPixels;
 constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProvenanceBytes +
-                                        kMaxScheduleBytes + kMaxCalibrationBytes + kCrcBytes;
+                                        kMaxScheduleBytes + kMaxCalibrationBytes +
+                                        sizeof(float) * kMaxWeights + kCrcBytes;
 
 [[noreturn]] void fail_at(std::string_view where, std::size_t offset, std::string_view problem) {
     throw InputError(fmt::format("{}: byte {}", where, offset), problem);
@@ -63,10 +66,10 @@ constexpr Field kProvenanceBytes{76, "bytes of the provenance text", 0, kMaxProv
 constexpr Field kScheduleBytes{80, "bytes of the schedule section", 1, kMaxScheduleBytes};
 constexpr Field kScheduleKind{84, "schedule kind", 0, 1};
 constexpr Field kCalibrationSection{85, "calibration section", 0, 1};
+constexpr Field kWeightSection{86, "weights section", 0, 1};
+constexpr Field kNoiseFree{87, "absence of noise", 0, 1};
 constexpr std::size_t kScheduleCrc = 88;
-
-/// Bytes that must be zero.
-constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {86, 2}};
+constexpr std::size_t kReserved = 10;  ///< two bytes
 
 void check(const Field& field, double value, std::string_view where) {
     if (value >= field.min && value <= field.max) return;  // false for NaN
@@ -151,9 +154,30 @@ void append_numbers(std::vector<std::uint8_t>& bytes, const Numbers& numbers) {
 }
 
 void check_reserved(Bytes header, std::string_view where) {
-    for (const auto& [offset, bytes] : kReserved)
-        for (std::size_t at = offset; at < offset + bytes; ++at)
-            if (header[at] != 0) fail_at(where, at, "reserved byte is not zero");
+    const auto require_zero = [&](std::size_t at) {
+        if (header[at] != 0) fail_at(where, at, "reserved byte is not zero");
+    };
+    for (const std::size_t at : {kReserved, kReserved + 1}) require_zero(at);
+    if (load<std::uint16_t>(&header[kVersionAt]) < kWeightVersion)
+        for (const Field& field : {kWeightSection, kNoiseFree}) require_zero(field.offset);
+}
+
+/// Of version 3: bytes 86 and 87.
+struct Additions {
+    bool weights = false;
+    bool noise_free = false;
+};
+
+Additions load_additions(Bytes header, std::string_view where) {
+    for (const Field& field : {kWeightSection, kNoiseFree})
+        check(field, load_at<std::uint8_t>(header, field), where);
+    const Additions additions{header[kWeightSection.offset] != 0, header[kNoiseFree.offset] != 0};
+    if (load<std::uint16_t>(&header[kVersionAt]) == kWeightVersion && !additions.weights &&
+        !additions.noise_free)
+        fail_at(where, kVersionAt, "version 3 has weights or says that there is no noise");
+    if (additions.weights && load_at<std::uint8_t>(header, kScheduleKind) != 0)
+        fail_at(where, kWeightSection.offset, "a random schedule has no weights");
+    return additions;
 }
 
 /// The parts after the fixed one.
@@ -161,7 +185,7 @@ struct Parts {
     std::string_view name;
     std::string_view provenance;
     Bytes schedule;
-    Bytes calibration;  ///< empty: none
+    Bytes sections;  ///< calibration and weights, if they are present
 };
 
 Parts split(Bytes header, std::string_view where) {
@@ -181,10 +205,16 @@ Parts split(Bytes header, std::string_view where) {
     const std::string_view name = text(part(kNameBytes));
     const std::string_view provenance = text(part(kProvenanceBytes));
     const Bytes schedule = part(kScheduleBytes);
-    const Bytes calibration = header.subspan(at, header.size() - kCrcBytes - at);
-    if (calibration.empty() != (load_at<std::uint8_t>(header, kCalibrationSection) == 0))
+    return {name, provenance, schedule, header.subspan(at, header.size() - kCrcBytes - at)};
+}
+
+/// Of the sections after the schedule, the bytes of the calibration; the rest are weights.
+std::size_t calibration_bytes(Bytes header, std::size_t sections, std::size_t weights,
+                              std::string_view where) {
+    const bool calibrated = load_at<std::uint8_t>(header, kCalibrationSection) != 0;
+    if (weights > sections || (weights == sections) == calibrated)
         fail_at(where, kHeaderLength.offset, "header bytes are not the sum of its parts");
-    return {name, provenance, schedule, calibration};
+    return sections - weights;
 }
 
 }  // namespace
@@ -198,25 +228,32 @@ std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_
     const bool calibrated = needs_calibration_section(header.calibration);
     const auto calibration =
         calibrated ? encode_calibration(header.calibration, where) : std::vector<std::uint8_t>{};
+    const bool weighted = header.schedule.weighted();
+    if (weighted && header.schedule_source.kind == ScheduleSource::Kind::kRandom)
+        fail_at(where, kWeightSection.offset, "a random schedule has no weights");
+    const auto weights =
+        weighted ? encode_weights(header.schedule, where) : std::vector<std::uint8_t>{};
+    const bool noise_free = header.calibration.noise_free;
 
     std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
-    append(bytes, kVersion);
+    append(bytes, weighted || noise_free ? kWeightVersion : kVersion);
     append(bytes, std::uint16_t{0});
     append(bytes, static_cast<std::uint32_t>(kFixedBytes + header.schedule_name.size() +
                                              header.provenance.size() + schedule.size() +
-                                             calibration.size() + kCrcBytes));
+                                             calibration.size() + weights.size() + kCrcBytes));
     append_numbers(bytes, numbers);
     append(bytes, static_cast<std::uint32_t>(header.schedule_name.size()));
     append(bytes, static_cast<std::uint32_t>(header.provenance.size()));
     append(bytes, static_cast<std::uint32_t>(schedule.size()));
     append(bytes, static_cast<std::uint8_t>(header.schedule_source.kind));
-    append(bytes, static_cast<std::uint8_t>(calibrated ? 1 : 0));
-    append(bytes, std::uint16_t{0});
+    for (const bool flag : {calibrated, weighted, noise_free})
+        append(bytes, static_cast<std::uint8_t>(flag ? 1 : 0));
     append(bytes, schedule_crc(header.schedule));
     bytes.insert(bytes.end(), header.schedule_name.begin(), header.schedule_name.end());
     bytes.insert(bytes.end(), header.provenance.begin(), header.provenance.end());
     bytes.insert(bytes.end(), schedule.begin(), schedule.end());
     bytes.insert(bytes.end(), calibration.begin(), calibration.end());
+    bytes.insert(bytes.end(), weights.begin(), weights.end());
     append(bytes, crc32c(bytes));
     return bytes;
 }
@@ -242,10 +279,10 @@ std::size_t header_bytes(Bytes start, std::string_view where) {
     if (start.size() < kHeaderStartBytes)
         fail_at(where, start.size(), "the file ends within its header");
     const auto version = load<std::uint16_t>(&start[kVersionAt]);
-    if (version < 1 || version > kVersion)
+    if (version < 1 || version > kWeightVersion)
         fail_at(where, kVersionAt,
-                fmt::format("version {} of the sample stream; this program reads versions 1 and {}",
-                            version, kVersion));
+                fmt::format("version {} of the sample stream; this program reads versions 1 to {}",
+                            version, kWeightVersion));
     const auto bytes = load_at<std::uint32_t>(start, kHeaderLength);
     check(kHeaderLength, bytes, where);
     return bytes;
@@ -267,16 +304,27 @@ StreamHeader decode_header(Bytes header, std::string_view where, const ScheduleU
     check(kCalibrationSection, load_at<std::uint8_t>(header, kCalibrationSection), where);
     const auto kind = load_at<std::uint8_t>(header, kScheduleKind);
     check(kScheduleKind, kind, where);
+    const Additions additions = load_additions(header, where);
     const Parts parts = split(header, where);
+    const std::size_t sections_at = crc_offset - parts.sections.size();
+    if (!additions.weights)
+        static_cast<void>(calibration_bytes(header, parts.sections.size(), 0, where));
     check_texts(parts.name, parts.provenance, where);
-    const std::size_t schedule_at = crc_offset - parts.calibration.size() - parts.schedule.size();
+    const std::size_t schedule_at = sections_at - parts.schedule.size();
     auto stored = decode_schedule({ScheduleSource::Kind{kind}, parts.schedule, schedule_at},
                                   numbers.shape, where, use);
     if (stored.crc != load<std::uint32_t>(&header[kScheduleCrc]))
         fail_at(where, kScheduleCrc, "the schedule is not the one that was recorded");
-    if (!parts.calibration.empty())
-        decode_calibration(parts.calibration, crc_offset - parts.calibration.size(), where,
+    const std::size_t calibration =
+        calibration_bytes(header, parts.sections.size(),
+                          additions.weights ? weight_bytes(stored.schedule) : 0, where);
+    if (calibration > 0)
+        decode_calibration(parts.sections.first(calibration), sections_at, where,
                            numbers.calibration);
+    if (additions.weights)
+        decode_weights(parts.sections.subspan(calibration), sections_at + calibration, where,
+                       stored.schedule);
+    numbers.calibration.noise_free = additions.noise_free;
     return {numbers.shape,
             numbers.slot_us,
             std::move(numbers.calibration),

@@ -12,7 +12,7 @@ namespace stipple {
 static_assert(std::endian::native == std::endian::little);
 
 template <typename T>
-concept Stored = std::unsigned_integral<T> || std::same_as<T, double>;
+concept Stored = std::unsigned_integral<T> || std::same_as<T, float> || std::same_as<T, double>;
 
 /// The number stored at `bytes`. Precondition: sizeof(T) bytes are readable.
 template <Stored T>

@@ -52,6 +52,7 @@ void visit_calibration_figures(const Calibration& calibration, const Add& add) {
     add("full_well_e", calibration.full_well_e);
     add("electrons_per_unit", calibration.electrons_per_unit);
     add("dark_e_per_slot", calibration.dark_e_per_slot);
+    add("noise_free", calibration.noise_free);
     add("tile_rows", calibration.tile.rows);
     add("tile_cols", calibration.tile.cols);
     add("responsivity", responsivity);
@@ -71,6 +72,7 @@ void visit_schedule_figures(const StreamHeader& header, const Add& add) {
     add("light_throughput", schedule.light_throughput());
     add("gapless", schedule.gapless());
     add("interleaved", schedule.interleaved());
+    add("weighted", schedule.weighted());
     if (header.schedule_source.kind == ScheduleSource::Kind::kRandom) {
         add("exposure_slots", header.schedule_source.exposure_slots);
         add("seed", header.schedule_source.seed);

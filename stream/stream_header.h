@@ -42,6 +42,8 @@ struct Calibration {
     double electrons_per_unit = 1000;     ///< electrons that flux 1.0 gives in one slot
     double dark_e_per_slot = 0;           ///< dark signal of an open slot, in electrons
     CalibrationTile tile = {};
+    /// The samples are exact but for rounding, as those of a simulation: decoders need not smooth.
+    bool noise_free = false;
 
     bool operator==(const Calibration&) const = default;
 };

@@ -12,10 +12,12 @@
 #include "decoder/reconstruct.h"
 #include "io/footage_reader.h"
 #include "metrics/video_quality.h"
+#include "readout/emulator.h"
 #include "readout/schedules/volume_schedule.h"
-#include "readout/stream_recorder.h"
 #include "scenes/scene.h"
 #include "sensor_model/sensor_config.h"
+#include "stream/stream_reader.h"
+#include "stream/stream_writer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -31,15 +33,32 @@ SensorParams ideal_sensor(const SciSensor& sensor) {
     return read_sensor(config);
 }
 
-void write_stream(const FluxVideo& video, const ExposureSchedule& schedule,
-                  const SensorParams& params, const std::filesystem::path& file) {
+void write_stream(const FluxVideo& video, const ExposureSchedule& schedule, const SciSensor& sensor,
+                  const std::filesystem::path& file) {
+    const SensorParams params = ideal_sensor(sensor);
     const SensorSetup setup{.params = params,
                             .schedule = {.name = "masks", .source = {}, .schedule = schedule},
                             .shape = video.shape(),
                             .footage = video.shape()};
-    StreamRecorder recorder(file, setup, {.force = true});
-    for (int slot = 0; slot < video.slots(); ++slot) recorder.expose(video.frame(slot));
-    recorder.finish();
+    StreamHeader header = stream_header_of(setup, "");
+    header.calibration.noise_free = sensor.noise_free;
+    StreamWriter writer(file, header);
+    Emulator emulator(setup);
+    for (int slot = 0; slot < video.slots(); ++slot)
+        for (const SamplePacket& packet : emulator.expose(video.frame(slot))) writer.write(packet);
+    writer.finish();
+}
+
+/// Masks of `value(word)` for random words of 32 bits.
+template <typename Value>
+NpyVolume drawn_masks(FrameShape shape, std::uint64_t seed, const Value& value) {
+    NpyVolume masks{kSciFrames, shape.rows, shape.cols, {}};
+    const auto pixels = static_cast<std::uint32_t>(shape.pixels());
+    for (std::uint32_t frame = 0; frame < kSciFrames; ++frame)
+        for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
+            masks.values.push_back(
+                static_cast<double>(value(philox4x32({pixel, frame, 0, 0}, seed)[0])));
+    return masks;
 }
 
 }  // namespace
@@ -71,12 +90,28 @@ FluxVideo sci_stand_in(const std::string& scene, int slots, FrameShape shape) {
 }
 
 NpyVolume random_masks(FrameShape shape, std::uint64_t seed) {
-    NpyVolume masks{kSciFrames, shape.rows, shape.cols, {}};
-    const auto pixels = static_cast<std::uint32_t>(shape.pixels());
-    for (std::uint32_t frame = 0; frame < kSciFrames; ++frame)
-        for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
-            masks.values.push_back(philox4x32({pixel, frame, 0, 0}, seed)[0] & 1U);
-    return masks;
+    return drawn_masks(shape, seed, [](std::uint32_t word) { return word & 1U; });
+}
+
+NpyVolume grey_masks(FrameShape shape, std::uint64_t seed) {
+    return drawn_masks(shape, seed, [](std::uint32_t word) { return word * 0x1p-32; });
+}
+
+NpyVolume blurred_masks(const NpyVolume& masks) {
+    NpyVolume result = masks;
+    std::size_t i = 0;
+    for (int frame = 0; frame < masks.layers; ++frame)
+        for (int row = 0; row < masks.rows; ++row)
+            for (int col = 0; col < masks.cols; ++col) {
+                double sum = 0;
+                for (int r = -1; r <= 1; ++r)
+                    for (int c = -1; c <= 1; ++c)
+                        sum += (2 - std::abs(r)) * (2 - std::abs(c)) *
+                               masks.at(frame, std::clamp(row + r, 0, masks.rows - 1),
+                                        std::clamp(col + c, 0, masks.cols - 1));
+                result.values[i++] = sum / 16;
+            }
+    return result;
 }
 
 double sci_psnr_db(const FluxVideo& video, const NpyVolume& masks, const SciSensor& sensor,
@@ -87,8 +122,7 @@ double sci_psnr_db(const FluxVideo& video, const NpyVolume& masks, const SciSens
                          fmt::format("are {} x {} x {}, not {} x {} x {}", masks.layers, masks.rows,
                                      masks.cols, kSciFrames, shape.rows, shape.cols));
     const TemporaryFolder folder;
-    write_stream(video, mask_schedule(masks, "masks"), ideal_sensor(sensor),
-                 folder / "clip.stipple");
+    write_stream(video, mask_schedule(masks, "masks"), sensor, folder / "clip.stipple");
     StreamReader reader(folder / "clip.stipple", ReadPolicy::kStrict);
     QualityMeter meter(shape, {.max_value = 1});
     decode(reader, options, [&](std::int64_t slot, std::span<const float> frame) {

@@ -26,11 +26,19 @@ inline constexpr int kSciFrames = 8;
 /// Binary masks, half of them ones, from a seed: order (frame, row, col).
 [[nodiscard]] NpyVolume random_masks(FrameShape shape, std::uint64_t seed);
 
+/// Grey masks, uniform in 0..1.
+[[nodiscard]] NpyVolume grey_masks(FrameShape shape, std::uint64_t seed);
+
+/// Masks as optics blur them: each the mean of 3 x 3 pixels, weights 1, 2, 1 along rows and
+/// columns.
+[[nodiscard]] NpyVolume blurred_masks(const NpyVolume& masks);
+
 /// The sensor `ideal` with `electrons_per_unit` electrons for light 1.0: no noise but rounding to
 /// 16 bits. Decoders take the shot noise of that light into account, though there is none: the more
 /// electrons, the more exactly they keep to the samples.
 struct SciSensor {
     double electrons_per_unit = 1e6;
+    bool noise_free = false;  ///< the stream says that there is no noise
 };
 
 /// Records `video` with `masks`, decodes it and returns the mean of the frames' PSNR in dB, of all

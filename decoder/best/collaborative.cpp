@@ -223,6 +223,25 @@ void read_options(Config& config, CollaborativeOptions& options) {
           "first iterations of a mosaic, with patches from nearby"},
          options.mosaic.near_iterations);
     read_matching(config, "mosaic.near.", options.mosaic.near);
+    read({"noise_free.iterations", kIterations, "", "iterations without noise"},
+         options.noise_free.iterations);
+    read({"noise_free.first_sigma", kSigma, "", "first_sigma without noise"},
+         options.noise_free.first_sigma);
+    read({"noise_free.min_sigma", kSigma, "", "sigma of the last iteration without noise"},
+         options.noise_free.min_sigma);
+    read({"noise_free.light_offset", {1e-4, 1e3}, "flux", "light_offset without noise"},
+         options.noise_free.light_offset);
+}
+
+CollaborativeOptions without_noise(CollaborativeOptions options) {
+    options.iterations = options.noise_free.iterations;
+    options.first_sigma = options.noise_free.first_sigma;
+    options.last_noise = 0;
+    options.min_sigma = options.noise_free.min_sigma;
+    options.light_offset = options.noise_free.light_offset;
+    options.residual_gain = 1;
+    options.residual_decay = 1;
+    return options;
 }
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,

@@ -23,6 +23,16 @@ struct MosaicFilterOptions {
     MatchingOptions near{.slots = 2, .own_radius = 8, .path_radius = 2};
 };
 
+/// Options for samples without noise (Calibration::noise_free). The filter ends below any shot
+/// noise, and all residuals are fed back. Footage of such streams is mostly video after the power
+/// 1/2.2, in which the offset weakens the square root; docs/notes/sci_benchmark.md has the effect.
+struct NoiseFreeFilterOptions {
+    int iterations = 100;
+    float first_sigma = 0.12F;
+    float min_sigma = 0.008F;
+    float light_offset = 0.5F;
+};
+
 /// The method `best`; the values were found on natural and high-speed footage
 /// (docs/notes/decoder_experiments.md).
 struct CollaborativeOptions {
@@ -48,7 +58,11 @@ struct CollaborativeOptions {
     float residual_decay = 0.9F;
     float momentum = 0.6F;  ///< beta of x + beta (x - x_previous)
     MosaicFilterOptions mosaic = {};
+    NoiseFreeFilterOptions noise_free = {};
 };
+
+/// The options that take the place of `options` for samples without noise.
+[[nodiscard]] CollaborativeOptions without_noise(CollaborativeOptions options);
 
 /// Decodes one block: the estimate of `decode_motion_tv`, then iterations of collaborative filter
 /// and proximal map of the data term, which is half-quadratic splitting with a denoiser as its

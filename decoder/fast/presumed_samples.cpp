@@ -160,11 +160,10 @@ class SitePresumption {
         for (int slot = e.first_slot; slot <= e.last_slot; ++slot) {
             const std::size_t i = voxel(site, slot);
             if ((m_.state[i] & Measurements::kOpen) == 0) continue;
-            p.light += nearest_[i];
+            p.light += m_.weight_at(i) * nearest_[i];
             change = std::max(change, changes_.squared[i]);
         }
-        const auto n = static_cast<float>(e.open_slots);
-        p.variance = kSaturatedDoubt * n * n * change;
+        p.variance = kSaturatedDoubt * e.light_slots * e.light_slots * change;
         return p;
     }
 

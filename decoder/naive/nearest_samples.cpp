@@ -19,12 +19,6 @@ constexpr std::array<float, 17> kCloseness = {
     1.0F,           5.13417119e-1F, 2.63597138e-1F, 1.35335283e-1F, 6.94834512e-2F, 3.56739933e-2F,
     1.83156389e-2F, 9.40356255e-3F, 4.82794999e-3F, 2.47875218e-3F, 1.27263380e-3F, 6.53391981e-4F,
     3.35462628e-4F, 1.72232257e-4F, 8.84270376e-5F, 4.53999298e-5F, 2.33091012e-5F};
-/// 1 / (0.3 + n) for n open slots, up to 64.
-constexpr std::array<float, 65> kWeight = [] {
-    std::array<float, 65> weight{};
-    for (std::size_t n = 0; n < weight.size(); ++n) weight[n] = 1 / (0.3F + static_cast<float>(n));
-    return weight;
-}();
 constexpr int kNearSlots = 8;
 
 /// What the exposures of a site say of one slot; `own` is the exposure that the slot is in, or
@@ -35,7 +29,7 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
     float bound = 0;
     bool near = false;
     for (const SiteExposure& e : list) {
-        if (own != nullptr && &e != own && e.open_slots >= own->open_slots) continue;
+        if (own != nullptr && &e != own && e.light_slots >= own->light_slots) continue;
         const int distance = std::max({0, e.first_slot - slot, slot - e.last_slot});
         if (e.saturated) {
             if (distance <= kNearSlots) bound = std::max(bound, e.light_per_slot);
@@ -43,9 +37,8 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
         }
         near = near || distance <= kNearSlots;
         const auto i = std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1);
-        const float own_weight = kWeight[static_cast<std::size_t>(e.open_slots)];
-        light += own_weight * kCloseness[i] * e.light_per_slot;
-        weight += own_weight * kCloseness[i];
+        light += e.mean_weight * kCloseness[i] * e.light_per_slot;
+        weight += e.mean_weight * kCloseness[i];
     }
     if (weight == 0 || (bound > 0 && !near)) return bound;
     return own != nullptr && own->saturated ? std::max(light / weight, own->light_per_slot)

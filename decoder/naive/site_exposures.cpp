@@ -13,10 +13,11 @@ void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExp
         const auto chain = static_cast<std::uint8_t>(state & Measurements::kSecond);
         SiteExposure& e = chains[chain != 0 ? 1 : 0];
         if ((state & Measurements::kFirst) != 0) e = {.first_slot = slot, .chain = chain};
-        if ((state & Measurements::kOpen) != 0) ++e.open_slots;
+        if ((state & Measurements::kOpen) != 0) e.light_slots += m.weight_at(i);
         if ((state & Measurements::kLast) == 0) continue;
-        const auto n = static_cast<float>(e.open_slots);
+        const float n = e.light_slots;
         e.last_slot = slot;
+        e.mean_weight = 1 / (0.3F + n);
         e.saturated = (state & Measurements::kSaturated) != 0;
         e.light_per_slot = m.sum[i] / n;
         e.variance_per_slot = m.variance[i] / (n * n);

@@ -12,7 +12,8 @@ struct Measurements;
 struct SiteExposure {
     int first_slot = 0;
     int last_slot = 0;
-    int open_slots = 0;
+    float light_slots = 0;  ///< sum of the weights of the open slots; without weights their number
+    float mean_weight = 0;  ///< 1 / (0.3 + light_slots), as of nearest_samples.h
     bool saturated = false;
     std::uint8_t chain = 0;       ///< 0, or Measurements::kSecond
     float light_per_slot = 0;     ///< a lower bound if saturated

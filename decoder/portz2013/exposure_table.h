@@ -16,7 +16,7 @@ struct TimedSample {
     std::uint64_t open_slots = 0;  ///< bit i: open in slot first_slot + i; bit 0 is set
     int first_slot = 0;            ///< of the block
     int span_slots = 0;            ///< from the first open slot to the last one
-    int open_count = 0;            ///< open slots
+    float light_slots = 0;         ///< sum of the weights of the open slots; or their number
     float light = 0;               ///< y, of the whole exposure
     bool saturated = false;        ///< `light` is a lower bound
 };
@@ -28,7 +28,14 @@ class ExposureTable {
 
     [[nodiscard]] int slots() const { return slots_; }
     [[nodiscard]] FrameShape shape() const { return shape_; }
-    [[nodiscard]] int longest_open_count() const { return longest_open_count_; }
+    [[nodiscard]] float most_light_slots() const { return most_light_slots_; }
+
+    /// Weights of a site from a slot on; null without weights.
+    [[nodiscard]] const float* weights(std::size_t site, int slot) const {
+        const std::size_t i =
+            site * static_cast<std::size_t>(slots_) + static_cast<std::size_t>(slot);
+        return weights_.empty() ? nullptr : &weights_[i];
+    }
 
     /// The sample that contains the light of a site in a slot, or null. Precondition: both are in
     /// the block.
@@ -43,9 +50,10 @@ class ExposureTable {
 
     int slots_;
     FrameShape shape_;
-    int longest_open_count_ = 1;
+    float most_light_slots_ = 0;
     std::vector<TimedSample> samples_;
     std::vector<std::uint32_t> index_;  ///< order (site, slot)
+    std::vector<float> weights_;        ///< in the same order; empty without weights
 };
 
 /// `open_slots` relative to a first slot that is `slots` later: earlier bits are dropped.

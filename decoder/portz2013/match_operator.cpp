@@ -35,13 +35,17 @@ struct MatchOperator::Sampled {
     std::size_t row;
     std::size_t first;         ///< voxel of x in the sample's first slot
     std::uint64_t open_slots;  ///< which ones from there are added up
+    const float* weights;      ///< of the slots from there; null without weights
     float weight;
     float light;  ///< of the sample; b = weight light
     bool saturated;
 
     [[nodiscard]] float apply(std::span<const float> x) const {
         float sum = 0;
-        for_each_bit(open_slots, [&](std::size_t k) { sum += x[first + k]; });
+        if (weights == nullptr)
+            for_each_bit(open_slots, [&](std::size_t k) { sum += x[first + k]; });
+        else
+            for_each_bit(open_slots, [&](std::size_t k) { sum += weights[k] * x[first + k]; });
         return weight * sum;
     }
     [[nodiscard]] float residual(std::span<const float> x) const {
@@ -49,7 +53,10 @@ struct MatchOperator::Sampled {
     }
     void add_adjoint(float value, std::span<float> x) const {
         const float share = weight * value;
-        for_each_bit(open_slots, [&](std::size_t k) { x[first + k] += share; });
+        if (weights == nullptr)
+            for_each_bit(open_slots, [&](std::size_t k) { x[first + k] += share; });
+        else
+            for_each_bit(open_slots, [&](std::size_t k) { x[first + k] += weights[k] * share; });
     }
     [[nodiscard]] float shrink(float v, float threshold) const {
         return saturated ? one_sided_soft_threshold(v, threshold) : soft_threshold(v, threshold);
@@ -79,9 +86,6 @@ MatchOperator::MatchOperator(const ExposureTable& table, std::span<const MatchLi
       lists_(lists),
       gamma_(gamma),
       voxels_(table.shape().sites() * count(table.slots())) {
-    for (std::size_t n = 1; n < exposure_weight_.size(); ++n)
-        exposure_weight_[n] =
-            static_cast<float>(table.longest_open_count()) / static_cast<float>(n);
     partition_groups();
 }
 
@@ -124,9 +128,11 @@ std::size_t MatchOperator::visit_match(const Match& match, std::size_t row,
                 if (sample == nullptr || !first_seen(*sample, j.slot, k)) continue;
                 const int first = sample->first_slot + later;
                 if (first < 0 || first + sample->span_slots > table_.slots()) continue;
+                // tau_max / tau of the paper
+                const float exposure_weight = table_.most_light_slots() / sample->light_slots;
                 sampled(Sampled{row, voxel(site_i, first), sample->open_slots,
-                                j.weight * exposure_weight_[count(sample->open_count)],
-                                sample->light, sample->saturated});
+                                table_.weights(site_j, sample->first_slot),
+                                j.weight * exposure_weight, sample->light, sample->saturated});
                 ++row;
             }
             if (site_i == site_j && later == 0) continue;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -81,7 +80,6 @@ class MatchOperator {
     const ExposureTable& table_;
     std::span<const MatchList> lists_;
     float gamma_;
-    std::array<float, 65> exposure_weight_{};  ///< tau_max / tau by number of open slots
     std::size_t voxels_ = 0;
     std::size_t rows_ = 0;
     std::vector<Part> parts_;

@@ -15,6 +15,10 @@ struct PixelInPatch {
         const int i = slot + offset;
         return i >= 0 && i < table.slots() ? table.at(site, i) : nullptr;
     }
+    /// Weights from the first slot of a sample of this pixel; null without weights.
+    [[nodiscard]] const float* weights(const TimedSample& sample) const {
+        return table.weights(site, sample.first_slot);
+    }
     /// First slot of a sample of this pixel.
     [[nodiscard]] int offset_of(const TimedSample& sample) const {
         return sample.first_slot - slot;
@@ -22,6 +26,20 @@ struct PixelInPatch {
     /// Slots of the patch that it covers.
     [[nodiscard]] int cover(const TimedSample& sample, int slots) const {
         return std::popcount(seen_from(sample.open_slots, -offset_of(sample)) & first_bits(slots));
+    }
+};
+
+/// A sample and the weights of its pixel from its first slot on, or null.
+struct Target {
+    const TimedSample& sample;
+    const float* weights;
+
+    /// Sum of the weights of `slots` of its slots.
+    [[nodiscard]] float light_slots(std::uint64_t slots) const {
+        if (weights == nullptr) return static_cast<float>(std::popcount(slots));
+        float sum = 0;
+        for (; slots != 0; slots &= slots - 1) sum += weights[std::countr_zero(slots)];
+        return sum;
     }
 };
 
@@ -33,16 +51,15 @@ struct Blurred {
     bool known = false;
 };
 
-Blurred blur_to(const TimedSample& target, int target_offset, const PixelInPatch& source) {
+Blurred blur_to(const Target& target, int target_offset, const PixelInPatch& source) {
     Blurred z;
-    std::uint64_t rest = target.open_slots;
+    std::uint64_t rest = target.sample.open_slots;
     while (rest != 0) {
         const TimedSample* sample = source.at(target_offset + std::countr_zero(rest));
         if (sample == nullptr) return z;
         const int later = target_offset - source.offset_of(*sample);
         const std::uint64_t shared = seen_from(sample->open_slots, later) & rest;
-        const float weight =
-            static_cast<float>(std::popcount(shared)) / static_cast<float>(sample->open_count);
+        const float weight = target.light_slots(shared) / sample->light_slots;
         z.light += weight * sample->light;
         z.variance += weight * weight;
         z.saturated = z.saturated || sample->saturated;
@@ -78,14 +95,16 @@ SampleDifference compare_samples(const ExposureTable& table, const SiteInPatch& 
         if (a == nullptr || b == nullptr) continue;
         const int cover_a = first.cover(*a, slots);
         const int cover_b = second.cover(*b, slots);
-        const int longer = a->open_count - b->open_count;
+        const float longer = a->light_slots - b->light_slots;
         if (longer > 0 || (longer == 0 && cover_a >= cover_b)) {
             if (a != last_target)
-                add_target(*a, cover_a, blur_to(*a, first.offset_of(*a), second), sum);
+                add_target(*a, cover_a,
+                           blur_to({*a, first.weights(*a)}, first.offset_of(*a), second), sum);
             last_target = a;
         } else {
             if (b != last_other_target)
-                add_target(*b, cover_b, blur_to(*b, second.offset_of(*b), first), sum);
+                add_target(*b, cover_b,
+                           blur_to({*b, second.weights(*b)}, second.offset_of(*b), first), sum);
             last_other_target = b;
         }
     }

@@ -38,7 +38,8 @@ struct SiteInPatch {
 /// with more slots in the patch. Each target counts once. The samples of the other pixel during the
 /// target's exposure are blurred to it:
 ///     z = sum_k o_k / n_k y_k,   variance of z = sum_k (o_k / n_k)^2,
-/// where n_k are the open slots of sample k and o_k those that it shares with the target. The
+/// where n_k are the open slots of sample k and o_k those that it shares with the target. With
+/// weights, n_k is the sum of the weights of sample k, and o_k that of the target's weights. The
 /// weight of the target is c / (1 + variance), where c is the number of its open slots in the
 /// patch. The error is 0 if the target is saturated and z >= y, or if one of the y_k is saturated
 /// and z <= y. Nothing is compared if both are saturated, or if z is not known for the whole

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "decoder/schedule_check/schedule_residual.h"
 
@@ -136,6 +137,9 @@ ScheduleCheck::Verdict judge(const std::vector<Candidate>& finalists, const Cand
 
 ScheduleCheck check_schedule(StreamReader& reader) {
     const StreamHeader& header = reader.header();
+    if (header.schedule.weighted())
+        throw InputError("exposure schedule",
+                         "its exposures are weighted; shifts of weights are not searched");
     ScheduleCheck check;
     const std::vector<SamplePacket> packets = read_window(reader);
     if (packets.size() < kMinPackets || header.schedule.longest_span_slots() == 0) return check;

@@ -12,7 +12,7 @@ from read_recording import FIELDS, Recording, image
 from read_stream import Stream
 
 # of the header of a stream
-NOT_SHOWN = ("n", "p", "s", "random", "calibrated", "reserved", "schedule_crc")
+NOT_SHOWN = ("n", "p", "s", "random", "calibrated", "weighted", "crc")
 CFA = (None, "rggb", "grbg", "gbrg", "bggr")
 
 
@@ -27,8 +27,9 @@ def stream_result(content):
         faults.append(len(content) - stream.tail_bytes)
     header = {key: value for key, value in stream.head.items() if key not in NOT_SHOWN}
     header |= {"rounding": ("nearest", "floor")[header["rounding"]], "cfa": CFA[header["cfa"]]}
-    if header["cfa"] is None:
-        del header["cfa"]
+    for key in ("cfa", "weights", "noise_free"):
+        if not header[key]:
+            del header[key]
     keys = ("packets", "slots", "missing_slots", "tail_bytes", "damage")
     found = {key: getattr(stream, key) for key in keys}
     strict_error = f"byte {faults[0]}:" if faults else None

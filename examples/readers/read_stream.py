@@ -1,42 +1,42 @@
 """Reads sample streams as docs/stream_format.md defines them; (Words) are sections of that page.
-Of step 7 of (Reading) it checks the schedule CRC only. read_stream.py FILE prints the samples."""
-import re, struct, sys
+Of step 7 of (Reading) it checks schedule CRC and weights. read_stream.py FILE prints samples."""
+import functools, re, struct, sys
 from itertools import accumulate, product
-
 NAMES = """rows cols planes cfa bit_depth rounding slot_us black_level_dn gain_e_per_dn read_noise_e
-    full_well_e electrons_per_unit n p s random calibrated reserved schedule_crc""".split()
+    full_well_e electrons_per_unit n p s random calibrated weighted noise_free crc""".split()
 CRC_TABLE = range(256)
 for _ in range(8): CRC_TABLE = [crc >> 1 ^ 0x82F63B78 * (crc & 1) for crc in CRC_TABLE]
 
 def crc32c(data, other=0):  # continued from the CRC `other`
-    register = other ^ 0xFFFFFFFF
-    for byte in data:
-        register = register >> 8 ^ CRC_TABLE[(register ^ byte) & 0xFF]
-    return register ^ 0xFFFFFFFF
+    def step(crc, byte): return crc >> 8 ^ CRC_TABLE[(crc ^ byte) & 0xFF]
+    return functools.reduce(step, data, other ^ 0xFFFFFFFF) ^ 0xFFFFFFFF
 
 def read_header(data):  # (Reading), steps 1 to 6, then the fields of (Header)
     version, size = struct.unpack_from("<H2xI", data.ljust(16, b"\0"), 8)
     crc = int.from_bytes(data[size - 4:size], "little")
     for good, offset, fault in (
             (data[:8] == b"\x89STPL\r\n\x1a"[:len(data)], 0, "not a sample stream"),
-            (len(data) >= 16, len(data), "the file ends within its header"),
-            (version in (1, 2), 8, f"version {version} is unknown"),
-            (97 <= size <= 336593068, 12, "wrong number of header bytes"),
-            (len(data) >= size, len(data), "the file ends within its header"),
+            (len(data) >= 16, len(data), "header cut"), (1 <= version <= 3, 8, "unknown version"),
+            (97 <= size <= 605028524, 12, "header bytes"), (len(data) >= size, len(data), "cut"),
             (crc32c(data[:size - 4]) == crc, size - 4, "the header is damaged")):
         if not good: raise ValueError(f"byte {offset}: {fault}")
-    head = dict(zip(NAMES, struct.unpack_from("<2H4B6d3I2BHI", data, 16)))
+    head = dict(zip(NAMES, struct.unpack_from("<2H4B6d3I4BI", data, 16)))
     text, section, end = accumulate((92 + head["n"], head["p"], head["s"]))
     head.update(schedule_name=data[92:text].decode(), provenance=data[text:section].decode())
     head["schedule"] = read_schedule(data[section:end], head)
+    *_, period, tile = head["schedule"].values()
+    weights_at = size - 4 - 4 * head["weighted"] * period * len(tile)  # (Weights section)
+    head["weights"] = [w for w, in struct.iter_unpack("<f", data[weights_at:size - 4])]
+    for w, (slot, exposures) in zip(head["weights"], product(range(period), tile)):
+        is_open = any(m >> (slot - f) % period & 1 for f, m in exposures)
+        if not is_open * 2**-20 <= w <= is_open * 2**20: raise ValueError(f"byte {weights_at}: {w}")
     if head["calibrated"]:  # (Calibration section)
         head["dark_e_per_slot"], *tile = struct.unpack_from("<d2H", data, end)
-        head["calibration_tile"] = tile + list(struct.iter_unpack("<2d", data[end + 12:size - 4]))
+        head["calibration_tile"] = tile + list(struct.iter_unpack("<2d", data[end + 12:weights_at]))
     return head, version, size, crc
 
 def read_schedule(section, head):  # (Schedule section)
-    def varint(n):
-        return bytes([n]) if n < 128 else bytes([n % 128 + 128]) + varint(n >> 7)
+    def varint(n): return bytes([n]) if n < 128 else bytes([n % 128 + 128]) + varint(n >> 7)
     if head["random"]:
         rows, cols, period = head["rows"], head["cols"], sum(section[9:])
         tile = [random_exposures(section, pixel) for pixel in range(rows * cols)]
@@ -47,7 +47,7 @@ def read_schedule(section, head):  # (Schedule section)
         tile = [[(next(ints), next(ints)) for _ in range(next(ints))] for _ in range(rows * cols)]
     explicit = (n for exposures in tile for n in (len(exposures), *sum(exposures, ())))
     form = struct.pack("<3H", rows, cols, period) + b"".join(map(varint, explicit))
-    if crc32c(form) != head["schedule_crc"]: raise ValueError("byte 88: wrong schedule CRC")
+    if crc32c(form) != head["crc"]: raise ValueError("byte 88: wrong schedule CRC")
     return {"tile_rows": rows, "tile_cols": cols, "period_slots": period, "exposures": tile}
 
 def random_exposures(section, pixel):  # (Schedule section), kind 1
@@ -70,10 +70,10 @@ class Stream:  # what a tolerant reader finds, by the keys of (Test files)
         self.data, self.packets, self.damage, self.index_at = data, [], [], None
         self.slots = self.missing_slots = self.tail_bytes = self.counted = 0
         self.head, version, at, crc = read_header(data)
-        self.crcs = self.seed = crc if version == 2 else 0  # packet checksum, first CRC
+        self.crcs = self.seed = crc if version > 1 else 0  # packet checksum, first CRC
         self.next = (0, 0)  # slot and row that shall come; slots below `counted` are counted
         self.layouts = {b"\xc5SPK": struct.Struct("<4xBBHQHHIIII"),  # (Packet), (End marker)
-                        b"\xc5END": struct.Struct("<4xQII" if version == 2 else "<4xQI")}
+                        b"\xc5END": struct.Struct("<4xQII" if version > 1 else "<4xQI")}
         while at < len(data): at = self.read(at)
 
     def skip(self, at, end, cause):

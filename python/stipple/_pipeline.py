@@ -33,6 +33,7 @@ class Schedule(_stipple.Schedule):
         tile: Tuple[int, int],
         period_slots: int,
         *,
+        weights: Optional[npt.ArrayLike] = None,
         name: str = "custom",
         size: Tuple[int, int] = (480, 640),
     ) -> "Schedule":
@@ -43,6 +44,8 @@ class Schedule(_stipple.Schedule):
             bit 0 is set.
         tile: (rows, columns) of the tile that repeats over the array.
         period_slots: slots after which all repeats.
+        weights: array (slot, row, col) as Schedule.weights() gives, 0 in closed slots, 2^-20 .. 1 in open ones;
+            rounded to 1/65535.
         name: for the stream's header, at most 64 bytes.
 
         Raises ValueError where two exposures of a pixel share a slot or an exposure is longer than the period.
@@ -52,7 +55,8 @@ class Schedule(_stipple.Schedule):
         folder = Path(tempfile.mkdtemp(prefix="stipple_"))
         try:
             file = folder / "custom.toml"
-            file.write_text(_stipple.schedule_text(rows, tile, period_slots, name), encoding="utf-8")
+            text = _stipple.schedule_text(rows, tile, period_slots, name, weights)
+            file.write_text(text, encoding="utf-8")
             schedule = cls(file, size=size)
         except BaseException:
             shutil.rmtree(folder)

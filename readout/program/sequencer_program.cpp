@@ -124,6 +124,9 @@ std::uint64_t schedule_memory_bits(const ExposureSchedule& schedule) {
 }
 
 SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
+    if (schedule.weighted())
+        throw InputError("sequencer program",
+                         "weights are of a grey mask before the chip; a sequencer has none");
     if (schedule.charge_stores() > 2)
         throw InputError("sequencer program",
                          fmt::format("the schedule needs {} charge stores per pixel; a program "

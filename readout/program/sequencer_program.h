@@ -42,7 +42,7 @@ struct SequencerProgram {
 
 /// The program of a schedule. It covers the period once, or twice if an exposure changes its charge
 /// store from one period to the next. \throws InputError if the schedule needs more than two charge
-/// stores.
+/// stores or has weights.
 [[nodiscard]] SequencerProgram compile_schedule(const ExposureSchedule& schedule);
 
 /// The schedule of `program`: an exposure of a store begins in the first open slot

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -14,6 +17,8 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kLineWidth = 96;
+constexpr std::size_t kWeightDigits = 4;
+constexpr int kWeightOne = 0xFFFF;
 
 struct Store {
     char begin;
@@ -105,6 +110,23 @@ std::string code_of(const ExposureSchedule& schedule, int row, int col, int peri
     return code;
 }
 
+/// The weights of a pixel as text.
+std::string weights_of(const ExposureSchedule& schedule, int row, int col, int periods) {
+    std::string text;
+    for (int slot = 0; slot < periods * schedule.period_slots(); ++slot) {
+        const float weight = schedule.weight(slot % schedule.period_slots(), row, col);
+        if (weight > 1)
+            throw InputError("exposure schedule",
+                             fmt::format("pixel ({}, {}) slot {}: weight {} is above 1, which a "
+                                         "schedule file cannot hold; divide the masks by their "
+                                         "maximum",
+                                         row, col, slot, weight));
+        const long code = std::lround(weight * static_cast<float>(kWeightOne));
+        text += fmt::format("{:04X}", weight > 0 ? std::max(code, 1L) : 0L);
+    }
+    return text;
+}
+
 /// `text` as a TOML string.
 std::string toml_string(std::string_view text) {
     std::string result = "\"";
@@ -131,6 +153,34 @@ ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
     CodeReader reader(size, where);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) reader.add_pixel(pixel, code[pixel]);
     return std::move(reader).schedule();
+}
+
+std::vector<float> code_weights(TileSize size, std::span<const std::string> texts,
+                                const std::string& where) {
+    const auto pixels = static_cast<std::size_t>(size.rows) * static_cast<std::size_t>(size.cols);
+    const auto slots = static_cast<std::size_t>(size.period_slots);
+    if (texts.size() != pixels)
+        throw InputError(where, fmt::format("holds {} pixels; a tile of {} x {} has {}",
+                                            texts.size(), size.rows, size.cols, pixels));
+    std::vector<float> weights(slots * pixels);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::string_view text = texts[pixel];
+        const bool digits = text.find_first_not_of("0123456789ABCDEFabcdef") == text.npos;
+        if (!digits || text.size() != kWeightDigits * slots)
+            throw InputError(where, fmt::format("pixel ({}, {}): needs {} hexadecimal digits, four "
+                                                "for each slot",
+                                                pixel / static_cast<std::size_t>(size.cols),
+                                                pixel % static_cast<std::size_t>(size.cols),
+                                                kWeightDigits * slots));
+        for (std::size_t slot = 0; slot < slots; ++slot) {
+            unsigned code = 0;
+            const char* const begin = text.data() + kWeightDigits * slot;
+            std::from_chars(begin, begin + kWeightDigits, code, 16);
+            weights[slot * pixels + pixel] =
+                static_cast<float>(code) / static_cast<float>(kWeightOne);
+        }
+    }
+    return weights;
 }
 
 std::string code_text(const ExposureSchedule& schedule, const std::string& name) {
@@ -164,6 +214,13 @@ std::string code_text(const ExposureSchedule& schedule, const std::string& name)
             text += fmt::format("{}\"{}\",{}", row_per_line && col > 0 ? " " : "    ",
                                 code_of(schedule, row, col, periods), ends_line ? "\n" : "");
         }
+    if (!schedule.weighted()) return text + "]\n";
+    text +=
+        "]\n# The parts of the light that open slots collect: four hexadecimal digits per slot, "
+        "FFFF is\n# all of it.\nweights = [\n";
+    for (int row = 0; row < rows; ++row)
+        for (int col = 0; col < cols; ++col)
+            text += fmt::format("    \"{}\",\n", weights_of(schedule, row, col, periods));
     return text + "]\n";
 }
 

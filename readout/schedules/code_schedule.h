@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/exposure_schedule.h"
 
@@ -28,9 +29,16 @@ inline constexpr std::size_t kMaxCodeSlots = std::size_t{1} << 24U;
 [[nodiscard]] ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
                                              const std::string& where);
 
+/// The weights of a written-out code, order (slot, row, col), for ExposureSchedule::set_weights:
+/// one string per tile pixel, four hexadecimal digits per slot, FFFF is 1 and 0000 a closed slot.
+/// \throws InputError at `where`, naming the pixel, for another character or length.
+[[nodiscard]] std::vector<float> code_weights(TileSize size, std::span<const std::string> texts,
+                                              const std::string& where);
+
 /// A file of kind "code" that holds `schedule`, or two periods of it if exposures change their
 /// store from one period to the next. `name` is the value of its key `name`. \throws InputError if
-/// the schedule needs more than two charge stores or has more than kMaxCodeSlots pixels x slots.
+/// the schedule needs more than two charge stores, has more than kMaxCodeSlots pixels x slots, or
+/// has a weight above 1. Weights are rounded to 1/65535, but not to 0.
 [[nodiscard]] std::string code_text(const ExposureSchedule& schedule, const std::string& name);
 
 }  // namespace stipple

@@ -190,7 +190,18 @@ NamedSchedule read_code(Config& config, const Made& /*made*/) {
                          fmt::format("{} pixels of {} slots are more than the 2^24 characters that "
                                      "a code may have; use a smaller tile",
                                      code.size(), size.period_slots));
-    return {"code", {}, code_schedule(size, code, config.where(key.name))};
+    NamedSchedule result{"code", {}, code_schedule(size, code, config.where(key.name))};
+    const ConfigKey of_weights{
+        "weights", {}, "", "weights of the slots: a text per pixel, four digits per slot"};
+    const std::vector<std::string> texts = config.texts(of_weights);
+    if (texts.empty()) return result;
+    auto weights = code_weights(size, texts, config.where(of_weights.name));
+    result.schedule = at_key(config, "weights", [&] {
+        ExposureSchedule weighted = std::move(result.schedule);
+        weighted.set_weights(std::move(weights));
+        return weighted;
+    });
+    return result;
 }
 
 NamedSchedule read_hardware_tiled(Config& config, const Made& made) {

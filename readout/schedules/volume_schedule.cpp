@@ -3,39 +3,51 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "readout/schedules/tile_list.h"
 
 namespace stipple {
 namespace {
-
-constexpr double kWhite = 255;  // of masks that are stored as images
 
 struct TilePixel {
     int row;
     int col;
 };
 
-/// Masks, and what their open slots are marked by.
+/// Masks, and the value that is weight 1.
 struct Masks {
     const NpyVolume& volume;
-    double open;
+    double white;
     std::string_view where;
 };
 
-bool is_open(const Masks& masks, int slot, TilePixel pixel) {
-    const double value = masks.volume.at(slot, pixel.row, pixel.col);
-    if (value == 0 || value == masks.open) return value == masks.open;
-    throw InputError(masks.where, fmt::format("pixel ({}, {}) slot {}: {} is neither 0 nor {}",
-                                              pixel.row, pixel.col, slot, value, masks.open));
+/// A weight below the least that is a weight counts as 0.
+float weight_at(const Masks& masks, int slot, TilePixel pixel) {
+    const double weight = masks.volume.at(slot, pixel.row, pixel.col) / masks.white;
+    if (!(weight >= 0 && weight <= static_cast<double>(kMaxSlotWeight)))
+        throw InputError(
+            masks.where,
+            fmt::format("pixel ({}, {}) slot {}: {} is no weight: not in 0..{}", pixel.row,
+                        pixel.col, slot, masks.volume.at(slot, pixel.row, pixel.col),
+                        masks.white * static_cast<double>(kMaxSlotWeight)));
+    const auto rounded = static_cast<float>(weight);
+    return rounded < kMinSlotWeight ? 0 : rounded;
 }
 
-void add_mask(const Masks& masks, TilePixel pixel, TileList& list) {
+/// Adds the exposure of a pixel, and its weights to `weights` of order (slot, row, col).
+void add_mask(const Masks& masks, TilePixel pixel, TileList& list, std::vector<float>& weights) {
+    const NpyVolume& volume = masks.volume;
     int first = -1;
     std::uint64_t mask = 0;
-    for (int slot = 0; slot < masks.volume.layers; ++slot) {
-        if (!is_open(masks, slot, pixel)) continue;
+    for (int slot = 0; slot < volume.layers; ++slot) {
+        const float weight = weight_at(masks, slot, pixel);
+        weights[row_major(slot * volume.rows + pixel.row, pixel.col, volume.cols)] = weight;
+        if (weight == 0) continue;
         if (first < 0) first = slot;
         if (slot - first >= kMaxExposureSlots)
             throw InputError(
@@ -86,12 +98,27 @@ int checked_period(const NpyVolume& lengths, int period_slots, std::string_view 
 
 }  // namespace
 
-ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view where) {
+double white_of(const NpyVolume& masks) {
+    double most = 0;
+    for (const double value : masks.values) {
+        if (value != std::round(value) && value >= 0) return 1;
+        most = std::max(most, value);
+    }
+    for (const double white : {1.0, 255.0, 65535.0})
+        if (most <= white) return white;
+    return 1;
+}
+
+ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view where, double white) {
     TileList list(masks.rows, masks.cols, masks.layers);
-    const bool white = std::ranges::find(masks.values, kWhite) != masks.values.end();
-    const Masks marked{masks, white ? kWhite : 1, where};
-    for_each_pixel(masks, [&](TilePixel pixel) { add_mask(marked, pixel, list); });
-    return std::move(list).schedule();
+    const Masks marked{masks, white > 0 ? white : white_of(masks), where};
+    std::vector<float> weights(masks.values.size());
+    for_each_pixel(masks, [&](TilePixel pixel) { add_mask(marked, pixel, list, weights); });
+    ExposureSchedule schedule = std::move(list).schedule();
+    if (schedule.longest_span_slots() == 0)
+        throw InputError(where, "all weights are 0; a measurement needs an open slot");
+    schedule.set_weights(std::move(weights));
+    return schedule;
 }
 
 ExposureSchedule lengths_schedule(const NpyVolume& lengths, int period_slots,

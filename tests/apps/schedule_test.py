@@ -133,7 +133,9 @@ class ImportTest(ProgramTest):
         self.assertEqual((self.folder / "one.toml").read_text(), (self.folder / "white.toml").read_text())
         mixed = np.where(masks, 255, 0)
         mixed[2, 3, 4] = 1
-        self.refuse(["pixel (3, 4) slot 2: 1 is neither 0 nor 255"], mixed)
+        self.write_array("masks.npy", mixed, np.uint8)
+        self.succeed("schedule", "import", "masks.npy", "-o", "grey.toml")
+        self.assertIn("0101", (self.folder / "grey.toml").read_text())  # 1 / 255 of 65535 is 257
 
     def test_masks_sample_what_they_let_through(self):
         rng = np.random.default_rng(3)
@@ -148,6 +150,26 @@ class ImportTest(ProgramTest):
         # The naive estimate gives each open slot its sample over the number of open slots.
         measured = (self.array("naive.npy") * masks).sum(axis=0)
         np.testing.assert_allclose(measured, (light * masks).sum(axis=0), atol=2e-3)
+
+    def test_grey_masks_weigh_the_light(self):
+        rng = np.random.default_rng(3)
+        masks = rng.integers(0, 256, (8, 12, 10)) * (rng.random((8, 12, 10)) < 0.8)
+        light = np.broadcast_to(rng.random((12, 10)) * 0.2, (8, 12, 10))
+        self.write_array("masks.npy", masks, np.uint8)
+        self.write_array("light.npy", light)
+        self.succeed("schedule", "import", "masks.npy", "-o", "masks.toml")
+        figures = self.figures("emulate", "light.npy", "-o", "clip.stipple", "--schedule", "masks.toml",
+                               "--sensor", "ideal")
+        self.assertAlmostEqual(figures["light_throughput"], masks.mean() / 255, delta=1e-5)
+        self.assertAlmostEqual(figures["light_read"], masks.mean() / 255, delta=1e-5)
+        info = self.figures("info", "clip.stipple")
+        self.assertEqual((info["version"], info["schedule"]["weighted"]), (3, True))
+        self.succeed("decode", "clip.stipple", "-o", "naive.npy", "--method", "naive")
+        # At rest the naive estimate is the light; weights are rounded to 1/65535, samples to 3e-5 of light.
+        read = masks.any(axis=0)
+        weight = masks.sum(axis=0)[read] / 255
+        errors = np.abs(self.array("naive.npy") - light)[:, read]
+        self.assertLess((errors * weight).max(), 2e-3)
 
     def test_lengths_follow_each_other(self):
         lengths = np.zeros((3, 1, 2), int)
@@ -168,9 +190,14 @@ class ImportTest(ProgramTest):
 
     def test_what_is_wrong_is_named_by_pixel_and_slot(self):
         masks = np.zeros((70, 2, 3))
-        for value in (0.5, -1, 2, np.nan, np.inf):
+        for value in (-1, 1e7, np.nan, np.inf):
             masks[4, 1, 2] = value
-            self.refuse(["pixel (1, 2) slot 4", "neither 0 nor 1"], masks)
+            self.refuse(["pixel (1, 2) slot 4", "is no weight"], masks)
+        masks[4, 1, 2] = 0
+        self.refuse(["all weights are 0"], masks)
+        masks[4, 1, 2] = 1.5
+        self.write_array("bad.npy", masks)
+        self.fails(INPUT, ["pixel (1, 2) slot 4", "1.5 is above 1"], "schedule", "import", "bad.npy", "-o", "x.toml")
         masks[4, 1, 2] = masks[68, 1, 2] = 1
         self.refuse(["pixel (1, 2) slot 68", "64"], masks)
         lengths = np.ones((2, 2, 2))

@@ -38,12 +38,13 @@ void prox_all(const Problem& p, std::span<float> v) {
                       p.step, v);
 }
 
-/// The minimum is where the gradient is zero: (x - v) / step + (A x - y) / variance = 0 at each
-/// open voxel, or, where a saturated sample is exceeded, x = v.
+/// The minimum is where the gradient is zero: (x - v) / step + w (A x - y) / variance = 0 at each
+/// open voxel of weight w, or, where a saturated sample is exceeded, x = v.
 TEST(DataProxTest, FulfilsTheConditionOfOptimality) {
     for (const ExposureSchedule& schedule :
          {random_schedule(9, 37, kPaperExposureSlots, 2), gapped_schedule(5, 7, 31, 4),
-          interleaved_schedule(5, 7, 9, 4)}) {
+          interleaved_schedule(5, 7, 9, 4), weighted_schedule(gapped_schedule(5, 7, 31, 4), 5),
+          weighted_schedule(interleaved_schedule(5, 7, 9, 4), 6)}) {
         const Problem p = problem(schedule);
         const Measurements& m = p.measurements;
         std::vector<float> x = p.v;
@@ -59,8 +60,9 @@ TEST(DataProxTest, FulfilsTheConditionOfOptimality) {
                 if ((m.state[i] & Measurements::kFirst) != 0) break;
             }
             for (const std::size_t i : open) {
-                sum_v += static_cast<double>(p.v[i]);
-                sum_x += static_cast<double>(x[i]);
+                const auto weight = static_cast<double>(m.weight_at(i));
+                sum_v += weight * static_cast<double>(p.v[i]);
+                sum_x += weight * static_cast<double>(x[i]);
             }
             const bool saturated = (m.state[last] & Measurements::kSaturated) != 0;
             const bool inactive = saturated && sum_v >= static_cast<double>(m.sum[last]);
@@ -71,7 +73,8 @@ TEST(DataProxTest, FulfilsTheConditionOfOptimality) {
                     i / kShape.sites() * kShape.pixels() + i % kShape.pixels();
                 const double prior = (static_cast<double>(x[i]) - static_cast<double>(p.v[i])) /
                                      static_cast<double>(p.step[pixel]);
-                const double data = (sum_x - static_cast<double>(m.sum[last])) /
+                const double data = static_cast<double>(m.weight_at(i)) *
+                                    (sum_x - static_cast<double>(m.sum[last])) /
                                     static_cast<double>(m.variance[last]);
                 // Cancellation in x - v and A x - y: a few units of 2^-24 of values up to 30.
                 const double tolerance = 4e-6 / static_cast<double>(p.step[pixel]) +
@@ -99,7 +102,8 @@ TEST(DataProxTest, LeavesUnobservedVoxelsAlone) {
 
 TEST(DataProxTest, GivesTheSameBitsOnEverySimdTarget) {
     for (const ExposureSchedule& schedule :
-         {random_schedule(9, 37, kPaperExposureSlots, 2), interleaved_schedule(5, 7, 9, 4)}) {
+         {random_schedule(9, 37, kPaperExposureSlots, 2), interleaved_schedule(5, 7, 9, 4),
+          weighted_schedule(gapped_schedule(5, 7, 31, 4), 5)}) {
         const Problem p = problem(schedule);
         std::vector<float> first;
         for_each_simd_target([&](const std::string& target) {

@@ -14,8 +14,12 @@ namespace {
 constexpr FrameShape kShape{.rows = 13, .cols = 29, .planes = 3};
 
 std::vector<ExposureSchedule> schedules() {
-    return {random_schedule(13, 29, kPaperExposureSlots, 2), gapped_schedule(5, 7, 31, 4),
-            interleaved_schedule(5, 7, 9, 4), alternating_schedule()};
+    return {random_schedule(13, 29, kPaperExposureSlots, 2),
+            gapped_schedule(5, 7, 31, 4),
+            interleaved_schedule(5, 7, 9, 4),
+            alternating_schedule(),
+            weighted_schedule(gapped_schedule(5, 7, 31, 4), 5),
+            weighted_schedule(interleaved_schedule(5, 7, 9, 4), 6)};
 }
 
 TEST(SamplingOperatorTest, SpreadIsTheAdjointOfSample) {
@@ -36,7 +40,7 @@ TEST(SamplingOperatorTest, SpreadIsTheAdjointOfSample) {
     }
 }
 
-TEST(SamplingOperatorTest, SampleAfterSpreadCountsTheOpenSlots) {
+TEST(SamplingOperatorTest, SampleAfterSpreadSumsTheSquaredWeights) {
     for (const ExposureSchedule& schedule : schedules()) {
         const Measurements m = measure(random_video(35, kShape, 1), schedule);
         std::vector<float> ones(m.voxels()), spread_ones(m.voxels()), count(m.voxels());
@@ -44,12 +48,15 @@ TEST(SamplingOperatorTest, SampleAfterSpreadCountsTheOpenSlots) {
             ones[i] = (m.state[i] & Measurements::kLast) != 0 ? 1.0F : 0.0F;
         spread(m, ones, spread_ones);
         sample(m, spread_ones, count);
-        double open = 0;
+        double squares = 0;
         for (std::size_t i = 0; i < m.voxels(); ++i) {
-            EXPECT_EQ(spread_ones[i], (m.state[i] & Measurements::kOpen) != 0 ? 1.0F : 0.0F);
-            open += static_cast<double>(count[i]);
+            EXPECT_EQ(spread_ones[i],
+                      (m.state[i] & Measurements::kOpen) != 0 ? m.weight_at(i) : 0.0F);
+            squares += static_cast<double>(count[i]);
         }
-        EXPECT_EQ(open, dot(spread_ones, spread_ones));
+        // Without weights both are whole numbers, hence exact.
+        EXPECT_NEAR(squares, dot(spread_ones, spread_ones),
+                    schedule.weighted() ? 1e-6 * squares : 0);
     }
 }
 
@@ -60,12 +67,14 @@ TEST(SamplingOperatorTest, SampleOfTheTruthIsTheMeasurementButForNoise) {
     params.full_well_e = 1e6;
     params.bit_depth = 12;
     const FluxVideo video = random_video(35, kShape, 1);
-    const Measurements m = measure(video, schedules()[0], params);
-    std::vector<float> sums(m.voxels());
-    sample(m, video.data(), sums);
-    for (std::size_t i = 0; i < m.voxels(); ++i) {
-        if ((m.state[i] & Measurements::kLast) == 0) continue;
-        EXPECT_NEAR(sums[i], m.sum[i], 6 * std::sqrt(m.variance[i]));  // 1 in 10^9
+    for (const ExposureSchedule& schedule : schedules()) {
+        const Measurements m = measure(video, schedule, params);
+        std::vector<float> sums(m.voxels());
+        sample(m, video.data(), sums);
+        for (std::size_t i = 0; i < m.voxels(); ++i) {
+            if ((m.state[i] & Measurements::kLast) == 0) continue;
+            EXPECT_NEAR(sums[i], m.sum[i], 6 * std::sqrt(m.variance[i]));  // 1 in 10^9
+        }
     }
 }
 

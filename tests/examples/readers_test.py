@@ -41,7 +41,7 @@ class ReadersTest(unittest.TestCase):
 
     def test_the_manifest_lists_every_file_and_says_what_it_shows(self):
         listed = {entry[key] for entry in entries() for key in ("file", "expected")}
-        folders = ("stream", "stream_version_1", "recording")
+        folders = ("stream", "stream_version_1", "stream_version_3", "recording")
         there = {f"{folder}/{file.name}" for folder in folders for file in (GOLDEN / folder).iterdir()}
         self.assertEqual(listed, there)
         self.assertTrue(all(entry["shows"] for entry in entries()))

@@ -90,7 +90,8 @@ void mend_header(Piece& header) {
     const std::size_t sections = body.size() - kCrcBytes;
     store(&head[12], static_cast<std::uint32_t>(kStreamHeadBytes + body.size()));
     if (texts <= sections) {
-        if (head[85] == 0) store(&head[80], static_cast<std::uint32_t>(sections - texts));
+        if (head[85] == 0 && head[86] == 0)
+            store(&head[80], static_cast<std::uint32_t>(sections - texts));
         const std::size_t bytes = load<std::uint32_t>(&head[80]);
         if (texts + bytes <= sections) {
             const View section = View(body).subspan(texts, bytes);

@@ -59,6 +59,38 @@ TEST(SciTest, FastIsFarBetterThanNaive) {
     EXPECT_GT(fast, naive + 2.5);
 }
 
+// The weights of a grey mask differ less than those of a binary one, the more so after a blur: the
+// measurements tell the slots apart less well, and yet better than the naive estimate does.
+TEST(SciTest, GreyAndBlurredMasksDecodeToo) {
+    const FluxVideo video = sci_stand_in("roll", 16, {128, 128, 1});
+    const auto psnr = [&](const NpyVolume& masks, DecodeMethod method) {
+        return sci_psnr_db(video, masks, {}, {.method = method});
+    };
+    const NpyVolume grey = grey_masks(video.shape(), 1);
+    const NpyVolume blurred = blurred_masks(random_masks(video.shape(), 1));
+    expect_quality("grey", psnr(grey, DecodeMethod::kFast), 25.68);
+    expect_quality("blurred", psnr(blurred, DecodeMethod::kFast), 25.15);
+    for (const NpyVolume& masks : {grey, blurred})
+        EXPECT_GT(psnr(masks, DecodeMethod::kFast), psnr(masks, DecodeMethod::kNaive));
+}
+
+// The same six options as in docs/notes/sci_benchmark.md, and the same bits.
+TEST(SciTest, TheFlagOfTheStreamGivesBestTheOptionsForSamplesWithoutNoise) {
+    const FluxVideo video = sci_stand_in("roll", 8, {48, 48, 1});
+    const NpyVolume masks = random_masks(video.shape(), 1);
+    DecodeOptions options{.method = DecodeMethod::kBest};
+    options.best.noise_free.iterations = 10;
+    const double with_flag = sci_psnr_db(video, masks, {.noise_free = true}, options);
+    options.best.iterations = 10;
+    options.best.first_sigma = 0.12F;
+    options.best.last_noise = 0;
+    options.best.min_sigma = 0.008F;
+    options.best.light_offset = 0.5F;
+    options.best.residual_gain = 1;
+    options.best.residual_decay = 1;
+    EXPECT_EQ(sci_psnr_db(video, masks, {}, options), with_flag);
+}
+
 TEST(SciTest, ReadsWholeMeasurementsOfAClip) {
     const TemporaryFolder folder;
     const FluxVideo video = sci_stand_in("pan", 19, {16, 24, 1});
@@ -79,8 +111,8 @@ TEST(SciTest, RefusesMasksOfAnotherSize) {
     expect_parts(message_of<InputError>([&] { return psnr(random_masks(kShape, 1)); }),
                  {"masks", "8 x 64 x 64", "8 x 16 x 24"});
     NpyVolume grey = random_masks(video.shape(), 1);
-    grey.values[5] = 0.5;
-    expect_parts(message_of<InputError>([&] { return psnr(grey); }), {"masks", "0.5"});
+    grey.values[5] = -0.5;
+    expect_parts(message_of<InputError>([&] { return psnr(grey); }), {"masks", "-0.5"});
 }
 
 }  // namespace

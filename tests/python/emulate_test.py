@@ -96,6 +96,28 @@ class EmulateTest(ProgramTest):
         self.same_samples(stipple.emulate(light(), schedule=schedule),
                           stipple.Stream.open(self.folder / "program.stipple"))
 
+    def test_weights_are_those_of_its_file(self):
+        exposures = [(0, 0, 0, 0b1), (0, 0, 1, 0b111), (0, 1, 2, 0b1011)]
+        closed = stipple.Schedule.from_exposures(exposures, (1, 2), 6)
+        self.assertFalse(closed.weighted)
+        np.testing.assert_array_equal(closed.weights()[:, 0, :].T, [[1, 1, 1, 1, 0, 0], [0, 0, 1, 1, 0, 1]])
+        weights = np.round(closed.weights() * np.linspace(0.2, 1, 6)[:, None, None] * 65535) / 65535
+        schedule = stipple.Schedule.from_exposures(exposures, (1, 2), 6, weights=weights, size=(12, 20))
+        self.assertTrue(schedule.weighted)
+        np.testing.assert_allclose(schedule.weights(), weights, rtol=1e-6)
+        self.assertAlmostEqual(schedule.light_throughput, weights.mean(), places=6)
+        self.assertEqual(schedule.exposures().tolist(), exposures)
+        schedule.save(self.folder / "grey.toml")
+        self.write_array("light.npy", light())
+        self.program_makes("light.npy", "--schedule", "grey.toml")
+        stream = stipple.emulate(light(), schedule=schedule)
+        self.same_samples(stream, stipple.Stream.open(self.folder / "program.stipple"))
+        np.testing.assert_array_equal(stream.weights(), schedule.weights())
+        for wrong, message in ((weights[:5], "6 x 1 x 2"), (weights + 0.1, "pixel .* slot"), (weights * np.nan, "nan"),
+                               (weights * 2, "is above 1")):
+            with self.assertRaisesRegex(ValueError, message):
+                stipple.Schedule.from_exposures(exposures, (1, 2), 6, weights=wrong)
+
     def test_figures_are_those_of_the_program(self):
         self.write_array("light.npy", light())
         for sensor, overrun in (("paper", "stretch"), ("lux1310", "stretch"), ("lux1310", "drop")):

@@ -2,9 +2,11 @@
 
 #include <bit>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/exposure_schedule.h"
+#include "core/index.h"
 
 namespace stipple {
 
@@ -64,6 +66,24 @@ inline ExposureSchedule interleaved_schedule(int tile_rows, int tile_cols, int c
 /// Three exposures of four slots, each begun two slots after the last: the stores alternate.
 inline ExposureSchedule alternating_schedule() {
     return {1, 1, 6, {0, 3}, {{0, 0b1001}, {2, 0b1001}, {4, 0b1001}}};
+}
+
+/// The same exposures behind a grey mask: weights of 0.25 to 1.25.
+inline ExposureSchedule weighted_schedule(ExposureSchedule schedule, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const int rows = schedule.tile_rows(), cols = schedule.tile_cols();
+    std::vector<float> weights(index(schedule.period_slots()) * index(rows) * index(cols), 0.0F);
+    for (int row = 0; row < rows; ++row)
+        for (int col = 0; col < cols; ++col)
+            for (const Exposure& e : schedule.exposures(row, col))
+                for (std::uint64_t rest = e.open_slots; rest != 0; rest &= rest - 1) {
+                    const auto slot = e.first_slot + static_cast<unsigned>(std::countr_zero(rest));
+                    const auto phase = static_cast<int>(slot) % schedule.period_slots();
+                    weights[row_major(phase * rows + row, col, cols)] =
+                        0.25F + static_cast<float>(random() >> 8U) * 0x1p-24F;
+                }
+    schedule.set_weights(std::move(weights));
+    return schedule;
 }
 
 /// One exposure of a pixel as it happened.

@@ -23,14 +23,17 @@ double light_by_exposure(const ExposureSchedule& schedule, std::int64_t slots) {
                  schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols()))
                 for (std::int64_t begin = exposure.first_slot;
                      begin + exposure.span_slots() <= slots; begin += schedule.period_slots())
-                    light += exposure.light_slots() * transmittance(row, col);
+                    light += schedule.light_slots(row % schedule.tile_rows(),
+                                                  col % schedule.tile_cols(), exposure) *
+                             transmittance(row, col);
     return light;
 }
 
 TEST(LightThroughputTest, AClipHoldsTheExposuresThatBeginAndEndInIt) {
     for (const ExposureSchedule& schedule :
          {gapped_schedule(3, 5, 29, 1), interleaved_schedule(3, 5, 9, 1),
-          random_schedule(7, 9, kPaperExposureSlots, 1)})
+          random_schedule(7, 9, kPaperExposureSlots, 1),
+          weighted_schedule(gapped_schedule(3, 5, 29, 1), 2)})
         for (const std::int64_t slots : {1, 7, 8, 30, 100})
             EXPECT_DOUBLE_EQ(light_due_in_clip(schedule, kFilters, kShape, slots),
                              light_by_exposure(schedule, slots))

@@ -208,4 +208,26 @@ std::vector<GoldenCase> golden_cases() {
     return cases;
 }
 
+std::vector<GoldenCase> golden_cases_3() {
+    const StreamHeader weighted = weighted_header();
+    StreamHeader calibrated = weighted;
+    calibrated.calibration.dark_e_per_slot = 1.5;
+    calibrated.calibration.noise_free = true;
+    StreamHeader exact = varied_header({4, 6, 1}, 16);
+    exact.calibration.noise_free = true;
+    const StreamBytes stream = bytes_of(weighted, random_packets(weighted, 7, 4));
+    const std::size_t weights = stream.begins[0] - 4 - 4 * weighted.schedule.weights().size();
+    const auto with_weight = [&](std::size_t slot, std::size_t pixel, float weight) {
+        std::string header = stream.bytes.substr(0, stream.begins[0]);
+        store(&as_numbers(header)[weights + 4 * (slot * 6 + pixel)], weight);
+        seal_header(header);
+        return header + stream.bytes.substr(stream.begins[0]);
+    };
+    return {{"weighted", stream.bytes},
+            {"weighted_and_calibrated", feature(calibrated, 7, 4)},
+            {"noise_free", feature(exact, 7, 4)},
+            {"weight_of_a_closed_slot", with_weight(2, 0, 0.5F)},
+            {"weight_below_its_limit", with_weight(3, 0, 0x1p-21F)}};
+}
+
 }  // namespace stipple

@@ -13,4 +13,7 @@ namespace stipple {
 /// One small stream per feature of the format, and one per kind of damage.
 [[nodiscard]] std::vector<GoldenCase> golden_cases();
 
+/// The same of version 3: weights, and no noise.
+[[nodiscard]] std::vector<GoldenCase> golden_cases_3();
+
 }  // namespace stipple

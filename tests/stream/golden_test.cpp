@@ -16,6 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::filesystem::path kFolder = project_path("tests/golden/stream");
+/// Streams with weights, and without noise.
+const std::filesystem::path kFolder3 = project_path("tests/golden/stream_version_3");
 /// As this library wrote and read them when it knew version 1 only.
 const std::filesystem::path kFolder1 = project_path("tests/golden/stream_version_1");
 
@@ -57,6 +59,10 @@ Json to_json(const StreamHeader& header) {
             json["calibration_tile"].push_back({pixel.responsivity, pixel.conversion_gain});
     }
     if (header.cfa != ColourFilter::kNone) json["cfa"] = name_of(header.cfa);
+    if (header.schedule.weighted())
+        json["weights"] =
+            std::vector<double>(header.schedule.weights().begin(), header.schedule.weights().end());
+    if (c.noise_free) json["noise_free"] = true;
     return json;
 }
 
@@ -104,15 +110,27 @@ Json description(const std::string& bytes) {
     return text;
 }
 
+struct GoldenFile {
+    std::filesystem::path path;  ///< without extension
+    std::string bytes;
+};
+
+std::vector<GoldenFile> golden_files() {
+    std::vector<GoldenFile> files;
+    for (const auto& [name, bytes] : golden_cases()) files.push_back({kFolder / name, bytes});
+    for (const auto& [name, bytes] : golden_cases_3()) files.push_back({kFolder3 / name, bytes});
+    return files;
+}
+
 TEST(GoldenTest, EachFileIsWrittenAsEver) {
-    for (const auto& [name, bytes] : golden_cases())
-        expect_golden_bytes(kFolder / (name + ".stipple"), bytes);
+    for (const auto& [path, bytes] : golden_files())
+        expect_golden_bytes(path.string() + ".stipple", bytes);
 }
 
 TEST(GoldenTest, EachFileReadsAsItsDescriptionSays) {
-    for (const auto& [name, bytes] : golden_cases())
-        expect_golden_text(kFolder / (name + ".json"),
-                           golden_text(description(read_text(kFolder / (name + ".stipple")))));
+    for (const auto& [path, bytes] : golden_files())
+        expect_golden_text(path.string() + ".json",
+                           golden_text(description(read_text(path.string() + ".stipple"))));
 }
 
 TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
@@ -135,9 +153,10 @@ TEST(GoldenTest, AFileOfVersion1TellsItsSlotsAtOnce) {
 
 TEST(GoldenTest, NoFileIsLeftOver) {
     std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(kFolder))
-        if (entry.path().filename() != "README.md") ++files;
-    EXPECT_EQ(files, 2 * golden_cases().size());
+    for (const auto& folder : {kFolder, kFolder3})
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            if (entry.path().filename() != "README.md") ++files;
+    EXPECT_EQ(files, 2 * golden_files().size());
 }
 
 }  // namespace

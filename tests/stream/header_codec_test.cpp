@@ -153,6 +153,53 @@ TEST(HeaderCodecTest, ACalibrationSectionThatSaysNothingIsRefused) {
     expect_parts(message_of<InputError>([&] { return decode(bytes); }), {"says nothing"});
 }
 
+TEST(HeaderCodecTest, WeightsAndTheAbsenceOfNoiseMakeVersion3) {
+    StreamHeader header = weighted_header();
+    EXPECT_EQ(encode_header(header, "")[8], 3);
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    header.calibration.noise_free = true;
+    header.calibration.dark_e_per_slot = 1;
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    header.schedule = varied_schedule();
+    EXPECT_EQ(encode_header(header, "")[8], 3);
+    EXPECT_EQ(decode(encode_header(header, "")), header);
+    header.calibration.noise_free = false;
+    EXPECT_EQ(encode_header(header, "")[8], 2);
+}
+
+TEST(HeaderCodecTest, WeightsThatAreDamagedAreRefusedAtTheirPlace) {
+    const Bytes good = encode_header(weighted_header(), "");
+    const std::size_t section = good.size() - 4 - 4 * 30;
+    const auto refusal = [&](std::size_t offset, auto value) {
+        Bytes bytes = good;
+        store(&bytes[offset], value);
+        seal(bytes);
+        return message_of<InputError>([&] { return decode(bytes); });
+    };
+    const std::string at = "byte " + std::to_string(section) + ": ";
+    const std::size_t open = section + 4 * 18;  // slot 3 of pixel 0, whose slot 2 is closed
+    expect_parts(refusal(open, 0.0F), {at, "pixel (0, 0) slot 3", "open slot"});
+    expect_parts(refusal(open, std::nanf("")), {at, "nan"});
+    expect_parts(refusal(open - 4 * 6, 1.0F), {at, "pixel (0, 0) slot 2", "closed slot"});
+    expect_parts(refusal(85, std::uint8_t{1}), {"not the sum of its parts"});
+    expect_parts(refusal(86, std::uint8_t{2}), {"byte 86: weights section 2 is outside 0..1"});
+    expect_parts(refusal(87, std::uint8_t{2}), {"byte 87: absence of noise 2 is outside 0..1"});
+    expect_parts(refusal(86, std::uint8_t{0}), {"byte 8: version 3 has weights"});
+    expect_parts(refusal(8, std::uint8_t{2}), {"byte 86: reserved byte is not zero"});
+    Bytes ones = good;
+    for (std::size_t i = 0; i < 30; ++i)
+        if (load<float>(&ones[section + 4 * i]) != 0) store(&ones[section + 4 * i], 1.0F);
+    seal(ones);
+    expect_parts(message_of<InputError>([&] { return decode(ones); }), {at, "says nothing"});
+}
+
+TEST(HeaderCodecTest, ARandomScheduleHasNoWeights) {
+    StreamHeader header = random_header({2, 2, 1}, 7);
+    header.schedule.set_weights(std::vector<float>(4 * 15, 0.5F));
+    expect_parts(message_of<InputError>([&] { return encode_header(header, "a"); }),
+                 {"a: byte 86: a random schedule has no weights"});
+}
+
 TEST(HeaderCodecTest, NumbersThatAreNotPhysicalAreRefused) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
@@ -205,9 +252,8 @@ TEST(HeaderCodecTest, AForeignFileIsCalledForeign) {
         expect_parts(refusal(std::string(length, '#')), {"this is not a sample stream"});
     expect_parts(refusal("\x89STPL\n\x1A\x01\0\0\0\0\0\0\0\0"), {"text-mode transfer"});
     expect_parts(refusal("\tSTPL\r\n\x1A"), {"text-mode transfer"});
-    expect_parts(
-        refusal(std::string("\x89STPL\r\n\x1A\x03\0\0\0\0\0\0\0", 16)),
-        {"a: byte 8: version 3 of the sample stream; this program reads versions 1 and 2"});
+    expect_parts(refusal(std::string("\x89STPL\r\n\x1A\x04\0\0\0\0\0\0\0", 16)),
+                 {"a: byte 8: version 4 of the sample stream; this program reads versions 1 to 3"});
     expect_parts(refusal(std::string("\x89STPL\r\n\x1A\x01\0\0\0\xFF\xFF\xFF\xFF", 16)),
                  {"a: byte 12: header bytes 4294967295 is outside"});
 }

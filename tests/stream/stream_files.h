@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "core/philox.h"
@@ -34,6 +35,22 @@ inline StreamHeader varied_header(FrameShape shape = {4, 8, 1}, int bit_depth = 
     StreamHeader header{shape, 5000, {}, varied_schedule(), {}, "varied", ""};
     header.calibration.bit_depth = bit_depth;
     header.provenance = "seed = 1\nfootage = \"Gänge\"\n";
+    return header;
+}
+
+/// The same exposures with a weight for each open slot, all sixteenths.
+inline StreamHeader weighted_header() {
+    StreamHeader header = varied_header({4, 6, 1});
+    ExposureSchedule& schedule = header.schedule;
+    std::vector<float> weights(5 * 6, 0.0F);
+    for (unsigned pixel = 0; pixel < 6; ++pixel)
+        for (const Exposure& e :
+             schedule.exposures(static_cast<int>(pixel / 3), static_cast<int>(pixel % 3)))
+            for (unsigned i = 0; i < 64; ++i)
+                if ((e.open_slots >> i & 1U) != 0)
+                    weights[(e.first_slot + i) % 5 * 6 + pixel] =
+                        static_cast<float>(1 + (e.first_slot + 5 * i + pixel) % 20) / 16;
+    schedule.set_weights(std::move(weights));
     return header;
 }
 

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/arguments/checks.h"
+#include "apps/arguments/output_names.h"
+#include "apps/mat_volume.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/standard_error.h"
+#include "apps/subcommands.h"
+#include "core/error.h"
+#include "readout/measured_stream.h"
+
+namespace stipple {
+namespace {
+
+struct ImportOptions {
+    MeasuredArrays arrays;
+    std::string variable = "meas";
+    std::string mask_variable = "mask";
+    std::string output;
+    double electrons = 1000;
+    bool noise_free = false;
+    double saturation = 0;
+};
+
+/// The arrays of the files. \throws InputError as their readers.
+MeasuredArrays read_arrays(const ImportOptions& options) {
+    MeasuredArrays arrays = options.arrays;
+    if (arrays.mask_file.empty()) {
+        if (!is_mat(arrays.measurement_file))
+            throw InputError("--masks", "is needed; only a .mat file may hold the masks too");
+        arrays.mask_file = arrays.measurement_file;
+    }
+    const auto read = [](const std::string& file, const std::string& variable, NpyImages images) {
+        return is_mat(file) ? read_mat_volume(file, variable) : read_npy_volume(file, images);
+    };
+    arrays.measurements = read(arrays.measurement_file, options.variable, NpyImages::kOneLayer);
+    arrays.masks = read(arrays.mask_file, options.mask_variable, NpyImages::kRefused);
+    if (!options.noise_free) arrays.electrons = options.electrons;
+    if (options.saturation > 0) arrays.saturation = options.saturation;
+    return arrays;
+}
+
+nlohmann::ordered_json json_of(const ImportedStream& stream) {
+    const ExposureSchedule& schedule = stream.header.schedule;
+    return {{"rows", stream.header.shape.rows},
+            {"cols", stream.header.shape.cols},
+            {"measurements", stream.measurements},
+            {"slots", stream.measurements * schedule.period_slots()},
+            {"weighted", schedule.weighted()},
+            {"light_throughput", schedule.light_throughput()},
+            {"light", stream.light},
+            {"unread_pixels", stream.unread_pixels},
+            {"noise_free", stream.header.calibration.noise_free}};
+}
+
+void import(const ImportOptions& options, const RunOptions& run) {
+    JsonFile json(run);
+    const MeasuredArrays arrays = read_arrays(options);
+    const ImportedStream stream = import_measurements(arrays, options.output, run.force);
+    const ExposureSchedule& schedule = stream.header.schedule;
+    json.write(json_of(stream));
+    run.say(fmt::format("{}: {} of {} x {} pixels, {} {} masks, light 1.0 is {:g}", options.output,
+                        counted(stream.measurements, "measurement"), stream.header.shape.cols,
+                        stream.header.shape.rows, schedule.period_slots(),
+                        schedule.weighted() ? "grey" : "binary", stream.light));
+    if (stream.unread_pixels > 0)
+        say_warning(fmt::format(
+            "{}: the masks of {} are 0 in all slots; their measurements are left out",
+            arrays.mask_file, counted(static_cast<std::int64_t>(stream.unread_pixels), "pixel")));
+}
+
+void add_units(Command& command, ImportOptions& options) {
+    MeasuredArrays& arrays = options.arrays;
+    command.add_option("--light", arrays.light, "measurement of light 1.0 in one slot of weight 1")
+        .default_text("255 if some light would be above 1.0 otherwise, else 1")
+        .check(positive_check())
+        .type_name("VALUE");
+    command.add_option("--white", arrays.white, "value of the masks that is weight 1")
+        .default_text("255 or 65535 if masks are whole numbers above 1, as in images, else 1")
+        .check(positive_check())
+        .type_name("VALUE");
+    command
+        .add_option("--electrons", options.electrons,
+                    "photo-electrons of light 1.0 in one slot of weight 1, for the shot noise")
+        .shows_default()
+        .check(number_check(1e-3, 1e9))
+        .type_name("E");
+    command.add_option("--read-noise", arrays.read_noise_e, "read noise in electrons")
+        .shows_default()
+        .check(number_check(0, 1e9))
+        .type_name("E");
+    command.add_flag("--noise-free", options.noise_free,
+                     "the measurements have no noise, as those of a simulation");
+    command
+        .add_option("--saturation", options.saturation,
+                    "measurements from this value on are clipped")
+        .default_text("none is")
+        .check(positive_check())
+        .type_name("VALUE");
+}
+
+}  // namespace
+
+void add_import(Command& app, Action& action) {
+    Command command =
+        app.add_command("import", "Measurements of a coded aperture with its masks to a stream");
+    const auto options = std::make_shared<ImportOptions>();
+    MeasuredArrays& arrays = options->arrays;
+    command
+        .add_option("MEASUREMENTS", arrays.measurement_file,
+                    ".npy of (measurements, rows, columns) or (rows, columns), or .mat of (rows, "
+                    "columns, measurements)")
+        .required()
+        .input();
+    command
+        .add_option("--masks", arrays.mask_file,
+                    ".npy of (slots, rows, columns), or .mat of (rows, columns, slots): weights of "
+                    "the slots that a measurement adds up")
+        .default_text("MEASUREMENTS, if that is a .mat")
+        .type_name("FILE")
+        .input();
+    command.add_option("-o,--output", options->output, "sample stream")
+        .type_name("FILE")
+        .required()
+        .output(kStreamName);
+    add_units(command, *options);
+    command
+        .add_choice("--cfa", arrays.cfa,
+                    {{"none", ColourFilter::kNone},
+                     {"rggb", ColourFilter::kRggb},
+                     {"grbg", ColourFilter::kGrbg},
+                     {"gbrg", ColourFilter::kGbrg},
+                     {"bggr", ColourFilter::kBggr}},
+                    "colour filter array of the camera")
+        .type_name("NAME");
+    command.add_option("--slot-us", arrays.slot_us, "length of a slot in microseconds")
+        .shows_default()
+        .check(number_check(1e-6, 1e12))
+        .type_name("US");
+    command.add_option("--variable", options->variable, "variable of the measurements in a .mat")
+        .shows_default()
+        .type_name("NAME");
+    command.add_option("--mask-variable", options->mask_variable, "variable of the masks in a .mat")
+        .shows_default()
+        .type_name("NAME");
+    command.footer(
+        "Examples:\n"
+        "  stipple import meas.npy --masks masks.npy -o clip.stipple --electrons 5000\n"
+        "  stipple import kobe32_cacti.mat -o kobe.stipple --noise-free\n"
+        "  stipple decode clip.stipple -o decoded");
+    set_action(command, action, options, import, [command, options] {
+        if (options->noise_free)
+            command.refuse({"--electrons", "--read-noise"}, "is of noise; --noise-free has none");
+    });
+}
+
+}  // namespace stipple
