@@ -24,6 +24,7 @@ TABLE = """| module | may include |
 | core | nothing |
 | io, stream, sensor_model, metrics, scenes | core |
 | decoder | stream, core |
+| calibration | decoder, stream, core |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |
 | apps, python, tests, bench | everything |

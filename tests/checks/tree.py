@@ -5,8 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-LIBRARIES = ("core", "io", "stream", "sensor_model", "readout", "decoder", "capture", "metrics",
-             "scenes")
+LIBRARIES = ("core", "io", "stream", "sensor_model", "readout", "decoder", "calibration", "capture",
+             "metrics", "scenes")
 MODULES = (*LIBRARIES, "apps", "python")
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
 
