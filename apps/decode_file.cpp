@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "apps/decode_schedule.h"
+#include "apps/fixed_pattern.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -66,6 +67,14 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
+}
+
+/// Uses the calibration of the chip, or says what it costs that there is none.
+void calibrate(StreamReader& reader, const DecodeArguments& arguments) {
+    if (arguments.calibration.empty())
+        say_warning(fixed_pattern_warning(arguments.stream, reader.header()));
+    else
+        reader.use_sites(read_sites(arguments.calibration, reader.header()));
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -177,6 +186,7 @@ void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
         arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, growing);
     if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
         reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
+    calibrate(reader, arguments);
     FrameWriter writer(arguments.output, decoded_shape(reader.header()),
                        writer_options(arguments, run, reader.header()));
     say_leftover(arguments.output);
