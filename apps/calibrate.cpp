@@ -68,7 +68,7 @@ void require_memory(FrameShape shape, std::string_view where) {
                  fmt::format("the calibration of {} x {} pixels", shape.cols, shape.rows));
 }
 
-Fields photograph(const CalibrateOptions& options, const RunOptions& run) {
+Fields emulate_series(const CalibrateOptions& options, const RunOptions& run) {
     require_memory(options.shape, "--size");
     const SensorParams params = set_up_params(options.sensor);
     const auto exposures = calibration_exposures(params, options.images, options.sensor.seed);
@@ -82,7 +82,7 @@ Fields photograph(const CalibrateOptions& options, const RunOptions& run) {
     if (params.mode == SensorMode::kPhysical) fields.chip.device_id = params.physical.device_id;
     int images = 0;
     for (const CalibrationExposure& exposure : exposures) images += exposure.images;
-    Progress progress(run, "photographing", images);
+    Progress progress(run, "exposing", images);
     for (const CalibrationExposure& exposure : exposures) {
         SensorParams timed = params;
         timed.slot_us = exposure.slot_us;
@@ -240,7 +240,7 @@ void calibrate(const CalibrateOptions& options, const RunOptions& run) {
     say_leftover(options.output);
     const Fields fields = !options.series.empty() ? read_series(options, run)
                           : !options.dark.empty() ? read_streams(options, run)
-                                                  : photograph(options, run);
+                                                  : emulate_series(options, run);
     ChipEstimate estimate = estimate_chip({.header = fields.header,
                                            .dark = fields.dark,
                                            .flat = fields.flat,

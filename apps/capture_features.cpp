@@ -1,15 +1,14 @@
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/report/column_width.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
 #include "apps/subcommands.h"
-#include "capture/camera_kind.h"
-#include "core/error.h"
+#include "capture/camera_feature.h"
 #include "core/joined.h"
 #include "stream/plain_text.h"
 
@@ -23,34 +22,6 @@ struct FeaturesOptions {
     std::string pattern;  ///< empty: all
 };
 
-/// Upper and lower case are equal. A pattern without wildcards matches any part of the name.
-bool matches(const std::string& name, const std::string& pattern) {
-    const bool is_part = pattern.find_first_of("*?[") == std::string::npos;
-    const std::string whole = is_part ? "*" + pattern + "*" : pattern;
-    return fnmatch(whole.c_str(), name.c_str(), FNM_CASEFOLD) == 0;
-}
-
-std::vector<CameraFeature> features_of(const FeaturesOptions& options) {
-    const CameraKind& kind = camera_kind(options.address);
-    if (kind.features == nullptr)
-        throw InputError(options.address,
-                         "has no features; gige:IP, usb:SERIAL and v4l2:/dev/videoN have");
-    std::vector<CameraFeature> features = kind.features(options.address);
-    const std::size_t all = features.size();
-    std::erase_if(features, [&](const CameraFeature& feature) {
-        return !matches(feature.name, options.pattern);
-    });
-    if (features.empty() && all > 0)
-        throw InputError(
-            fmt::format("\"{}\"", options.pattern),
-            fmt::format("matches none of the {} of {}", counted(all, "feature"), options.address));
-    return features;
-}
-
-ordered_json known(const std::optional<std::string>& text) {
-    return text ? ordered_json(*text) : ordered_json(nullptr);
-}
-
 ordered_json features_json(const FeaturesOptions& options,
                            const std::vector<CameraFeature>& features) {
     auto list = ordered_json::array();
@@ -59,11 +30,11 @@ ordered_json features_json(const FeaturesOptions& options,
                         {"category", feature.category},
                         {"type", feature.type},
                         {"access", feature.access},
-                        {"value", known(feature.value)},
+                        {"value", or_null(feature.value)},
                         {"unit", feature.unit},
-                        {"minimum", known(feature.minimum)},
-                        {"maximum", known(feature.maximum)},
-                        {"increment", known(feature.increment)},
+                        {"minimum", or_null(feature.minimum)},
+                        {"maximum", or_null(feature.maximum)},
+                        {"increment", or_null(feature.increment)},
                         {"choices", feature.choices},
                         {"text", feature.text}});
     return {{"address", options.address}, {"features", list}};
@@ -86,13 +57,9 @@ std::string value_of(const CameraFeature& feature) {
 }
 
 std::string features_text(const std::vector<CameraFeature>& features) {
-    constexpr std::size_t kMaxWidth = 40;  // longer ones shift their line
-    std::size_t name_width = 0;
-    std::size_t value_width = 0;
-    for (const CameraFeature& feature : features) {
-        name_width = std::max(name_width, std::min(feature.name.size(), kMaxWidth));
-        value_width = std::max(value_width, std::min(value_of(feature).size(), kMaxWidth));
-    }
+    constexpr std::size_t kMaxWidth = 40;
+    const std::size_t name_width = column_width(features, &CameraFeature::name, kMaxWidth);
+    const std::size_t value_width = column_width(features, value_of, kMaxWidth);
     std::string text;
     for (const CameraFeature& feature : features) {
         std::string line =
@@ -107,7 +74,7 @@ std::string features_text(const std::vector<CameraFeature>& features) {
 
 void list_features(const FeaturesOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    const std::vector<CameraFeature> features = features_of(options);
+    const std::vector<CameraFeature> features = camera_features(options.address, options.pattern);
     json.write(features_json(options, features));
     run.say(features.empty() ? "no features" : features_text(features));
 }

@@ -80,13 +80,49 @@ LivePreviewOptions show_in(const std::string& file) {
                 [](const std::string& failure) {
                     say_error("no preview: {}; the recording goes on", failure);
                 },
-            .goes_on = [] { return stop_signal() == 0; }};
+            .keep_going = [] { return stop_signal() == 0; }};
 }
 
 void say_slow_preview() {
     say_error(
         "the recording is complete; its preview ends slowly, as the machine is busy. Ctrl-C twice "
         "does not wait");
+}
+
+/// Null without --preview.
+std::unique_ptr<LivePreview> open_preview(const PreviewArguments& arguments,
+                                          const SensorSetup& setup) {
+    if (arguments.file.empty()) return nullptr;
+    return std::make_unique<LivePreview>(
+        PreviewDecoder(stream_header_of(setup, {}), preview_options(arguments)),
+        show_in(arguments.file));
+}
+
+LiveEmulatorOptions emulator_options(const LiveArguments& arguments, LivePreview* preview) {
+    LiveEmulatorOptions options{
+        .limits = arguments.limits,
+        .late_after_slots = arguments.late_after_slots,
+        .tell = [&address = arguments.camera.address](const LeftOut& left_out) {
+            say_warning(left_out_text(address, left_out));
+        }};
+    if (preview != nullptr)
+        options.show = [preview](auto packets, auto arrival_ns) {
+            preview->add(packets, arrival_ns);
+        };
+    return options;
+}
+
+/// Writes the figures and says the result.
+void tell(const LiveReport& report, const LiveArguments& arguments, const LivePreview* preview,
+          JsonFile& json, const RunOptions& run) {
+    auto figures = live_json(report);
+    std::string text = live_text(report, arguments.output, arguments.late_after_slots);
+    if (preview != nullptr) {
+        figures["preview"] = preview_json(arguments.preview.file, *preview);
+        text += "\n" + preview_text(arguments.preview.file, *preview);
+    }
+    json.write(figures);
+    run.say(text);
 }
 
 void live(const LiveArguments& arguments, const RunOptions& run) {
@@ -105,19 +141,9 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     StreamRecorder recorder = open_stream_output(arguments.output, run, setup, origin);
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
-    std::optional<LivePreview> preview;
-    const std::string& preview_file = arguments.preview.file;
-    if (!preview_file.empty())
-        preview.emplace(
-            PreviewDecoder(stream_header_of(setup, {}), preview_options(arguments.preview)),
-            show_in(preview_file));
-    LiveEmulatorOptions options{
-        .limits = arguments.limits,
-        .late_after_slots = arguments.late_after_slots,
-        .tell = [&](const LeftOut& left_out) { say_warning(left_out_text(address, left_out)); }};
-    if (preview)
-        options.show = [&](auto packets, auto arrival_ns) { preview->add(packets, arrival_ns); };
-    LiveEmulation emulation = emulate(camera, to_light, recorder, options, run);
+    const auto preview = open_preview(arguments.preview, setup);
+    LiveEmulation emulation =
+        emulate(camera, to_light, recorder, emulator_options(arguments, preview.get()), run);
     emulation.totals.repeated = camera.stop().repeated;
     if (emulation.latencies.count() == 0) {
         throw_if_stopped();
@@ -128,12 +154,7 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     if (!emulation.failure && emulation.end && emulation.end->bad_file)
         say_kept(arguments.output.c_str());
     throw_early_end(emulation, address);
-    const LiveReport report{emulation, recorder, camera};
-    auto figures = live_json(report);
-    if (preview) figures["preview"] = preview_json(preview_file, *preview);
-    json.write(figures);
-    run.say(live_text(report, arguments.output, arguments.late_after_slots) +
-            (preview ? "\n" + preview_text(preview_file, *preview) : ""));
+    tell({emulation, recorder, camera}, arguments, preview.get(), json, run);
 }
 
 }  // namespace
@@ -162,7 +183,7 @@ void add_capture_live(Command& capture, Action& action) {
         .add_option("--queue", options->queue_frames,
                     "frames that may wait for the emulator; further frames are dropped and counted")
         .shows_default()
-        .check(whole_check(1, 4096))
+        .check(whole_check(1, LiveCameraOptions::kMaxWaitingFrames))
         .type_name("N");
     command
         .add_option("--late-after", options->late_after_slots,

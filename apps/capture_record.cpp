@@ -12,6 +12,7 @@
 #include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
@@ -49,21 +50,21 @@ std::filesystem::path file_for(const std::string& output) {
 }
 
 nlohmann::ordered_json recording_json(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
     return {{"file", file},
             {"frames", recording.end.frames},
             {"incomplete", recording.end.incomplete},
             {"repeated", recording.session.repeated},
             {"lost", lost_json(recording.session)},
+            {"missing_before_first", recording.session.missing_before_first},
             {"outages", recording.session.outages},
             {"transport", transport_json(recording.transport)},
             {"payload_bytes", recording.end.payload_bytes},
             {"seconds", recording.seconds},
-            {"frames_per_s", hz ? nlohmann::ordered_json(*hz) : nullptr}};
+            {"frames_hz", or_null(recording.frames_hz)}};
 }
 
 std::string recording_text(const std::string& file, const CameraRecording& recording) {
-    const auto& hz = recording.frames_per_s;
+    const auto& hz = recording.frames_hz;
     std::string text =
         fmt::format("{}: {}{}, {:.1f} MB", file, counted(recording.end.frames, "frame"),
                     hz ? fmt::format(", {:.1f} per second", *hz) : "",
@@ -72,7 +73,10 @@ std::string recording_text(const std::string& file, const CameraRecording& recor
         text += fmt::format(", {} incomplete", recording.end.incomplete);
     if (recording.session.repeated > 0)
         text += fmt::format(", {} repeated and left out", recording.session.repeated);
-    return fmt::format("{}\nlost: {}", text, lost_text(recording.session));
+    text += fmt::format("\nlost: {}", lost_text(recording.session));
+    if (const std::uint64_t missing = recording.session.missing_before_first; missing > 0)
+        text += fmt::format(", of these {} before the first frame", missing);
+    return text;
 }
 
 /// \throws the fault that ended a recording too early, after a message on the frames kept.

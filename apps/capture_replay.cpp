@@ -67,7 +67,7 @@ void say_what_is_wrong(const std::string& file, const RecordingFootage& footage)
         text += fmt::format("\n  byte {}: {}, {} skipped", report.damage[i].offset,
                             report.damage[i].cause, counted(report.damage[i].bytes, "byte"));
     if (places > kMaxShownFaults) text += fmt::format("\n  and {} more", places - kMaxShownFaults);
-    throw InputError(file, text + "\n  the output is made of what is left");
+    throw InputError(file, text + "\n  the output contains the undamaged part");
 }
 
 void replay(const ReplayOptions& options, const RunOptions& run) {

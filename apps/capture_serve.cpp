@@ -33,7 +33,7 @@ nlohmann::ordered_json counts_json(const GigeServerCounts& counts) {
 std::string ready_text(const FrameSource& source, const GigeServerOptions& options) {
     const ServedImage& image = source.image();
     return fmt::format("READY gige:{} {} x {} {} at {:g} frames/s", options.address, image.width,
-                       image.height, image.formats.front()->name, image.frames_per_s);
+                       image.height, image.formats.front()->name, image.frames_hz);
 }
 
 std::string counts_text(const GigeServerCounts& counts) {
@@ -111,6 +111,7 @@ void add_fault_arguments(Command& command, GigeServerOptions& options) {
     count("--fault-first-block", faults.first_block, "block id of the first frame")
         .shows_default()
         .check(whole_check(1, 65535));
+    count("--fault-begin-at", faults.begin_at, "frame before which nothing is sent");
     count("--fault-freeze-at", faults.freeze_at, "frame from which on nothing is sent");
     count("--fault-seed", faults.seed, "seed of the draw of the packets").shows_default();
     command
@@ -129,10 +130,10 @@ std::string check_serial(const std::string& serial) {
 
 void check_mode(const Command& command, const ServedSourceChoice& source) {
     if (source.mode == ServedMode::kCoded)
-        command.refuse({"--format"}, "is of --mode frames; leave it out");
+        command.refuse({"--format"}, "needs --mode frames; leave it out");
     else
         command.refuse({"--sensor", "--schedule", "--set", "--seed", "--overrun", "--threads"},
-                       "is of the sensor of --mode coded; add that or leave this out");
+                       "needs --mode coded; add it, or leave this out");
 }
 
 void check_faults(const Command& command, const GvspFaults& faults) {
@@ -161,7 +162,7 @@ void add_capture_serve(Command& capture, Action& action) {
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
-        "  stipple capture serve video.mp4 --luminance --format Mono12p --fps 200 --repeat\n"
+        "  stipple capture serve video.mp4 --luminance --format Mono12p --frames-hz 200 --repeat\n"
         "  stipple capture serve scene --mode coded --address 127.0.0.2");
     set_action(command, action, options, serve, [command, options] {
         check_mode(command, options->source);

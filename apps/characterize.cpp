@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "apps/arguments/checks.h"
+#include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/camera_report.h"
@@ -70,13 +71,13 @@ bool is_series_name(std::string_view name) {
 }
 
 /// Writes images of the emulated sensor, DN as 16-bit PNG, and their descriptor.
-void photograph(const SensorChoice& sensor, const SensorParams& params,
-                const std::filesystem::path& folder, const RunOptions& run) {
+void capture_flat_fields(const SensorChoice& sensor, const SensorParams& params,
+                         const std::filesystem::path& folder, const RunOptions& run) {
     FlatField field(params, sensor.seed);
     const auto exposures = flat_field_exposures(params);
     int images = 0;
     for (const FlatFieldExposure& exposure : exposures) images += exposure.images;
-    Progress progress(run, "photographing", images);
+    Progress progress(run, "capturing flat fields", images);
     emva1288::Series series{.bits = params.bit_depth,
                             .cols = FlatField::kShape.cols,
                             .rows = FlatField::kShape.rows,
@@ -91,7 +92,7 @@ void photograph(const SensorChoice& sensor, const SensorParams& params,
         for (int i = 0; i < count; ++i) {
             throw_if_stopped();
             group.files.push_back(image_name(++number));
-            write_dn_png(folder / group.files.back(), FlatField::kShape, field.photograph(photons));
+            write_dn_png(folder / group.files.back(), FlatField::kShape, field.capture(photons));
             progress.advance();
         }
     }
@@ -166,7 +167,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     JsonFile json(run);
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
     say_leftover(options.output);
-    photograph(options.sensor, params, folder.partial(), run);
+    capture_flat_fields(options.sensor, params, folder.partial(), run);
     const auto where = (folder.final_path() / kDescriptorName).string();
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, where, run),
                               configured_figures(params)};
@@ -197,13 +198,7 @@ void characterize(const CharacterizeOptions& options, const RunOptions& run) {
 void add_characterize(Command& app, Action& action) {
     Command command = app.add_command("characterize", "EMVA 1288 figures of a sensor or camera");
     const auto options = std::make_shared<CharacterizeOptions>();
-    const auto sensor =
-        command
-            .add_option("--sensor", options->sensor.sensor, "sensor, of \"stipple list sensors\"")
-            .shows_default()
-            .type_name("NAME|FILE")
-            .listed("sensors")
-            .input();
+    const auto sensor = add_sensor(command, options->sensor.sensor);
     const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
                                   "change a key of the sensor");
     const auto seed = command.add_option("--seed", options->sensor.seed, "seed of the noise")

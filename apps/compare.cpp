@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -46,10 +47,10 @@ struct CompareOptions {
     const bool same_size = result.rows == wanted.rows && result.cols == wanted.cols;
     throw InputError(
         options.result,
-        fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+        fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
                     "reference \"{}\" has {} x {} x {}{}",
-                    result.rows, result.cols, result.planes, options.reference, wanted.rows,
-                    wanted.cols, wanted.planes,
+                    result.cols, result.rows, result.planes, options.reference, wanted.cols,
+                    wanted.rows, wanted.planes,
                     same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
@@ -59,6 +60,14 @@ void check_length(const CompareOptions& options, bool is_result, std::int64_t fr
     throw InputError(
         is_result ? options.result : options.reference,
         fmt::format("ends after {}, before --until {}", counted(frames, "frame"), options.until));
+}
+
+/// \throws InputError for a table or chart that would be empty.
+void check_frame_metrics(const CompareOptions& options, const QualityMetrics& metrics) {
+    if (options.csv.empty() && options.chart.empty()) return;
+    if (std::ranges::any_of(metrics, &QualityMetric::of_a_frame)) return;
+    throw InputError(options.csv.empty() ? "--chart" : "--csv",
+                     "shows figures of each frame, and no --metric that is given has one");
 }
 
 /// The video that goes on after the last frame of the other one.
@@ -113,14 +122,14 @@ class Outputs {
         if (difference_) difference_->add(result, reference);
     }
 
-    void finish(const QualityMetrics& metrics, const QualityMeter& meter, std::int64_t margin) {
-        if (csv_ || chart_) {
-            const FrameTable table{metrics, meter.frame_qualities(), margin};
-            if (csv_) write_text(*csv_, table_csv(table));
-            if (chart_)
-                write_text(*chart_, table_chart(table, lower_extension(chart_->final_path())));
-        }
+    void finish(const FrameTable& table) {
+        if (csv_) write_text(*csv_, table_csv(table));
         if (difference_) difference_->finish();
+    }
+    /// Last, because gnuplot may be missing. \throws as draw_chart.
+    void draw(const FrameTable& table) {
+        if (!chart_) return;
+        write_text(*chart_, table_chart(table, lower_extension(chart_->final_path())));
     }
 
   private:
@@ -135,18 +144,28 @@ ReadAhead read_result(const CompareOptions& options) {
         {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
 }
 
-void compare(const CompareOptions& options, const RunOptions& run) {
-    const QualityMetrics metrics = chosen_metrics(options.metrics);
+QualityOptions quality_options(const CompareOptions& options, const QualityMetrics& metrics) {
     QualityOptions quality = options.quality;
     quality.pu21_ssim = has_metric(metrics, "pu21-ssim");
     if (has_metric(metrics, "pu21-csf-psnr")) quality.pixels_per_degree = options.pixels_per_degree;
-    JsonFile json(run);
-    ReadAhead result = read_result(options);
+    return quality;
+}
+
+void warn_of_gamma(const std::string& name, const ReadAhead& result) {
     if (result.gamma_coded())
         say_warning(
             fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
                         "stipple are tone-mapped; compare the .npy or the folder",
-                        options.result));
+                        name));
+}
+
+void compare(const CompareOptions& options, const RunOptions& run) {
+    const QualityMetrics metrics = chosen_metrics(options.metrics);
+    check_frame_metrics(options, metrics);
+    const QualityOptions quality = quality_options(options, metrics);
+    JsonFile json(run);
+    ReadAhead result = read_result(options);
+    warn_of_gamma(options.result, result);
     ReadAhead reference = read_footage(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
     QualityMeter meter(reference.shape(), quality);
@@ -163,7 +182,8 @@ void compare(const CompareOptions& options, const RunOptions& run) {
     }
     const VideoQuality found = meter.quality();
     say_overlap(options, longer, frames);
-    outputs.finish(metrics, meter, quality.margin);
+    const FrameTable table{metrics, meter.frame_qualities(), quality.margin};
+    outputs.finish(table);
     auto figures = metrics_json(metrics, found);
     figures["peak"] = quality.peak;
     figures["cd_per_unit"] = quality.unit_cd_per_m2;
@@ -174,6 +194,7 @@ void compare(const CompareOptions& options, const RunOptions& run) {
         figures["longer"] = longer == Longer::kResult ? "result" : "reference";
     json.write(figures);
     run.say(metrics_text(metrics, found, quality));
+    outputs.draw(table);
 }
 
 /// `--metric` and what it needs.
@@ -190,6 +211,24 @@ void add_metric_arguments(Command& command, CompareOptions& options) {
         .shows_default()
         .check(positive_check())
         .type_name("P");
+}
+
+void add_quality_arguments(Command& command, CompareOptions& options) {
+    command
+        .add_option(
+            "--peak", options.quality.peak,
+            "peak of PSNR and PU21-PSNR; with --max-value 2, a peak of 2 raises the PSNR by 6 dB")
+        .shows_default()
+        .check(positive_check())
+        .type_name("LIGHT");
+    command
+        .add_option(
+            "--cd-per-unit", options.quality.unit_cd_per_m2,
+            "luminance of light 1.0 for PU21, in cd/m2; an HDR display reaches 1000 and more")
+        .shows_default()
+        .check(positive_check())
+        .type_name("L");
+    add_metric_arguments(command, options);
 }
 
 void add_compare_outputs(Command& command, CompareOptions& options) {
@@ -231,21 +270,7 @@ void add_compare(Command& app, Action& action) {
         .type_name("N");
     add_max_value(command, options->quality.max_value);
     add_footage_arguments(command, options->footage, "REFERENCE");
-    command
-        .add_option(
-            "--peak", options->quality.peak,
-            "peak of PSNR and PU21-PSNR; with --max-value 2, a peak of 2 raises the PSNR by 6 dB")
-        .shows_default()
-        .check(positive_check())
-        .type_name("LIGHT");
-    command
-        .add_option(
-            "--cd-per-unit", options->quality.unit_cd_per_m2,
-            "luminance of light 1.0 for PU21, in cd/m2; an HDR display reaches 1000 and more")
-        .shows_default()
-        .check(positive_check())
-        .type_name("L");
-    add_metric_arguments(command, *options);
+    add_quality_arguments(command, *options);
     add_compare_outputs(command, *options);
     add_threads(command, action.options);
     command.footer(

@@ -90,7 +90,7 @@ void add_decode(Command& app, Action& action) {
             options->check_schedule =
                 *check_schedule == "fix" ? CheckSchedule::kFixShift : CheckSchedule::kRefuseShift;
         if (!options->follow)
-            command.refuse({"--timeout"}, "is of --follow; add that or leave this out");
+            command.refuse({"--timeout"}, "needs --follow; add it, or leave this out");
         check_video_arguments(command, options->video, options->images, options->output);
     });
 }

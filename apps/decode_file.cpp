@@ -42,7 +42,11 @@ DecodeOptions options_of(const DecodeArguments& arguments) {
     Config config = arguments.options.empty()
                         ? Config(arguments.settings, "decoder")
                         : Config(arguments.options, arguments.settings, "decoder");
-    return read_decode_options(method, config);
+    DecodeOptions options = read_decode_options(method, config);
+    options.fill_gaps = arguments.fill_gaps;
+    options.where = arguments.stream;
+    if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
+    return options;
 }
 
 /// The most memory of this process that has lain in RAM at a time.
@@ -87,67 +91,15 @@ FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOpt
     return options;
 }
 
-DecodeReport decode_frames(StreamReader& reader, const DecodeOptions& options, FrameWriter& writer,
-                           const DecodeArguments& arguments, const RunOptions& run) {
-    std::optional<std::int64_t> total = reader.slots();
-    if (arguments.until > 0) total = std::min(total.value_or(arguments.until), arguments.until);
-    Progress progress(run, "decoding", total);
-    std::int64_t written = 0;
-    return decode(
-        reader, options,
-        [&](std::int64_t slot, std::span<const float> frame) {
-            writer.write(frame);
-            written = slot + 1;
-            return written != arguments.until && stop_signal() == 0;
-        },
-        [&](double slots) {
-            progress.reach(slots, written);
-            return stop_signal() == 0;
-        });
-}
-
 /// What made the frames end.
 enum class DecodeEnd : std::uint8_t { kStream, kUntil, kTimeout, kSignal };
 
 /// By DecodeEnd: values of the JSON key `ended_by`.
 constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "timeout", "signal"};
 
-DecodeEnd end_of(const DecodeReport& report, const DecodeArguments& arguments,
-                 const GrowingFile& growing) {
-    if (report.slots == arguments.until) return DecodeEnd::kUntil;
-    if (stop_signal() != 0) return DecodeEnd::kSignal;
-    return growing.timed_out() ? DecodeEnd::kTimeout : DecodeEnd::kStream;
-}
-
-/// Ends that the user may not expect.
-void warn(DecodeEnd end, const DecodeReport& report, const DecodeArguments& arguments,
-          const GrowingFile& growing) {
-    if (end == DecodeEnd::kTimeout)
-        say_error(
-            "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
-            "if it ended here, after {}",
-            arguments.stream, growing.timeout_s(), counted(report.slots, "slot"));
-    else if (end == DecodeEnd::kStream && arguments.until > 0)
-        say_error("{}: ends after {}, before --until {}", arguments.stream,
-                  counted(report.slots, "slot"), arguments.until);
-}
-
 /// NaN without a sample.
 double saturated_fraction(const DecodeReport& report) {
     return static_cast<double>(report.saturated_samples) / static_cast<double>(report.samples);
-}
-
-nlohmann::ordered_json figures_of(const DecodeReport& report, const std::string& method,
-                                  DecodeEnd end) {
-    return {{"method", method},
-            {"seconds", report.seconds},
-            {"slots", report.slots},
-            {"ended_by", kEndNames[static_cast<std::size_t>(end)]},
-            {"saturated_fraction", saturated_fraction(report)},
-            {"voxels", report.voxels},
-            {"voxels_per_second", static_cast<double>(report.voxels) / report.seconds},
-            {"peak_memory_bytes", peak_memory_bytes()},
-            {"threads", thread_count()}};
 }
 
 nlohmann::ordered_json light_levels_json(const LightLevels& levels) {
@@ -168,63 +120,170 @@ std::string_view schedule_hint(const StreamReport& report) {
                : "\n  the chip may have run another schedule: --check-schedule looks for it";
 }
 
+/// A run of the command: opened by the constructor, then `run`, then `tell`.
+class DecodeRun {
+  public:
+    DecodeRun(const DecodeArguments& arguments, const RunOptions& run);
+    /// Decodes and completes the outputs. \throws InputError without a slot, Interrupted before the
+    /// first one, and as `decode`, FrameWriter and StageOutputs.
+    void run();
+    /// Writes figures, result and warnings. \throws InputError if the stream is damaged.
+    void tell();
+
+  private:
+    [[nodiscard]] std::optional<ScheduleCheck> check_schedule();
+    [[nodiscard]] DecodeReport decode_frames();
+    [[nodiscard]] DecodeEnd found_end() const;
+    [[nodiscard]] double voxels_per_second() const;
+    [[nodiscard]] nlohmann::ordered_json figures() const;
+    [[nodiscard]] std::string summary() const;
+    void warn_of_end() const;
+    void tell_faults() const;
+
+    const DecodeArguments& arguments_;
+    const RunOptions& run_;
+    DecodeOptions options_;
+    GrowingFile growing_;
+    JsonFile json_;
+    std::optional<ScheduleCheck> check_;
+    StreamReader reader_;
+    FrameWriter writer_;
+    StageOutputs stages_;
+    DecodeReport report_;
+    DecodeEnd end_ = DecodeEnd::kStream;
+};
+
+DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
+    : arguments_(arguments),
+      run_(run),
+      options_(options_of(arguments)),
+      growing_(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; }),
+      json_(run),
+      check_(check_schedule()),
+      reader_(open_stream(arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant,
+                          growing_)),
+      writer_(arguments.output, decoded_shape(reader_.header()),
+              writer_options(arguments, run, reader_.header())),
+      stages_(arguments.stages, decoded_shape(reader_.header()), run.force) {
+    if (check_ && check_->verdict == ScheduleCheck::Verdict::kShifted)
+        reader_.use_schedule(shifted_schedule(reader_.header().schedule, check_->shift));
+    calibrate(reader_, arguments);
+    say_leftover(arguments.output);
+    options_.stages = stages_.sink();
+}
+
+std::optional<ScheduleCheck> DecodeRun::check_schedule() {
+    if (arguments_.check_schedule == CheckSchedule::kNo) return {};
+    StreamReader reader = open_stream(arguments_, ReadPolicy::kAnySchedule, growing_);
+    return checked_schedule(reader, arguments_, run_);
+}
+
+void DecodeRun::run() {
+    report_ = decode_frames();
+    if (report_.slots == 0)
+        throw_if_stopped("nothing is written, for frames are completed 48 at a time");
+    if (report_.slots == 0) throw InputError(arguments_.stream, "holds no slot to decode");
+    writer_.finish();
+    stages_.finish();
+    end_ = found_end();
+}
+
+DecodeReport DecodeRun::decode_frames() {
+    std::optional<std::int64_t> total = reader_.slots();
+    const std::int64_t until = arguments_.until;
+    if (until > 0) total = std::min(total.value_or(until), until);
+    Progress progress(run_, "decoding", total);
+    std::int64_t written = 0;
+    return decode(
+        reader_, options_,
+        [&](std::int64_t slot, std::span<const float> frame) {
+            writer_.write(frame);
+            written = slot + 1;
+            return written != until && stop_signal() == 0;
+        },
+        [&](double slots) {
+            progress.reach(slots, written);
+            return stop_signal() == 0;
+        });
+}
+
+void DecodeRun::tell() {
+    json_.write(figures());
+    warn_of_end();
+    run_.say(summary());
+    if (const auto levels = writer_.light_levels()) run_.say(light_levels_text(*levels));
+    tell_faults();
+}
+
+DecodeEnd DecodeRun::found_end() const {
+    if (report_.slots == arguments_.until) return DecodeEnd::kUntil;
+    if (stop_signal() != 0) return DecodeEnd::kSignal;
+    return growing_.timed_out() ? DecodeEnd::kTimeout : DecodeEnd::kStream;
+}
+
+double DecodeRun::voxels_per_second() const {
+    return static_cast<double>(report_.voxels) / report_.seconds;
+}
+
+nlohmann::ordered_json DecodeRun::figures() const {
+    nlohmann::ordered_json json{{"method", arguments_.method},
+                                {"seconds", report_.seconds},
+                                {"slots", report_.slots},
+                                {"ended_by", kEndNames[static_cast<std::size_t>(end_)]},
+                                {"saturated_fraction", saturated_fraction(report_)},
+                                {"voxels", report_.voxels},
+                                {"voxels_per_second", voxels_per_second()},
+                                {"peak_memory_bytes", peak_memory_bytes()},
+                                {"threads", thread_count()}};
+    if (check_) json["schedule_check"] = check_json(*check_);
+    if (!stages_.figures().empty()) json["convergence"] = stages_.figures();
+    if (const auto levels = writer_.light_levels())
+        json["light_levels"] = light_levels_json(*levels);
+    return json;
+}
+
+std::string DecodeRun::summary() const {
+    return fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments_.output,
+                       counted(report_.slots, "frame"), arguments_.method, rounded(report_.seconds),
+                       rounded(1e-6 * voxels_per_second()), peak_memory_bytes() / 1000000,
+                       report_.samples == 0 ? ""
+                                            : fmt::format(", {:.2f} % of the samples saturated",
+                                                          100 * saturated_fraction(report_)));
+}
+
+/// Ends that the user may not expect.
+void DecodeRun::warn_of_end() const {
+    if (end_ == DecodeEnd::kTimeout)
+        say_error(
+            "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
+            "if it ended here, after {}",
+            arguments_.stream, growing_.timeout_s(), counted(report_.slots, "slot"));
+    else if (end_ == DecodeEnd::kStream && arguments_.until > 0)
+        say_error("{}: ends after {}, before --until {}", arguments_.stream,
+                  counted(report_.slots, "slot"), arguments_.until);
+}
+
+void DecodeRun::tell_faults() const {
+    StreamReport found = reader_.report();
+    if (found.samples == 0)
+        say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments_.stream));
+    if (end_ == DecodeEnd::kStream && !found.complete && undamaged(found))
+        say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
+                  arguments_.stream);
+    if (end_ == DecodeEnd::kSignal)
+        found.tail_bytes = 0;  // of a packet that was still being written
+    if (!undamaged(found))
+        throw InputError(arguments_.stream,
+                         fmt::format("{}{}\n  the output contains the undamaged part",
+                                     damage_text(found), schedule_hint(found)));
+}
+
 }  // namespace
 
 void decode_file(const DecodeArguments& arguments, const RunOptions& run) {
-    DecodeOptions options = options_of(arguments);
-    options.fill_gaps = arguments.fill_gaps;
-    options.where = arguments.stream;
-    if (!arguments.follow) options.input_bytes = input_bytes(arguments.stream);
-    GrowingFile growing(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; });
-    JsonFile json(run);
-    std::optional<ScheduleCheck> check;
-    if (arguments.check_schedule != CheckSchedule::kNo) {
-        StreamReader reader = open_stream(arguments, ReadPolicy::kAnySchedule, growing);
-        check = checked_schedule(reader, arguments, run);
-    }
-    StreamReader reader = open_stream(
-        arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant, growing);
-    if (check && check->verdict == ScheduleCheck::Verdict::kShifted)
-        reader.use_schedule(shifted_schedule(reader.header().schedule, check->shift));
-    calibrate(reader, arguments);
-    FrameWriter writer(arguments.output, decoded_shape(reader.header()),
-                       writer_options(arguments, run, reader.header()));
-    say_leftover(arguments.output);
-    StageOutputs stages(arguments.stages, decoded_shape(reader.header()), run.force);
-    options.stages = stages.sink();
-    const DecodeReport report = decode_frames(reader, options, writer, arguments, run);
-    if (report.slots == 0)
-        throw_if_stopped("nothing is written, for frames are completed 48 at a time");
-    if (report.slots == 0) throw InputError(arguments.stream, "holds no slot to decode");
-    writer.finish();
-    stages.finish();
-    const DecodeEnd end = end_of(report, arguments, growing);
-    auto figures = figures_of(report, arguments.method, end);
-    if (check) figures["schedule_check"] = check_json(*check);
-    if (!stages.figures().empty()) figures["convergence"] = stages.figures();
-    const auto levels = writer.light_levels();
-    if (levels) figures["light_levels"] = light_levels_json(*levels);
-    json.write(figures);
-    warn(end, report, arguments, growing);
-    run.say(fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments.output,
-                        counted(report.slots, "frame"), arguments.method, rounded(report.seconds),
-                        rounded(1e-6 * figures["voxels_per_second"].get<double>()),
-                        peak_memory_bytes() / 1000000,
-                        report.samples == 0 ? ""
-                                            : fmt::format(", {:.2f} % of the samples saturated",
-                                                          100 * saturated_fraction(report))));
-    if (levels) run.say(light_levels_text(*levels));
-    StreamReport found = reader.report();
-    if (found.samples == 0)
-        say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments.stream));
-    if (end == DecodeEnd::kStream && !found.complete && undamaged(found))
-        say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
-                  arguments.stream);
-    if (end == DecodeEnd::kSignal)
-        found.tail_bytes = 0;  // of a packet that was still being written
-    if (!undamaged(found))
-        throw InputError(arguments.stream, fmt::format("{}{}\n  the output is made of what is left",
-                                                       damage_text(found), schedule_hint(found)));
+    DecodeRun decoding(arguments, run);
+    decoding.run();
+    decoding.tell();
 }
 
 }  // namespace stipple

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 
@@ -70,7 +71,8 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
         case Verdict::kNoneFits:
             throw InputError(arguments.stream,
                              fmt::format("the samples do not follow the schedule, and no shift of "
-                                         "it clearly fits ({}); record which one the chip ran",
+                                         "it clearly fits ({}); store the schedule that the chip "
+                                         "ran in the header",
                                          why));
     }
     return check;
@@ -78,16 +80,13 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
 
 nlohmann::ordered_json check_json(const ScheduleCheck& check) {
     static constexpr const char* kVerdicts[] = {"agrees", "shifted", "cannot_tell", "none_fits"};
-    const auto number = [](const std::optional<double>& value) {
-        return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-    };
     return {{"verdict", kVerdicts[static_cast<std::size_t>(check.verdict)]},
             {"slot_shift", check.shift.slots},
             {"row_shift", check.shift.rows},
             {"col_shift", check.shift.cols},
-            {"header_residual", number(check.header_residual)},
-            {"best_residual", number(check.best_residual)},
-            {"median_residual", number(check.median_residual)},
+            {"header_residual", or_null(check.header_residual)},
+            {"best_residual", or_null(check.best_residual)},
+            {"median_residual", or_null(check.median_residual)},
             {"tried", check.tried},
             {"possible", check.possible}};
 }

@@ -20,6 +20,10 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
+// Of the pictures in the page, which keep all slots: the whole frame takes five times as much.
+constexpr int kPageRows = 108;
+constexpr int kPageCols = 144;
+
 struct DemoOptions {
     std::string folder = "stipple_demo";
     std::string scene = "pan";
@@ -62,6 +66,7 @@ RunReportOptions page_options(const DemoOptions& options, const FluxVideo& truth
     RunReportOptions page;
     page.title = fmt::format("Stipple demo: scene {}", options.scene);
     page.command = own_command();
+    page.area = middle_area(truth.shape(), kPageRows, kPageCols);
     page.quality = demo_quality(truth.slots());
     return page;
 }
@@ -89,10 +94,10 @@ void demo(const DemoOptions& options, const RunOptions& run) {
         fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
                     "In {}:\n"
                     "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
-                    "  report.html             all of it, to look into with a browser\n"
+                    "  report.html             the middle of it as an interactive page\n"
                     "  decoded.mp4             decoded video, tone-mapped\n"
                     "  decoded/                the same as EXR, linear light\n"
-                    "  random.stipple          the recording it was made of",
+                    "  random.stipple          the sample stream of this video",
                     options.scene, truth.slots(), truth.shape().cols, truth.shape().rows,
                     elapsed.count(), trials_table(results), folder.string()));
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
 #include "apps/stream_output.h"
@@ -12,7 +10,7 @@
 namespace stipple {
 
 QualityOptions demo_quality(int slots) {
-    return {.margin = std::min(4, (slots - 1) / 2), .max_value = kBrightestLight};
+    return {.margin = usual_margin(slots), .max_value = kBrightestLight};
 }
 
 FluxVideo render_video(const Scene& scene, const RunOptions& run) {
@@ -27,11 +25,11 @@ FluxVideo render_video(const Scene& scene, const RunOptions& run) {
     return video;
 }
 
-RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
-                           const std::filesystem::path& file, const RunOptions& run) {
+StreamSize emulate_video(const FluxVideo& light, const std::string& schedule,
+                         const std::filesystem::path& file, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor({.schedule = schedule}, light.shape());
     StreamRecorder recorder = open_stream_output(file, run, setup, {.name = "embedded scene"});
-    Progress progress(run, fmt::format("recording ({})", schedule), light.slots());
+    Progress progress(run, fmt::format("emulating ({})", schedule), light.slots());
     for (int slot = 0; slot < light.slots(); ++slot) {
         throw_if_stopped();
         recorder.expose(light.frame(slot));

@@ -12,7 +12,7 @@
 
 namespace stipple {
 
-/// The brightest light that the default sensor can tell within a slot:
+/// The brightest light that the default sensor can measure within a slot:
 /// full_scale_e / photons_per_unit. Light is compared up to it.
 inline constexpr double kBrightestLight = 2;
 
@@ -20,8 +20,8 @@ inline constexpr double kBrightestLight = 2;
 /// frames (fewer of short clips), light up to kBrightestLight.
 [[nodiscard]] QualityOptions demo_quality(int slots);
 
-/// What a recording weighs.
-struct RecordingSize {
+/// Size of a stream.
+struct StreamSize {
     double compression_ratio = 0;  ///< light values per sample
     std::uint64_t payload_bits = 0;
     double megabits_per_second = 0;  ///< of the sensor's time
@@ -30,10 +30,10 @@ struct RecordingSize {
 /// All slots of a scene. \throws Interrupted.
 [[nodiscard]] FluxVideo render_video(const Scene& scene, const RunOptions& run);
 
-/// Records `light` with the default sensor and the named schedule to the stream `file`.
+/// Emulates the default sensor with the named schedule; the stream goes to `file`.
 /// \throws Interrupted, and as StreamRecorder.
-RecordingSize record_video(const FluxVideo& light, const std::string& schedule,
-                           const std::filesystem::path& file, const RunOptions& run);
+StreamSize emulate_video(const FluxVideo& light, const std::string& schedule,
+                         const std::filesystem::path& file, const RunOptions& run);
 
 /// Decodes `file`, hands each frame to `take`, and compares it with `truth` (demo_quality). \throws
 /// Interrupted, and as `decode` and `take`.

@@ -63,10 +63,10 @@ std::vector<TrialResult> run_trials(const FluxVideo& truth, const fs::path& fold
     for (std::size_t i = 0; i < kTrials.size(); ++i) {
         const auto& [name, schedule, method, text] = kTrials[i];
         const fs::path file = folder / fmt::format("{}.stipple", schedule);
-        const bool recorded = i > 0 && results.back().schedule == schedule;
-        const RecordingSize size =
-            recorded ? results.back().size : record_video(truth, schedule, file, run);
-        if (!recorded) reported_run = report.add_run(file, schedule);
+        const bool emulated = i > 0 && results.back().schedule == schedule;
+        const StreamSize size =
+            emulated ? results.back().size : emulate_video(truth, schedule, file, run);
+        if (!emulated) reported_run = report.add_run(file, schedule);
         const std::size_t reported = report.add_video({name, text, reported_run});
         const auto take = [&](std::int64_t slot, std::span<const float> frame) {
             report.put(reported, slot, frame);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,10 +18,13 @@
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
+#include "capture/level_warning.h"
 #include "capture/rate_warning.h"
 #include "capture/recording/read_ahead.h"
+#include "capture/recording/resampled_footage.h"
 #include "core/error.h"
 #include "core/joined.h"
+#include "decoder/motion/late_opencv.h"
 #include "io/frame_writer.h"
 #include "readout/footage_origin.h"
 #include "readout/timing/waveform_file.h"
@@ -34,7 +38,7 @@ struct EmulateOptions {
     std::string truth;  ///< empty: none
     WaveformOptions waveform;
     FootageOptions reading;
-    ResampleChoice resample;
+    std::optional<Resampling> resampling;  ///< none: each frame is a slot
     SensorChoice sensor;
 };
 
@@ -44,19 +48,70 @@ std::string recording_faults(const std::string& file, const RecordingFootage& fo
     auto faults = footage.recording().faults();
     if (footage.missing_frames() > 0)
         faults.push_back(
-            fmt::format("lacks {}, missing or incomplete (the one before stands in for {})",
-                        counted(footage.missing_frames(), "frame"), footage.held_slots()));
+            fmt::format("has {} ({} replaced by the previous frame)",
+                        counted(footage.missing_frames(), "missing or incomplete frame"),
+                        footage.held_slots()));
     if (faults.empty()) return {};
     return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
 }
 
 void say_rate_warnings(const EmulateOptions& options, const ReadAhead& footage,
                        const SensorParams& sensor) {
-    const auto hz = footage.video_hz();
-    if (hz && options.resample.method.empty())
-        say_warning(video_rate_warning(options.footage, *hz, sensor));
+    const auto hz = footage.frames_hz();
+    if (hz && !options.resampling) say_warning(video_rate_warning(options.footage, *hz, sensor));
     if (const auto exposure_us = footage.exposure_us())
         say_warning(exposure_warning(options.footage, *exposure_us, sensor));
+}
+
+ResampledFootage slots_of(ReadAhead& footage, const EmulateOptions& options, double slot_us) {
+    return {footage,
+            options.footage,
+            {.method = options.resampling,
+             .frames_hz = options.reading.frames_hz,
+             .slot_us = slot_us,
+             .flow = dis_flow,
+             .min_flow_side = kMinDisFlowSide}};
+}
+
+/// Null without --truth.
+std::unique_ptr<FrameWriter> open_truth(const EmulateOptions& options, FrameShape shape,
+                                        bool force) {
+    if (options.truth.empty()) return nullptr;
+    auto truth =
+        std::make_unique<FrameWriter>(options.truth, shape, FrameWriterOptions{.force = force});
+    say_leftover(options.truth);
+    return truth;
+}
+
+FootageOrigin footage_origin(const EmulateOptions& options) {
+    FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
+    if (options.resampling) origin.resample = name_in(kResamplings, *options.resampling);
+    return origin;
+}
+
+/// True at the end of the footage, false after a signal. \throws Interrupted, InputError without a
+/// slot.
+bool expose_slots(ResampledFootage& slots, StreamRecorder& recorder, FrameWriter* truth,
+                  Progress& progress, const std::string& footage) {
+    auto frame = slots.next();
+    for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
+        recorder.expose(frame);
+        if (truth != nullptr) truth->write(frame);
+        progress.advance();
+    }
+    if (progress.done() == 0) {
+        throw_if_stopped();
+        throw InputError(footage, "is shorter than a slot of the sensor");
+    }
+    return frame.empty();
+}
+
+/// Precondition: a recording was read to its end.
+void say_recording_warnings(const EmulateOptions& options, const RecordingFootage& recording,
+                            const SensorParams& sensor) {
+    say_warning(recording_faults(options.footage, recording));
+    if (!options.resampling)
+        say_warning(recording_rate_warning(options.footage, recording.rate(), sensor));
 }
 
 void emulate(const EmulateOptions& options, const RunOptions& run) {
@@ -64,43 +119,26 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
     const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
     say_warning(mosaic_warning(setup, footage.filter()));
     say_rate_warnings(options, footage, setup.params);
-    const SlotSource slots =
-        slots_of(footage, options.footage, options.resample, options.reading, setup.params.slot_us);
+    say_warning(black_level_warning(options.footage, footage.traits(), setup.params));
+    ResampledFootage slots = slots_of(footage, options, setup.params.slot_us);
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
-    std::optional<FrameWriter> truth;
-    if (!options.truth.empty()) {
-        truth.emplace(options.truth, setup.footage, FrameWriterOptions{.force = run.force});
-        say_leftover(options.truth);
-    }
-    FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
-    origin.resample = options.resample.method;
-    StreamRecorder recorder = open_stream_output(options.output, run, setup, origin);
-    Progress progress(run, "emulating", slots.slots);
-    auto frame = slots.next();
-    for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
-        recorder.expose(frame);
-        if (truth) truth->write(frame);
-        progress.advance();
-    }
-    if (progress.done() == 0) throw_if_stopped();
-    if (progress.done() == 0)
-        throw InputError(options.footage, "is shorter than a slot of the sensor");
+    const auto truth = open_truth(options, setup.footage, run.force);
+    StreamRecorder recorder =
+        open_stream_output(options.output, run, setup, footage_origin(options));
+    Progress progress(run, "emulating", slots.slots());
+    const bool at_end = expose_slots(slots, recorder, truth.get(), progress, options.footage);
     if (truth) truth->finish();
     recorder.finish();
     if (waveform)
         waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
-    if (frame.empty() && footage.recording() != nullptr) {
-        const RecordingFootage& frames = *footage.recording();
-        say_warning(recording_faults(options.footage, frames));
-        if (options.resample.method.empty())
-            say_warning(recording_rate_warning(options.footage, frames.rate(), setup.params));
-    }
-    const double slots_per_s = static_cast<double>(progress.done()) / progress.seconds();
-    json.write(emulation_json(recorder, slots_per_s));
-    run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_s)));
+    if (at_end && footage.recording() != nullptr)
+        say_recording_warnings(options, *footage.recording(), setup.params);
+    const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
+    json.write(emulation_json(recorder, slots_per_second));
+    run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_second)));
 }
 
 }  // namespace
@@ -123,10 +161,11 @@ void add_emulate(Command& app, Action& action) {
     add_settings(command, sensor_sections(options->sensor),
                  "change a key of the sensor or of the schedule");
     add_footage_arguments(command, options->reading);
-    add_resample_arguments(command, options->resample, options->reading);
+    add_resample_arguments(command, options->resampling, options->reading);
     add_max_value(command, options->reading.max_value);
     command
-        .add_option("--truth", options->truth, "write the light that was emulated, as \"decode\"")
+        .add_option("--truth", options->truth,
+                    "write the reference light, in the formats of \"decode\"")
         .type_name("OUT")
         .output(kVideoName);
     add_waveform_arguments(command, options->waveform);

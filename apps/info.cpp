@@ -11,6 +11,7 @@
 #include "apps/info_recording.h"
 #include "apps/info_settings.h"
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/stream_text.h"
@@ -60,10 +61,8 @@ void info_stream(const std::string& file, const RunOptions& run) {
     figures.update(stream_json(reader.header(), reader.report()));
     const std::string command = command_of(reader.header().provenance);
     figures["stretched_slots"] = stretched.slots();
-    figures["mean_stretched_us"] = nullptr;
-    if (stretched.mean_us()) figures["mean_stretched_us"] = *stretched.mean_us();
-    figures["command"] = nullptr;
-    if (!command.empty()) figures["command"] = command;
+    figures["mean_stretched_us"] = or_null(stretched.mean_us());
+    figures["command"] = or_null(command);
     json.write(figures);
     run.say(stream_text(reader.header(), reader.report()));
     if (stretched.slots() > 0) run.say(stretched_text(stretched, reader));
@@ -103,7 +102,7 @@ void info(const InfoOptions& options, const RunOptions& run) {
 }  // namespace
 
 void add_info(Command& app, Action& action) {
-    Command command = app.add_command("info", "Say what a file is and holds, of any kind");
+    Command command = app.add_command("info", "Kind and contents of a file");
     const auto options = std::make_shared<InfoOptions>();
     command
         .add_option("FILE", options->file,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/interrupt.h"
+#include "apps/report/json_figures.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
@@ -36,9 +37,9 @@ struct Light {
     double sum_of_means = 0;
 
     void add(std::span<const float> frame) {
-        const auto [least, most] = std::ranges::minmax(frame);
-        min = std::min(min, least);
-        max = std::max(max, most);
+        const auto [low, high] = std::ranges::minmax(frame);
+        min = std::min(min, low);
+        max = std::max(max, high);
         sum_of_means +=
             std::accumulate(frame.begin(), frame.end(), 0.0) / static_cast<double>(frame.size());
         ++frames;
@@ -63,16 +64,6 @@ void read_all(FootageReader& reader, const std::string& source, const RunOptions
     }
 }
 
-/// What is known; null what is not.
-template <typename Value>
-ordered_json known(const std::optional<Value>& value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json known(const std::string& text) {
-    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
-}
-
 ordered_json footage_json(const FootageReader& reader, const Light& light, bool complete) {
     const FrameShape shape = reader.shape();
     const SourceTraits& traits = reader.traits();
@@ -81,16 +72,16 @@ ordered_json footage_json(const FootageReader& reader, const Light& light, bool 
                       {"width", shape.cols},
                       {"height", shape.rows},
                       {"planes", shape.planes},
-                      {"announced_frames", known(reader.slots())},
+                      {"announced_frames", or_null(reader.slots())},
                       {"frames", nullptr},
-                      {"frames_per_s", known(reader.video_hz())},
-                      {"exposure_us", known(traits.exposure_us)},
-                      {"sample_format", known(traits.sample_format)},
+                      {"frames_hz", or_null(reader.frames_hz())},
+                      {"exposure_us", or_null(traits.exposure_us)},
+                      {"sample_format", or_null(traits.sample_format)},
                       {"bits", nullptr},
-                      {"black_level_dn", known(traits.black_dn)},
-                      {"white_level_dn", known(traits.white_dn)},
+                      {"black_level_dn", or_null(traits.black_dn)},
+                      {"white_level_dn", or_null(traits.white_dn)},
                       {"cfa", name_of(traits.filter)},
-                      {"curve", known(traits.curve)},
+                      {"curve", or_null(traits.curve)},
                       {"gamma_coded", traits.gamma_coded},
                       {"alpha", traits.has_alpha},
                       {"min_light", nullptr},
@@ -116,8 +107,8 @@ std::string frames_text(const FootageReader& reader, const Light& light, bool co
 }
 
 std::string rate_text(const FootageReader& reader, const Light& light, bool complete) {
-    const auto hz = reader.video_hz();
-    if (!hz) return "not told";
+    const auto hz = reader.frames_hz();
+    if (!hz) return "not declared";
     return fmt::format(
         "{:.6g} per second{}", *hz,
         complete ? fmt::format(", {:.4g} s", static_cast<double>(light.frames) / *hz) : "");
@@ -126,21 +117,21 @@ std::string rate_text(const FootageReader& reader, const Light& light, bool comp
 std::string samples_text(const SourceTraits& traits) {
     std::string text = traits.sample_format;
     if (traits.bits > 0) text += fmt::format("{}{} bits", text.empty() ? "" : ", ", traits.bits);
-    return text.empty() ? "not told" : text;
+    return text.empty() ? "not declared" : text;
 }
 
 std::string levels_text(const SourceTraits& traits) {
     const auto level = [](const std::optional<double>& dn) {
-        return dn ? fmt::format("{:g} DN", *dn) : "not told";
+        return dn ? fmt::format("{:g} DN", *dn) : "not declared";
     };
     return fmt::format("black {}, white {}", level(traits.black_dn), level(traits.white_dn));
 }
 
 std::string transfer_text(const SourceTraits& traits) {
     if (traits.gamma_coded)
-        return traits.curve.empty() ? "not told; gamma-coded by its kind (--transfer)"
+        return traits.curve.empty() ? "not declared; gamma-coded by its kind (--transfer)"
                                     : traits.curve + ", gamma-coded (--transfer)";
-    if (traits.curve.empty()) return "not told; numbers are taken as linear light";
+    if (traits.curve.empty()) return "not declared; numbers are taken as linear light";
     return traits.curve == "linear" ? "linear" : traits.curve + ", undone in reading";
 }
 
@@ -156,7 +147,7 @@ std::string footage_text(const FootageReader& reader, const Light& light, bool c
         "filter       {}\n"
         "transfer     {}",
         reader.kind(), frames_text(reader, light, complete), rate_text(reader, light, complete),
-        traits.exposure_us ? fmt::format("{:.6g} us", *traits.exposure_us) : "not told",
+        traits.exposure_us ? fmt::format("{:.6g} us", *traits.exposure_us) : "not declared",
         samples_text(traits), levels_text(traits), name_of(traits.filter), transfer_text(traits));
     if (traits.has_alpha) text += "\nalpha        left out";
     if (light.frames > 0)

@@ -86,7 +86,7 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
                       {"width", nullptr},
                       {"height", nullptr},
                       {"format", nullptr},
-                      {"frames_per_s", nullptr},
+                      {"frames_hz", nullptr},
                       {"end_reason", nullptr},
                       {"complete", reader.end().has_value()},
                       {"tail_bytes", report.tail_bytes},
@@ -99,7 +99,7 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
         json["height"] = frames.first->layout.height;
         json["format"] = frames.first->layout.format->name;
     }
-    if (frames.rate.hz()) json["frames_per_s"] = *frames.rate.hz();
+    if (frames.rate.hz()) json["frames_hz"] = *frames.rate.hz();
     if (reader.end()) json["end_reason"] = reader.end()->reason;
     return json;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,12 +10,14 @@
 #include <vector>
 
 #include "apps/key_list.h"
+#include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
 #include "apps/report/schedule_text.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/joined.h"
 #include "core/key_reader.h"
+#include "core/parsed_number.h"
 #include "io/footage_files.h"
 #include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
@@ -89,10 +90,8 @@ std::vector<KnownKey> derived_from(const SensorParams& params) {
 
 /// A number in its shortest form, else `text` as it is.
 std::string short_number(const std::string& text) {
-    double number = 0;
-    const char* const end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(text.data(), end, number);
-    return error == std::errc() && last == end ? fmt::format("{}", number) : text;
+    const auto number = parsed_number<double>(text);
+    return number ? fmt::format("{}", *number) : text;
 }
 
 /// The keys of the section [timing] that the file gives.
@@ -120,13 +119,9 @@ ordered_json rows_json(const std::vector<KnownKey>& rows) {
 }
 
 std::string rows_text(const std::vector<KnownKey>& rows) {
-    constexpr std::size_t kMaxWidth = 12;  // longer values shift their line
-    std::size_t name_width = 0;
-    std::size_t value_width = 0;
-    for (const KnownKey& row : rows) {
-        name_width = std::max(name_width, row.name.size());
-        value_width = std::max(value_width, std::min(row.fallback.size(), kMaxWidth));
-    }
+    constexpr std::size_t kMaxWidth = 12;
+    const std::size_t name_width = column_width(rows, &KnownKey::name);
+    const std::size_t value_width = column_width(rows, &KnownKey::fallback, kMaxWidth);
     std::string text;
     for (const KnownKey& row : rows)
         text += fmt::format("\n  {:<{}}  {:>{}} {:<12}  {}", row.name, name_width, row.fallback,

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "apps/key_list.h"
+#include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
@@ -75,8 +75,7 @@ std::vector<Entry> entries_of(const std::string& kind) {
 void list_names(const std::string& kind, const RunOptions& run) {
     JsonFile json(run);
     const auto entries = entries_of(kind);
-    std::size_t width = 0;
-    for (const Entry& entry : entries) width = std::max(width, entry.name.size());
+    const std::size_t width = column_width(entries, &Entry::name);
     auto names = nlohmann::ordered_json::array();
     std::string text;
     for (const auto& [name, what] : entries) {
@@ -106,11 +105,8 @@ void list_keys(const ListOptions& options, const RunOptions& run) {
     auto keys = nlohmann::ordered_json::array();
     std::string text;
     for (const KeyList& list : options.keys) {
-        std::size_t name_width = 0, value_width = 0;
-        for (const KnownKey& key : list.keys) {
-            name_width = std::max(name_width, key.name.size());
-            value_width = std::max(value_width, key.fallback.size());
-        }
+        const std::size_t name_width = column_width(list.keys, &KnownKey::name);
+        const std::size_t value_width = column_width(list.keys, &KnownKey::fallback);
         text += fmt::format("{}{} {}{}", text.empty() ? "" : "\n\n", list.section, list.of,
                             list.keys.empty() ? ": no keys" : "");
         for (const KnownKey& key : list.keys) {

@@ -105,7 +105,8 @@ void run_recover(const RecoverOptions& options, const RunOptions& run) {
 }  // namespace
 
 void add_recover(Command& app, Action& action) {
-    Command command = app.add_command("recover", "What killed runs have left, and how to keep it");
+    Command command =
+        app.add_command("recover", "List and recover unfinished outputs of killed runs");
     const auto options = std::make_shared<RecoverOptions>();
     command
         .add_option("PATH", options->path,

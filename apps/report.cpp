@@ -86,17 +86,19 @@ FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
     if (footage.shape() != shape)
         throw InputError(
             arguments.truth,
-            fmt::format("has frames of {} x {} x {} (rows x columns x planes), the runs "
+            fmt::format("has frames of {} x {} x {} (width x height x planes), the runs "
                         "have {} x {} x {}",
-                        footage.shape().rows, footage.shape().cols, footage.shape().planes,
-                        shape.rows, shape.cols, shape.planes));
-    const auto most = static_cast<std::size_t>(arguments.page.slots);
-    check_memory(2 * most * shape.sites() * sizeof(float), arguments.truth, "the truth of a report",
-                 input_bytes(arguments.truth));
+                        footage.shape().cols, footage.shape().rows, footage.shape().planes,
+                        shape.cols, shape.rows, shape.planes));
+    constexpr std::uint64_t kValueBytes = 2 * sizeof(float);  // here, and in the video
+    const std::uint64_t bytes = input_bytes(arguments.truth);
     std::vector<float> light;
-    std::size_t slots = 0;
-    for (auto frame = footage.next(); !frame.empty() && slots < most; frame = footage.next()) {
+    std::int64_t slots = 0;
+    for (auto frame = footage.next(); !frame.empty() && slots < arguments.page.slots;
+         frame = footage.next()) {
         throw_if_stopped();
+        check_memory(kValueBytes * (light.size() + frame.size()), arguments.truth,
+                     "the truth of a report", bytes);
         light.insert(light.end(), frame.begin(), frame.end());
         ++slots;
     }
@@ -129,21 +131,41 @@ void decode_slots(const fs::path& stream, DecodeMethod method, std::int64_t slot
     throw_if_stopped();
 }
 
+/// A stream in the report.
+struct ShownStream {
+    fs::path file;
+    std::string name;    ///< without extension; with its folder where two files have the same
+    std::size_t number;  ///< RunReport::add_run
+};
+
+/// All of them before the first is decoded, so that one that does not fit ends the run at once.
+std::vector<ShownStream> add_streams(RunReport& report, const std::vector<fs::path>& files) {
+    std::vector<ShownStream> streams;
+    streams.reserve(files.size());
+    for (const fs::path& file : files) {
+        const auto same = std::ranges::count_if(
+            files, [&](const fs::path& other) { return other.stem() == file.stem(); });
+        const std::string name =
+            (same == 1 ? file.stem() : file.parent_path() / file.stem()).string();
+        throw_if_stopped();
+        streams.push_back({file, name, report.add_run(file, name)});
+    }
+    return streams;
+}
+
 /// A stream by the naive method, which shows what the samples are, and by the chosen one, whose
 /// video it returns.
-std::size_t add_stream(RunReport& report, const fs::path& stream, const ReportArguments& arguments,
-                       const RunOptions& run) {
-    const std::string name = stream.stem().string();
-    const std::size_t number = report.add_run(stream, name);
+std::size_t add_videos(RunReport& report, const ShownStream& stream,
+                       const ReportArguments& arguments, const RunOptions& run) {
     const DecodeMethod chosen = decode_method_from_name(arguments.method);
     std::vector<DecodeMethod> methods{DecodeMethod::kNaive};
     if (chosen != DecodeMethod::kNaive) methods.push_back(chosen);
     std::size_t video = 0;
     for (const DecodeMethod method : methods) {
         const std::string by(named(method).name);
-        video = report.add_video(
-            {fmt::format("{}, {}", name, by), fmt::format("{} decoded by {}", name, by), number});
-        decode_slots(stream, method, arguments.page.slots, run,
+        video = report.add_video({fmt::format("{}, {}", stream.name, by),
+                                  fmt::format("{} decoded by {}", stream.name, by), stream.number});
+        decode_slots(stream.file, method, arguments.page.slots, run,
                      [&](std::int64_t slot, auto frame) { report.put(video, slot, frame); });
     }
     return video;
@@ -160,7 +182,7 @@ RunReportOptions page_options(const ReportArguments& arguments,
             brightest = std::max(brightest, brightest_light(StreamReader(stream).header()));
         if (brightest > 0) options.quality.max_value = brightest;
     }
-    if (truth) options.quality.margin = std::min(4, (truth->slots() - 1) / 2);
+    if (truth) options.quality.margin = usual_margin(truth->slots());
     return options;
 }
 
@@ -175,8 +197,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
     if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera));
     std::vector<std::size_t> decoded;
     decoded.reserve(streams.size());
-    for (const fs::path& stream : streams)
-        decoded.push_back(add_stream(report, stream, arguments, run));
+    for (const ShownStream& stream : add_streams(report, streams))
+        decoded.push_back(add_videos(report, stream, arguments, run));
     report.feature(decoded.front());
     report.fit();
     const auto data = report.json();
@@ -196,7 +218,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
                         counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
                         1e-6 * static_cast<double>(page.size())));
     if (const std::string damage = report.damage(); !damage.empty())
-        throw InputError(arguments.output, "shows what is left of damaged streams: " + damage);
+        throw InputError(arguments.output,
+                         "shows only the undamaged part of damaged streams: " + damage);
 }
 
 void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {
@@ -231,7 +254,7 @@ void add_limits(Command& command, const std::shared_ptr<ReportArguments>& option
 }  // namespace
 
 void add_report(Command& app, Action& action) {
-    Command command = app.add_command("report", "A run as an HTML page to look into");
+    Command command = app.add_command("report", "A run as an interactive HTML page");
     const auto options = std::make_shared<ReportArguments>();
     command.add_option("RUN", options->runs, "sample streams, or folders of them")
         .required()
@@ -263,7 +286,11 @@ void add_report(Command& app, Action& action) {
         "  stipple report coded.stipple full4x.stipple --truth scene --method best\n"
         "  stipple report stipple_demo -o demo.html --crop 160x120+80+60\n"
         "The page needs no network and no other file.");
-    set_action(command, action, options, make_report);
+    set_action(command, action, options, make_report, [command, options] {
+        if (options->truth.empty())
+            command.refuse({"--transfer", "--raw", "--luminance"},
+                           "is of --truth; add that or leave this out");
+    });
 }
 
 }  // namespace stipple

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/schedule.h"
+#include "apps/arguments/sensor.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -54,11 +55,7 @@ void add_schedule_check(Command& schedule, Action& action) {
     add_settings(command,
                  {schedule_section(options->schedule), {"sensor", &options->sensor_settings}},
                  "change a key of the schedule or of the sensor");
-    command.add_option("--sensor", options->sensor, "sensor, of \"stipple list sensors\"")
-        .shows_default()
-        .type_name("NAME|FILE")
-        .listed("sensors")
-        .input();
+    add_sensor(command, options->sensor);
     command.footer(
         "Examples:\n"
         "  stipple schedule check two_bucket --sensor paper --set sensor.charge_stores=2\n"

@@ -19,7 +19,7 @@ struct CompileOptions {
 };
 
 void compile(const CompileOptions& options, const RunOptions& run) {
-    const NamedSchedule schedule = set_up_schedule(options.schedule);
+    const NamedSchedule schedule = chosen_schedule(options.schedule);
     const NamedProgram named = {schedule.name, compile_schedule(schedule.schedule)};
     JsonFile json(run);
     write_text_file(options.output, run.force, program_text(named));

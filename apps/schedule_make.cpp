@@ -19,7 +19,7 @@ struct MakeOptions {
 };
 
 void make(const MakeOptions& options, const RunOptions& run) {
-    const NamedSchedule named = set_up_schedule(options.schedule);
+    const NamedSchedule named = chosen_schedule(options.schedule);
     JsonFile json(run);
     write_text_file(options.output, run.force, code_text(named.schedule, named.name));
     const ScheduleFigures figures = schedule_figures(named.schedule, options.schedule.shape);

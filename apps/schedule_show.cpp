@@ -22,7 +22,7 @@ struct ShowOptions {
 };
 
 void show(const ShowOptions& options, const RunOptions& run) {
-    const NamedSchedule named = set_up_schedule(options.schedule);
+    const NamedSchedule named = chosen_schedule(options.schedule);
     const ExposureSchedule& schedule = named.schedule;
     const int slots =
         options.slots > 0 ? options.slots : std::clamp(2 * schedule.period_slots(), 24, 64);

@@ -33,7 +33,7 @@ void add_synth(Command& app, Action& action);     ///< a scene rendered to foota
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference
-void add_info(Command& app, Action& action);      ///< what a file of any kind says and holds
+void add_info(Command& app, Action& action);      ///< contents of a file of any kind
 void add_recover(Command& app, Action& action);   ///< partial outputs of killed runs
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
@@ -60,7 +60,7 @@ void add_capture_serve(Command& capture, Action& action);   ///< a source as a G
 
 // Those of `stipple schedule`.
 
-void add_schedule_make(Command& schedule, Action& action);     ///< any schedule, written out
+void add_schedule_make(Command& schedule, Action& action);     ///< any schedule, as explicit codes
 void add_schedule_show(Command& schedule, Action& action);     ///< timing diagram and figures
 void add_schedule_check(Command& schedule, Action& action);    ///< can a sensor do it
 void add_schedule_compile(Command& schedule, Action& action);  ///< the chip's sequencer program

@@ -56,6 +56,12 @@ struct TransportCounts {
     std::uint64_t size_mismatches = 0;
 };
 
+/// The begin of a stream.
+struct StreamStart {
+    std::uint64_t first_wire_id = 0;  ///< by the rule of the transport: 1 for GigE Vision
+    std::int64_t monotonic_ns = 0;    ///< CLOCK_MONOTONIC, just before the camera was told to begin
+};
+
 /// A source of frames: GenICam through Aravis, V4L2, or a replayed recording. The function that
 /// opens it applies the settings; then it is started once. Used from one thread.
 class Camera {
@@ -66,8 +72,12 @@ class Camera {
 
     [[nodiscard]] virtual CameraDescription description() const = 0;
     [[nodiscard]] virtual FrameLayout layout() const = 0;
+    /// Memory of its buffers for frames.
+    [[nodiscard]] virtual std::size_t buffer_bytes() const { return 0; }
     /// Wire ids count modulo this (65535 for GigE Vision without 0, 2^32 for V4L2).
     [[nodiscard]] virtual std::uint64_t wire_id_period() const = 0;
+    /// Of the last `start`, if the transport has a rule for the first wire id.
+    [[nodiscard]] virtual std::optional<StreamStart> stream_start() const { return {}; }
     [[nodiscard]] virtual TransportCounts counts() const = 0;
 
     /// \throws DeviceError if the device refuses; the message says what to do.
@@ -97,7 +107,10 @@ using CameraSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// Buffers for frames on the host.
 struct CameraBuffers {
-    int frames = 32;        ///< 2 to 1024
+    static constexpr int kMinFrames = 2;
+    static constexpr int kMaxFrames = 1024;
+
+    int frames = 32;
     int socket_frames = 4;  ///< GigE Vision: frames in the receive buffer of the socket
 };
 

@@ -23,4 +23,11 @@ struct CameraFeature {
     std::string text = {};                      ///< one line from the camera; empty: none
 };
 
+/// The features of the camera at `address` whose names match `pattern`: a part of the name, or the
+/// name with the wildcards * ? []; upper and lower case are equal, an empty pattern matches all.
+/// \throws InputError if there is no such address, its kind of camera has no features, or none
+/// matches; DeviceError if the camera does not answer.
+[[nodiscard]] std::vector<CameraFeature> camera_features(const std::string& address,
+                                                         const std::string& pattern);
+
 }  // namespace stipple

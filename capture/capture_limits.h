@@ -10,7 +10,7 @@ struct CaptureLimits {
     std::uint64_t frames = 0;
     double seconds = 0;
 
-    /// Whether so many frames in so many seconds are enough.
+    /// True if a limit is reached.
     [[nodiscard]] bool reached(std::uint64_t taken_frames, double elapsed_s) const {
         return (frames > 0 && taken_frames >= frames) || (seconds > 0 && elapsed_s >= seconds);
     }

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "capture/camera_reopener.h"
+#include "capture/camera_timing.h"
+#include "capture/frame_gap.h"
 #include "capture/frame_ids.h"
 
 namespace stipple {
@@ -26,30 +27,6 @@ constexpr milliseconds kCountEvery{200};
 /// From one frame to the next, by which a counter that began anew is known.
 constexpr std::uint64_t kMaxSteps = 8;
 
-/// A feature as a number; 0 if there is none.
-double number_of(const CameraDescription& camera, const char* feature) {
-    const auto found = camera.features.find(feature);
-    if (found == camera.features.end()) return 0;
-    double value = 0;
-    const std::string& text = found->second;
-    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-    return end.ec == std::errc() && value > 0 ? value : 0;
-}
-
-/// What the settings say of the frame period; 0 if they do not.
-nanoseconds nominal_period(const CameraDescription& camera) {
-    const double rate = number_of(camera, "AcquisitionFrameRate");
-    const double exposure_us =
-        std::max(number_of(camera, "ExposureTime"), number_of(camera, "ExposureTimeAbs"));
-    const double seconds = std::max(rate > 0 ? 1 / rate : 0, exposure_us * 1e-6);
-    return nanoseconds(static_cast<std::int64_t>(std::min(seconds, 3600.0) * 1e9));
-}
-
-bool waits_for_triggers(const CameraDescription& camera) {
-    const auto mode = camera.features.find("TriggerMode");
-    return mode != camera.features.end() && mode->second == "On";
-}
-
 TransportCounts sum(TransportCounts a, const TransportCounts& b) {
     a.underruns += b.underruns;
     a.packets_resent += b.packets_resent;
@@ -60,41 +37,10 @@ TransportCounts sum(TransportCounts a, const TransportCounts& b) {
     return a;
 }
 
-/// Who lost frames, by what the transport counted before and after.
-GapCause cause_of(const TransportCounts& before, const TransportCounts& after,
-                  bool incomplete_frames) {
-    if (after.underruns > before.underruns) return GapCause::kHostUnderrun;
-    if (after.socket_drops > before.socket_drops || after.link_faults > before.link_faults)
-        return GapCause::kTransport;
-    // Packets of frames that did arrive, incomplete, explain no others.
-    if (after.packets_missing > before.packets_missing && !incomplete_frames)
-        return GapCause::kTransport;
-    return GapCause::kDevice;
-}
-
 /// Whether both are stamped, by the same clock.
 bool have_stamps(const FrameRecord& a, const FrameRecord& b) {
     return a.stamp_source == b.stamp_source && a.stamp_source != StampSource::kNone;
 }
-
-/// Frames that are missing before the next one.
-struct Gap {
-    std::array<std::uint64_t, kGapCauseNames.size()> lost{};
-
-    void add(GapCause cause, std::uint64_t frames) {
-        lost[static_cast<std::size_t>(cause)] += frames;
-    }
-    [[nodiscard]] std::uint64_t total() const {
-        std::uint64_t frames = 0;
-        for (const std::uint64_t one : lost) frames += one;
-        return frames;
-    }
-    /// Of most of them.
-    [[nodiscard]] GapCause cause() const {
-        const auto most = std::max_element(lost.begin(), lost.end());
-        return *most == 0 ? GapCause::kNone : static_cast<GapCause>(most - lost.begin());
-    }
-};
 
 }  // namespace
 
@@ -109,7 +55,7 @@ struct CaptureSession::Impl {
     FrameIds ids{2};
     std::uint32_t epoch = 0;
     SessionTotals totals;
-    Gap gap;
+    FrameGap gap;
     bool reconnected = false;               ///< no frame since
     std::optional<CapturedFrame> doubtful;  ///< a repeat, or the first of a counter that began anew
     std::optional<CapturedFrame> coming;    ///< that showed it was the latter
@@ -120,6 +66,7 @@ struct CaptureSession::Impl {
     bool incomplete_since = false;  ///< an incomplete frame since `counted_at`
 
     Clock::time_point last_sign;             ///< start, or the last frame that was no repeat
+    nanoseconds silence{};                   ///< time of waiting in vain since then
     nanoseconds period_before{};             ///< of the epoch before
     std::optional<FrameRecord> first_frame;  ///< of this epoch
     std::optional<FrameRecord> last_frame;
@@ -133,7 +80,10 @@ struct CaptureSession::Impl {
     void count_transport(bool now);
     void count_last_underruns();
     void number(FrameRecord& record);
+    [[nodiscard]] std::uint64_t lost_at_start(const FrameRecord& record);
     void note_reconnection(const FrameRecord& record);
+    void count_lost(std::uint64_t frames);
+    void count_lost(GapCause cause, std::uint64_t frames);
     [[nodiscard]] bool begins_anew(const FrameRecord& record) const;
     [[nodiscard]] bool follows_doubtful(const FrameRecord& record) const;
     void drop_doubtful();
@@ -149,6 +99,7 @@ void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
     layout = camera->layout();
     counted = {};
     counted_at = last_sign = Clock::now();
+    silence = {};
     incomplete_since = false;
     first_frame.reset();
 }
@@ -222,14 +173,37 @@ void CaptureSession::Impl::note_reconnection(const FrameRecord& record) {
         missed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, silent_ns / period_ns - 1));
     }
     ids.restart(camera->wire_id_period(), missed);
-    gap.add(GapCause::kReconnect, missed);
-    totals.lost[static_cast<std::size_t>(GapCause::kReconnect)] += missed;
+    count_lost(GapCause::kReconnect, missed);
     reconnected = false;
 }
 
+/// Before the first frame of the session. Its id counts them.
+std::uint64_t CaptureSession::Impl::lost_at_start(const FrameRecord& record) {
+    const auto start = camera->stream_start();
+    const std::uint64_t frames = start ? frames_before_first(description, *start, record) : 0;
+    ids.restart(camera->wire_id_period(), frames);
+    return frames;
+}
+
+/// For the cause that the transport has counted since the last look.
+void CaptureSession::Impl::count_lost(std::uint64_t frames) {
+    const TransportCounts before = counted;
+    const bool explained = incomplete_since;
+    count_transport(true);
+    count_lost(cause_of(before, counted, explained), frames);
+}
+
+void CaptureSession::Impl::count_lost(GapCause cause, std::uint64_t frames) {
+    gap.add(cause, frames);
+    totals.lost[static_cast<std::size_t>(cause)] += frames;
+}
+
 void CaptureSession::Impl::number(FrameRecord& record) {
+    std::uint64_t lost = 0;
     if (reconnected) {
         note_reconnection(record);
+    } else if (!last_frame) {
+        lost = lost_at_start(record);
     } else if (first_frame && record.layout != layout) {
         ++epoch;
     }
@@ -238,13 +212,9 @@ void CaptureSession::Impl::number(FrameRecord& record) {
     if (step.restarted) ++epoch;
     record.id = step.id;
     record.epoch = epoch;
-    if (step.lost > 0) {
-        const TransportCounts before = counted;
-        const bool explained = incomplete_since;
-        count_transport(true);
-        const GapCause cause = cause_of(before, counted, explained);
-        gap.add(cause, step.lost);
-        totals.lost[static_cast<std::size_t>(cause)] += step.lost;
+    lost += step.lost;
+    if (lost > 0) {
+        count_lost(lost);
     } else {
         count_transport(false);
     }
@@ -294,6 +264,7 @@ SessionEvent CaptureSession::Impl::take(CapturedFrame frame) {
 SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     FrameRecord& record = frame.record;
     last_sign = Clock::now();
+    silence = {};
     number(record);
     last_frame = record;
     if (!first_frame) first_frame = record;
@@ -302,15 +273,14 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
         !complete && (options.incomplete == IncompletePolicy::kDrop ||
                       (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
     if (dropped) {
-        gap.add(GapCause::kOwnDrop, 1);
-        ++totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+        count_lost(GapCause::kQueueDrop, 1);
         return drop(std::move(frame));
     }
     if (options.incomplete == IncompletePolicy::kKeep) frame.holes.clear();
     record.lost_before = gap.total();
     record.cause = gap.cause();
     gap = {};
-    ++totals.frames;
+    if (totals.frames++ == 0) totals.missing_before_first = record.lost_before;
     if (!complete) ++totals.incomplete;
     return frame;
 }
@@ -318,30 +288,33 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
 SessionEvent CaptureSession::Impl::wait_for_frame(milliseconds timeout) {
     if (coming) return deliver(*std::exchange(coming, {}));
     const auto limit = stall_timeout();
-    const auto silent = Clock::now() - last_sign;
     if (limit) {
-        const auto left = std::chrono::ceil<milliseconds>(*limit - silent);
+        const auto left = std::chrono::ceil<milliseconds>(*limit - silence);
         timeout = std::clamp(left, milliseconds(0), std::max(timeout, milliseconds(0)));
     }
+    const auto begun = Clock::now();
     Arrival arrival = camera->wait(timeout);
+    // Where this program stood still for longer, frames may have come that it has not taken yet.
+    silence += std::min<nanoseconds>(Clock::now() - begun, timeout);
     if (auto* frame = std::get_if<CapturedFrame>(&arrival)) return take(std::move(*frame));
     if (auto* lost = std::get_if<DeviceLost>(&arrival)) {
         if (!lost->at_end && !lost->bad_file) return begin_outage(std::move(lost->reason));
         count_last_underruns();
         return std::move(*lost);
     }
-    const auto now_silent = std::chrono::ceil<milliseconds>(Clock::now() - last_sign);
-    if (limit && now_silent >= *limit)
-        return begin_outage(fmt::format("nothing came for {} ms", now_silent.count()));
+    if (limit && silence >= *limit)
+        return begin_outage(fmt::format("nothing came for {} ms",
+                                        std::chrono::ceil<milliseconds>(silence).count()));
     return NoFrame{};
 }
 
-CaptureSession::CaptureSession(Opener open, SessionOptions options)
+CaptureSession::CaptureSession(Opener open, SessionOptions options, const HeldFrames& held)
     : impl_(std::make_unique<Impl>()) {
     impl_->open = std::move(open);
     impl_->options = options;
     auto camera = impl_->open();
     impl_->ids = FrameIds(camera->wire_id_period());
+    if (held) impl_->pool.reserve(held(*camera) + kOwnFrames, camera->layout().payload_bytes());
     camera->start();
     impl_->take_over(std::move(camera));
 }
@@ -354,10 +327,6 @@ SessionEvent CaptureSession::next(std::chrono::milliseconds timeout) {
     return impl_->camera ? impl_->wait_for_frame(timeout) : impl_->wait_for_camera(timeout);
 }
 
-void CaptureSession::reserve(std::size_t frames) {
-    impl_->pool.reserve(frames + kOwnFrames, impl_->layout.payload_bytes());
-}
-
 void CaptureSession::give_back(std::vector<std::uint8_t>&& payload) {
     impl_->pool.give_back(std::move(payload));
 }
@@ -366,10 +335,9 @@ std::uint64_t CaptureSession::late_allocations() const {
     return impl_->pool.misses();
 }
 
-void CaptureSession::count_own_drop(const FrameRecord& record) noexcept {
+void CaptureSession::count_queue_drop(const FrameRecord& record) noexcept {
     impl_->gap.add(record.cause, record.lost_before);
-    impl_->gap.add(GapCause::kOwnDrop, 1);
-    ++impl_->totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)];
+    impl_->count_lost(GapCause::kQueueDrop, 1);
     --impl_->totals.frames;
     if (record.status != FrameStatus::kComplete) --impl_->totals.incomplete;
 }

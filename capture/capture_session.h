@@ -11,21 +11,28 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "core/named_value.h"
 
 namespace stipple {
 
 /// Treatment of incomplete frames. Missing bytes are zero in any case.
 enum class IncompletePolicy : std::uint8_t {
-    kDrop,  ///< dropped, counted as kOwnDrop
+    kDrop,  ///< dropped, counted as kQueueDrop
     kKeep,  ///< delivered without the list of holes
     kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };
+
+inline constexpr auto kIncompletePolicies =
+    std::to_array<NamedValue<IncompletePolicy>>({{"drop", IncompletePolicy::kDrop},
+                                                 {"keep", IncompletePolicy::kKeep},
+                                                 {"mask", IncompletePolicy::kMask}});
 
 struct SessionOptions {
     IncompletePolicy incomplete = IncompletePolicy::kMask;
     /// A camera that is silent for this time and for five frame periods is opened again. 0: no
     /// limit. Cameras with TriggerMode On may be silent.
     std::chrono::milliseconds stall{250};
+    static constexpr std::chrono::milliseconds kMaxStall{3'600'000};
     std::chrono::milliseconds first_frame{2000};  ///< the limit between start and first frame
     bool reconnect = true;
 };
@@ -35,11 +42,12 @@ struct SessionTotals {
     std::uint64_t frames = 0;      ///< delivered
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
     std::array<std::uint64_t, kGapCauseNames.size()> lost{};  ///< missing, by GapCause
-    std::uint64_t outages = 0;   ///< number of times that the camera was gone
-    std::uint64_t repeated = 0;  ///< complete frames that came a second time, left out
+    std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
+    std::uint64_t outages = 0;               ///< number of times that the camera was lost
+    std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out
 };
 
-/// The camera is gone; the session is opening it again.
+/// The camera is lost; the session is reopening it.
 struct Outage {
     std::string reason;
 };
@@ -53,12 +61,13 @@ struct Recovery {
 using SessionEvent = std::variant<CapturedFrame, NoFrame, Outage, Recovery, DeviceLost>;
 
 /// Frames of a camera with complete accounting: ids unwrapped to 64 bits, gaps with the number and
-/// cause of lost frames, and reconnection when the camera is gone. For consecutive delivered frames
+/// cause of lost frames, and reconnection when the camera is lost. For consecutive delivered frames
 /// a and b, b.id = a.id + 1 + b.lost_before.
 ///
 /// The counters of the transport decide the cause of a gap, in this order: no free buffer
 /// (kHostUnderrun), losses of network or socket (kTransport), none (kDevice). The number of frames
-/// lost while the camera was gone is estimated from the earlier frame period.
+/// lost during an outage is estimated from the earlier frame period. Frames lost before the first
+/// one that arrives count too, if its id tells (frames_before_first); its id is their number.
 /// A frame with an old id is the first of a restarted counter if its stamp is newer, or if the next
 /// frame follows it. Otherwise it is a repeat, and left out.
 /// Used from one thread; other threads open and close the camera.
@@ -67,8 +76,12 @@ class CaptureSession {
     /// Opens the camera with its settings. Called again after an outage, from another thread.
     using Opener = std::function<std::unique_ptr<Camera>()>;
 
-    /// Opens and starts. \throws InputError, DeviceError.
-    CaptureSession(Opener open, SessionOptions options);
+    /// How many frames of an open camera the caller holds at a time, and gives back.
+    using HeldFrames = std::function<std::size_t(const Camera&)>;
+
+    /// Opens and starts. In between, memory for the payloads of `held` frames is allocated: no
+    /// later frame of this layout needs more. \throws InputError, DeviceError, and as `held`.
+    CaptureSession(Opener open, SessionOptions options, const HeldFrames& held = {});
     ~CaptureSession();
     CaptureSession(const CaptureSession&) = delete;
     CaptureSession& operator=(const CaptureSession&) = delete;
@@ -79,16 +92,13 @@ class CaptureSession {
     /// Frames that the session itself holds at most: the one being received, and two whose order
     /// is in doubt.
     static constexpr std::size_t kOwnFrames = 3;
-    /// Makes memory for the payloads of all later frames of this layout, if the caller holds up to
-    /// `frames` of them at a time and gives them back. Called once, before the first `next`.
-    void reserve(std::size_t frames);
     /// The memory of a payload is free for a later frame. Any thread may call it.
     void give_back(std::vector<std::uint8_t>&& payload);
-    /// Number of payloads that the memory of `reserve` was not enough for.
+    /// Number of payloads that this memory was not enough for.
     [[nodiscard]] std::uint64_t late_allocations() const;
 
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.
-    void count_own_drop(const FrameRecord& record) noexcept;
+    void count_queue_drop(const FrameRecord& record) noexcept;
 
     /// Of the camera when it was last opened.
     [[nodiscard]] const CameraDescription& description() const;

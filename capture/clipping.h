@@ -7,8 +7,8 @@
 
 namespace stipple {
 
-/// What of a frame of light a pixel format cannot hold, in which 1.0 is full scale; empty if it
-/// holds it all. `name` is the footage's.
+/// Fraction of the light of a frame that a pixel format clips, as a warning; empty if it clips
+/// none. Light 1.0 is its full scale. `name` is that of the footage.
 [[nodiscard]] std::string clipping_text(const std::string& name, std::span<const float> light,
                                         const PixelFormat& format);
 

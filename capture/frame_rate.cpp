@@ -12,13 +12,19 @@ std::int64_t stamp_ns(const FrameRecord& record) {
 }  // namespace
 
 void FrameRate::add(const FrameRecord& record) {
-    if (!first_ || first_->epoch != record.epoch || first_->stamp_source != record.stamp_source)
-        first_ = record;
+    const bool is_new = !first_ || first_->epoch != record.epoch ||
+                        first_->stamp_source != record.stamp_source || record.id < last_.id ||
+                        stamp_ns(record) < stamp_ns(last_);
+    if (is_new) first_ = record;
     last_ = record;
 }
 
 double FrameRate::seconds() const {
-    return first_ ? static_cast<double>(stamp_ns(last_) - stamp_ns(*first_)) * 1e-9 : 0;
+    // Unsigned: stamps of a damaged file may be any numbers.
+    return first_ ? static_cast<double>(static_cast<std::uint64_t>(stamp_ns(last_)) -
+                                        static_cast<std::uint64_t>(stamp_ns(*first_))) *
+                        1e-9
+                  : 0;
 }
 
 std::uint64_t FrameRate::periods() const {

@@ -9,7 +9,7 @@ namespace stipple {
 
 /// Frame rate of a camera, with lost frames counted: number of periods between the first and the
 /// last frame over the time between them, by device stamps, or by arrival if there are none. An
-/// outage restarts the measurement.
+/// outage restarts the measurement, and so does an id or a stamp that goes back.
 class FrameRate {
   public:
     void add(const FrameRecord& record);

@@ -37,11 +37,11 @@ enum class GapCause : std::uint8_t {
     kDevice = 1,        ///< ids that the camera itself left out
     kTransport = 2,     ///< lost between camera and host
     kHostUnderrun = 3,  ///< no buffer was free
-    kOwnDrop = 4,       ///< our queue was full, or the policy drops incomplete frames
-    kReconnect = 5,     ///< the camera was gone; how many were lost is not known from its ids
+    kQueueDrop = 4,     ///< our queue was full, or the policy drops incomplete frames
+    kReconnect = 5,     ///< the camera was lost; its ids do not tell the number of frames
 };
 inline constexpr std::array<std::string_view, 6> kGapCauseNames{
-    "none", "device", "transport", "host_underrun", "own_drop", "reconnect"};
+    "none", "device", "transport", "host_underrun", "queue_drop", "reconnect"};
 
 /// Which clock gave a device stamp.
 enum class StampSource : std::uint8_t {
@@ -54,10 +54,10 @@ enum class StampSource : std::uint8_t {
 
 /// What is known of a frame beside its pixels.
 struct FrameRecord {
-    std::uint64_t id = 0;           ///< unwrapped, counts from the session's first frame on
+    std::uint64_t id = 0;           ///< unwrapped; 0 is the first frame that the session knows of
     std::uint64_t wire_id = 0;      ///< as the device sent it
     std::uint32_t epoch = 0;        ///< grows with each reconnection and each change of the layout
-    std::uint64_t lost_before = 0;  ///< frames missing between the one before and this one
+    std::uint64_t lost_before = 0;  ///< frames missing since the one before, or since the start
     GapCause cause = GapCause::kNone;
     FrameStatus status = FrameStatus::kComplete;
     StampSource stamp_source = StampSource::kNone;

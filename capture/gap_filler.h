@@ -10,7 +10,7 @@ namespace stipple {
 /// Frames of a camera in slots of equal length. Each used frame has one slot. So that each slot
 /// keeps its time, a missing frame and a frame that is not used (incomplete) have one too: there
 /// the used frame before it is held. Before the first used frame nothing can be held, so there
-/// are no such slots.
+/// are no such slots: slot 0 has the time of the first used frame.
 class GapFiller {
   public:
     /// What lies between a frame and the one before it.

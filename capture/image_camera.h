@@ -9,13 +9,13 @@
 namespace stipple {
 
 /// Opens the camera for its images. \throws InputError, DeviceError as open_camera; InputError if
-/// what it sends is a coded stream, whose payloads only look like images.
+/// it sends a coded stream, whose payloads only look like images.
 [[nodiscard]] std::unique_ptr<Camera> open_image_camera(const std::string& address,
                                                         const CameraSettings& settings,
                                                         const CameraBuffers& buffers);
 
-/// What a session may take for a fault: a replay has an end, and pauses where the recording has
-/// them.
+/// Session options without the stall timeout for a replay: a replay has an end, and the pauses of
+/// its recording.
 [[nodiscard]] SessionOptions session_options(const std::string& address, SessionOptions options);
 
 }  // namespace stipple

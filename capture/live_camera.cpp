@@ -1,33 +1,31 @@
 #include "capture/live_camera.h"
 
-#include <algorithm>
 #include <utility>
-
-#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{50};
-/// Beside those that wait: of the session, and the one in use.
-constexpr std::size_t kOtherFrames = CaptureSession::kOwnFrames + 1;
-
-/// As many of the `wanted` frames as `max_memory` has room for, but at least one.
-std::size_t waiting_frames(std::size_t wanted, const FrameLayout& layout) {
-    const std::size_t room = max_memory() / std::max<std::size_t>(layout.payload_bytes(), 1);
-    return std::max<std::size_t>(std::min(wanted, room - std::min(room, kOtherFrames)), 1);
-}
 
 }  // namespace
 
 LiveCamera::LiveCamera(CaptureSession::Opener open, LiveCameraOptions options)
     : options_(std::move(options)),
-      session_(std::move(open), options_.session),
+      session_(std::move(open), options_.session,
+               [this](const Camera& camera) { return plan_queue(camera); }),
       layout_(session_.layout()),
       description_(session_.description()),
-      frames_(waiting_frames(options_.waiting_frames, layout_), max_memory()) {
-    session_.reserve(frames_.max_frames() + 1);
+      frames_(waiting_.frames, waiting_.bytes) {
+    if (!short_queue_.empty()) description_.warnings.push_back(short_queue_);
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+/// Before it starts. Returns the frames that wait, and the one in use.
+std::size_t LiveCamera::plan_queue(const Camera& camera) {
+    const std::size_t wanted = options_.waiting_frames;
+    waiting_ = waiting_frames(camera, {.frames = wanted});
+    if (waiting_.frames < wanted) short_queue_ = short_queue_text(camera, waiting_.frames, wanted);
+    return waiting_.frames + 1;
 }
 
 LiveCamera::~LiveCamera() {
@@ -59,7 +57,7 @@ void LiveCamera::run(const std::stop_token& stop) noexcept {
 void LiveCamera::take(SessionEvent event) {
     if (auto* const frame = std::get_if<CapturedFrame>(&event)) {
         if (begun_ && frames_.push(std::move(*frame))) return;
-        if (begun_) session_.count_own_drop(frame->record);
+        if (begun_) session_.count_queue_drop(frame->record);
         session_.give_back(std::move(frame->payload));
     } else if (!std::holds_alternative<NoFrame>(event)) {
         options_.tell(event);

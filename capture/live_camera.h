@@ -8,29 +8,33 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 #include "capture/capture_session.h"
 #include "capture/frame_queue.h"
+#include "capture/waiting_frames.h"
 
 namespace stipple {
 
 struct LiveCameraOptions {
     SessionOptions session;
-    std::size_t waiting_frames = 64;
+    static constexpr std::size_t kMaxWaitingFrames = 4096;
+    std::size_t waiting_frames = 64;  ///< 1 to kMaxWaitingFrames
     bool from_start = false;  ///< replay: frames wait for `begin`, so that the first one is used
     /// Called for outages, recoveries and the end, by the thread that receives the frames.
     std::function<void(const SessionEvent&)> tell;
 };
 
 /// A camera with a thread that receives its frames, and a queue of `waiting_frames` frames, fewer
-/// if `max_memory` demands it. A full queue drops frames; the record of the next frame has their
-/// number (kOwnDrop). The memory of all frames is allocated at the start, and frames are moved, not
-/// copied, so the resident memory does not depend on how many wait.
+/// if `max_memory` demands it (waiting_frames); then the description has a warning. A full queue
+/// drops frames; the record of the next frame has their number (kQueueDrop). The memory of all
+/// frames is allocated at the start, and frames are moved, not copied, so the resident memory does
+/// not depend on how many wait.
 class LiveCamera {
   public:
     /// Opens and starts the camera. Frames before `begin` are discarded, except with `from_start`.
-    /// \throws InputError, DeviceError.
+    /// \throws InputError, DeviceError; InputError if `max_memory` has no room for one frame.
     LiveCamera(CaptureSession::Opener open, LiveCameraOptions options);
     ~LiveCamera();
     LiveCamera(const LiveCamera&) = delete;
@@ -58,11 +62,14 @@ class LiveCamera {
     [[nodiscard]] TransportCounts transport() const { return session_.transport(); }
 
   private:
+    [[nodiscard]] std::size_t plan_queue(const Camera& camera);
     void run(const std::stop_token& stop) noexcept;
     void take(SessionEvent event);
 
     LiveCameraOptions options_;
-    CaptureSession session_;
+    WaitingFrames waiting_;
+    std::string short_queue_;  ///< a warning; empty if it has the wanted length
+    CaptureSession session_;   ///< behind what is planned when it opens the camera
     FrameLayout layout_;
     CameraDescription description_;
     FrameQueue frames_;

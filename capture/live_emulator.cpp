@@ -19,8 +19,8 @@ constexpr std::chrono::milliseconds kPollInterval{50};
 
 std::string left_out_text(const std::string& address, const LeftOut& left_out) {
     return fmt::format(
-        "{}: {} frames are missing before a frame, too many beside those that came: the frame "
-        "before stands in for {} of them, so slots from {} on come too early",
+        "{}: {} frames are missing before a frame, too many in proportion to those that came: the "
+        "previous frame replaces {} of them, so slots from {} on come too early",
         address, left_out.missing, left_out.held, left_out.first_slot);
 }
 
@@ -35,13 +35,13 @@ LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecord
     static_cast<void>(Emulator(recorder_.setup()).expose(light_));
 }
 
-LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
+LiveEmulation LiveEmulator::run(const ProgressCallback& progress) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     CapturedFrame frame;
     camera_.begin();
     try {
-        while (goes_on(result_) && !result_.end &&
+        while (progress(result_) && !result_.end &&
                !options_.limits.reached(result_.latencies.count(), elapsed_s())) {
             if (camera_.next(frame, kPollInterval))
                 take(frame);
@@ -53,7 +53,7 @@ LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
     }
     if (const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
         passed_s > 0)
-        result_.slots_per_s = static_cast<double>(recorder_.stats().slots - 1) / passed_s;
+        result_.slots_per_second = static_cast<double>(recorder_.stats().slots - 1) / passed_s;
     return std::move(result_);
 }
 
@@ -61,8 +61,8 @@ LiveEmulation LiveEmulator::run(const GoesOn& goes_on) {
 /// says of them has no limit.
 std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
     const auto frames = static_cast<std::int64_t>(result_.latencies.count()) + 1;
-    const auto most = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
-    const std::uint64_t held = std::min(lost, most - std::min(most, result_.held_slots));
+    const auto max_held = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
+    const std::uint64_t held = std::min(lost, max_held - std::min(max_held, result_.held_slots));
     if (held < lost && result_.unheld_slots == 0 && options_.tell)
         options_.tell({lost, held, recorder_.stats().slots + static_cast<std::int64_t>(held)});
     result_.unheld_slots += lost - held;
@@ -72,8 +72,11 @@ std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
 void LiveEmulator::hold_missing(const FrameRecord& record) {
     const bool complete = record.status == FrameStatus::kComplete;
     const GapFiller::Gap gap = filler_.next(record, complete);
-    if (gap.held == 0) return;
     const std::uint64_t incomplete = complete ? 0 : 1;
+    if (gap.held == 0) {  // no slot yet, or nothing is missing
+        result_.totals.missing_before_first += gap.lost + incomplete;
+        return;
+    }
     const std::uint64_t slots = lost_to_hold(gap.lost) + incomplete;
     for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
     result_.held_slots += slots;

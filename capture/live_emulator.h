@@ -18,14 +18,14 @@
 
 namespace stipple {
 
-/// Frames that were missing and that nothing stands in for: too many beside those that came.
+/// Missing frames that were not replaced: too many in proportion to those that came.
 struct LeftOut {
     std::uint64_t missing = 0;    ///< before one frame
     std::uint64_t held = 0;       ///< of these
     std::int64_t first_slot = 0;  ///< from which on slots come too early
 };
 
-/// The same as a warning; `address` is that of the camera.
+/// Text of a warning about it; `address` is that of the camera.
 [[nodiscard]] std::string left_out_text(const std::string& address, const LeftOut& left_out);
 
 struct LiveEmulatorOptions {
@@ -47,32 +47,32 @@ struct LateSlot {
 /// What has become of a camera's frames.
 struct LiveEmulation {
     DurationHistogram latencies;  ///< from frame in to packets out, of each whole frame
-    SessionTotals totals;         ///< from the first slot to the last
+    SessionTotals totals;         ///< from the first slot to the last; missing_before_first apart
     FrameRate rate;
-    std::uint64_t held_slots = 0;    ///< in which the frame before stands in
-    std::uint64_t unheld_slots = 0;  ///< left out
+    std::uint64_t held_slots = 0;    ///< repetitions of the previous frame
+    std::uint64_t unheld_slots = 0;  ///< missing and not replaced
     std::uint64_t late_slots = 0;
-    std::vector<LateSlot> late;         ///< the first 1000
-    std::optional<double> slots_per_s;  ///< once it has ended; nothing of a single slot
-    std::optional<DeviceLost> end;      ///< of the frames
-    std::exception_ptr failure;         ///< of the disk (DeviceError), or no memory
+    std::vector<LateSlot> late;              ///< the first 1000
+    std::optional<double> slots_per_second;  ///< once it has ended; nothing of a single slot
+    std::optional<DeviceLost> end;           ///< of the frames
+    std::exception_ptr failure;              ///< of the disk (DeviceError), or no memory
 };
 
 /// A camera's frames through the emulated sensor as they come, a slot each. Where frames are
-/// missing or incomplete, the one before stands in, so that each slot keeps its time.
+/// missing or incomplete, the previous one is repeated, so that each slot keeps its time.
 class LiveEmulator {
   public:
     /// Asked before each wait for a frame, every 50 ms at least; false ends the emulation.
-    using GoesOn = std::function<bool(const LiveEmulation&)>;
+    using ProgressCallback = std::function<bool(const LiveEmulation&)>;
 
     /// `camera` and `recorder` must outlive it; `to_light` is made for the camera's layout, the
     /// recorder's setup for its light.
     LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
                  LiveEmulatorOptions options);
 
-    /// Takes frames until a limit is reached, `goes_on` says no or the camera is lost. The stream
+    /// Takes frames until a limit is reached, `progress` says no or the camera is lost. The stream
     /// is the caller's to finish. Called once.
-    [[nodiscard]] LiveEmulation run(const GoesOn& goes_on);
+    [[nodiscard]] LiveEmulation run(const ProgressCallback& progress);
 
   private:
     void take(const CapturedFrame& frame);

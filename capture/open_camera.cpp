@@ -9,8 +9,11 @@ namespace stipple {
 
 std::unique_ptr<Camera> open_camera(const std::string& address, const CameraSettings& settings,
                                     const CameraBuffers& buffers) {
-    if (buffers.frames < 2 || buffers.frames > 1024)
-        throw InputError("buffers", fmt::format("{} is outside 2..1024", buffers.frames));
+    constexpr int kMin = CameraBuffers::kMinFrames;
+    constexpr int kMax = CameraBuffers::kMaxFrames;
+    if (buffers.frames < kMin || buffers.frames > kMax)
+        throw InputError("buffers",
+                         fmt::format("{} is outside {}..{}", buffers.frames, kMin, kMax));
     return camera_kind(address).open(address, settings, buffers);
 }
 

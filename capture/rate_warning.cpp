@@ -52,7 +52,7 @@ std::string video_rate_warning(const std::string& file, double frames_hz,
                                const SensorParams& sensor) {
     if (agree(frames_hz, sensor)) return {};
     return fmt::format(
-        "{}: has {:.4g} frames/s, but {}: what moves is {:.3g} times as fast in the stream. "
+        "{}: has {:.4g} frames/s, but {}: motion in the stream is {:.3g}x as fast. "
         "--set sensor.slot_us={:.5g} keeps the speed",
         file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
 }
@@ -60,8 +60,8 @@ std::string video_rate_warning(const std::string& file, double frames_hz,
 std::string exposure_warning(const std::string& file, double exposure_us,
                              const SensorParams& sensor) {
     if (exposure_us <= (1 + kTolerance) * sensor.slot_us) return {};
-    return fmt::format("{}: its frames were exposed for {:.4g} us, but {}: what moves is blurred",
-                       file, exposure_us, slot_text(sensor));
+    return fmt::format("{}: its frames were exposed for {:.4g} us, but {}: motion is blurred", file,
+                       exposure_us, slot_text(sensor));
 }
 
 }  // namespace stipple

@@ -7,21 +7,21 @@
 
 namespace stipple {
 
-// Warnings that the frame rate of footage differs from the slot rate of the sensor. Empty if the
-// rates agree within 2 %, or if too few frames have come to tell.
+// Warnings that frame rate or exposure time of footage do not suit the slots of the sensor. Empty
+// if the rates agree within 2 %, or if there are too few frames for a rate.
 
-/// Of a camera at work.
+/// Warning for a running camera.
 [[nodiscard]] std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sensor);
 
-/// Of the recording of a camera.
+/// Warning for the recording of a camera.
 [[nodiscard]] std::string recording_rate_warning(const std::string& file, const FrameRate& frames,
                                                  const SensorParams& sensor);
 
-/// Of a video that has so many frames a second. It may be meant, as slow motion is.
+/// Warning for a video. The difference may be intended, as in slow motion.
 [[nodiscard]] std::string video_rate_warning(const std::string& file, double frames_hz,
                                              const SensorParams& sensor);
 
-/// Of footage whose frames were exposed for longer than a slot; else empty.
+/// Warning for footage whose exposure time is longer than a slot; else empty.
 [[nodiscard]] std::string exposure_warning(const std::string& file, double exposure_us,
                                            const SensorParams& sensor);
 

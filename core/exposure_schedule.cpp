@@ -20,12 +20,12 @@ int max_at_once(std::span<const Exposure> exposures, std::span<int> under_way) {
     const auto slot = [&](const Exposure& e, int i) -> int& {
         return under_way[(e.first_slot + index(i)) % under_way.size()];
     };
-    int most = 0;
+    int max_open = 0;
     for (const Exposure& e : exposures)
-        for (int i = 0; i < e.span_slots(); ++i) most = std::max(most, ++slot(e, i));
+        for (int i = 0; i < e.span_slots(); ++i) max_open = std::max(max_open, ++slot(e, i));
     for (const Exposure& e : exposures)
         for (int i = 0; i < e.span_slots(); ++i) slot(e, i) = 0;
-    return most;
+    return max_open;
 }
 
 /// Bits of `stores_` for one pixel: exposures in the order in which they begin, over some periods,

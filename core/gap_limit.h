@@ -12,11 +12,11 @@ namespace stipple {
 /// at least 48), because a stream may begin late. So the filled slots are in proportion to the
 /// bytes of the file, and at most 256 MB for files below 1 MB.
 [[nodiscard]] inline std::int64_t max_missing_slots(std::int64_t present, FrameShape shape) {
-    constexpr std::int64_t kFreeSlots = 1000;
-    constexpr std::int64_t kFewestFree = 48;
+    constexpr std::int64_t kMaxFreeSlots = 1000;
+    constexpr std::int64_t kMinFreeSlots = 48;
     constexpr std::int64_t kFreeSites = std::int64_t{1} << 25U;
     return 16 * present + std::clamp(kFreeSites / static_cast<std::int64_t>(shape.sites()),
-                                     kFewestFree, kFreeSlots);
+                                     kMinFreeSlots, kMaxFreeSlots);
 }
 
 }  // namespace stipple

@@ -23,41 +23,12 @@ float srgb_to_light(float value) {
     return std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
 
-struct NamedTransfer {
-    std::string_view name;
-    Transfer transfer;
-};
-
-constexpr NamedTransfer kTransfers[] = {
-    {"linear", Transfer::kLinear}, {"gamma22", Transfer::kGamma22}, {"srgb", Transfer::kSrgb},
-    {"bt709", Transfer::kBt709},   {"pq", Transfer::kPq},           {"hlg", Transfer::kHlg},
-    {"auto", Transfer::kAuto}};
-
 template <typename Curve>
 void apply(std::span<float> values, Curve curve) {
     for (float& value : values) value = value > 0.0F ? curve(value) : value;
 }
 
 }  // namespace
-
-std::string_view transfer_name(Transfer transfer) {
-    for (const NamedTransfer& named : kTransfers)
-        if (named.transfer == transfer) return named.name;
-    return {};
-}
-
-std::optional<Transfer> transfer_from_name(std::string_view name) {
-    for (const NamedTransfer& named : kTransfers)
-        if (named.name == name) return named.transfer;
-    return {};
-}
-
-std::string transfer_names() {
-    std::string names;
-    for (const NamedTransfer& named : kTransfers)
-        names.append(names.empty() ? "" : ", ").append(named.name);
-    return names;
-}
 
 FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t planes,
                          std::string_view where) {
@@ -74,7 +45,7 @@ FrameShape checked_shape(std::uint64_t rows, std::uint64_t cols, std::uint64_t p
 void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_view where,
                   std::uint64_t ratio) {
     if (bytes / ratio / 2 > file_bytes)
-        throw InputError(where, fmt::format("announces a image of {} bytes, but the file holds "
+        throw InputError(where, fmt::format("announces an image of {} bytes, but the file holds "
                                             "{}; it is damaged or ends too early",
                                             bytes, file_bytes));
 }

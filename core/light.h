@@ -1,12 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "core/geometry.h"
+#include "core/named_value.h"
 
 namespace stipple {
 
@@ -21,11 +21,19 @@ enum class Transfer {
     kAuto,     ///< the one that the file declares
 };
 
-/// The name of a transfer function on the command line and in provenance, and its inverse.
-[[nodiscard]] std::string_view transfer_name(Transfer transfer);
-[[nodiscard]] std::optional<Transfer> transfer_from_name(std::string_view name);
-/// All names, for messages: "linear, gamma22, ...".
-[[nodiscard]] std::string transfer_names();
+/// On the command line, in Python and in provenance.
+inline constexpr auto kTransfers =
+    std::to_array<NamedValue<Transfer>>({{"linear", Transfer::kLinear},
+                                         {"gamma22", Transfer::kGamma22},
+                                         {"srgb", Transfer::kSrgb},
+                                         {"bt709", Transfer::kBt709},
+                                         {"pq", Transfer::kPq},
+                                         {"hlg", Transfer::kHlg},
+                                         {"auto", Transfer::kAuto}});
+
+[[nodiscard]] constexpr std::string_view name_of(Transfer transfer) {
+    return name_in(kTransfers, transfer);
+}
 
 /// The shape of rows x cols x planes. \throws InputError at `where` unless 1 <= rows,
 /// cols <= kMaxFrameSide, planes is 1 or 3 and there are at most kMaxFrameSites.

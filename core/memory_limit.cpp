@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <string>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -68,21 +68,21 @@ std::uint64_t max_memory(std::uint64_t input_bytes) {
 
 void check_memory(std::uint64_t bytes, std::string_view where, std::string_view what,
                   std::uint64_t input_bytes) {
-    const std::uint64_t most = max_memory(input_bytes);
-    if (bytes <= most) return;
+    const std::uint64_t allowed = max_memory(input_bytes);
+    if (bytes <= allowed) return;
     const char* const whose = told_bytes > 0 ? "--max-memory says"
-                              : most == max_memory()
+                              : allowed == max_memory()
                                   ? "a run may take, a quarter of this machine's memory"
                                   : "a file of less than 1 MB may take";
     throw InputError(where,
                      fmt::format("needs {} of memory for {}, more than the {} that {}; "
                                  "--max-memory {} allows it",
-                                 text_of(bytes), what, text_of(most), whose, option_of(bytes)));
+                                 text_of(bytes), what, text_of(allowed), whose, option_of(bytes)));
 }
 
 std::uint64_t machine_memory(const fs::path& proc, const fs::path& groups) {
     const auto size = [](int name) { return static_cast<std::uint64_t>(sysconf(name)); };
-    std::uint64_t least = size(_SC_PHYS_PAGES) * size(_SC_PAGESIZE);
+    std::uint64_t bytes = size(_SC_PHYS_PAGES) * size(_SC_PAGESIZE);
     std::ifstream lists(proc / "cgroup");  // "0::/path", of version 1 "4:memory:/path"
     for (std::string line; std::getline(lists, line);) {
         const auto controllers = line.find(':');
@@ -97,11 +97,11 @@ std::uint64_t machine_memory(const fs::path& proc, const fs::path& groups) {
         // A container may see its own group as the root. Not by fs::path, which libstdc++ 12 frees
         // twice where memory runs out while it takes a path apart.
         for (std::string group = line.substr(path + 1);; group.erase(group.rfind('/'))) {
-            least = std::min(least, limit_in(root + group + name));
+            bytes = std::min(bytes, limit_in(root + group + name));
             if (group.empty()) break;
         }
     }
-    return least;
+    return bytes;
 }
 
 std::optional<std::uint64_t> parse_memory(std::string_view text) {
@@ -109,10 +109,9 @@ std::optional<std::uint64_t> parse_memory(std::string_view text) {
     const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
     if (unit == std::string_view::npos) return std::nullopt;
     text.remove_suffix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    const double bytes = number * static_cast<double>(std::uint64_t{1024} << (10 * unit));
+    const auto number = parsed_number<double>(text);
+    if (!number) return std::nullopt;
+    const double bytes = *number * static_cast<double>(std::uint64_t{1024} << (10 * unit));
     if (!(bytes >= static_cast<double>(kMiB) && bytes < 0x1p60)) return std::nullopt;
     return static_cast<std::uint64_t>(bytes);
 }

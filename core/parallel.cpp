@@ -14,8 +14,8 @@
 namespace stipple {
 namespace {
 
-/// The bodies of a loop come after its begin and before its end. TBB sees to that, and is no code
-/// that ThreadSanitizer has instrumented, so it is told.
+/// The bodies of a loop come after its beginning and before its end. TBB sees to that, and is no
+/// code that ThreadSanitizer has instrumented, so it is told.
 class LoopOrder {
 #ifdef STIPPLE_THREAD_SANITIZER
   public:
@@ -35,7 +35,7 @@ class LoopOrder {
     }
 
   private:
-    double begin_ = 0;  ///< their addresses stand for the begin and the end
+    double begin_ = 0;  ///< their addresses stand for the beginning and the end
     double end_ = 0;
 #else
   public:

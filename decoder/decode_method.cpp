@@ -18,12 +18,12 @@ namespace stipple {
 namespace {
 
 constexpr NamedDecodeMethod kMethods[] = {
-    {"naive", DecodeMethod::kNaive, "each pixel holds its nearest samples: at once, noisy",
-     kMaxCoreSites, 13, [](Config&, DecodeOptions&) {},
+    {"naive", DecodeMethod::kNaive, "nearest samples of each pixel: fast and noisy", kMaxCoreSites,
+     14, [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) -> std::optional<FluxVideo> {
          return nearest_samples(block.measurements);
      }},
-    {"fast", DecodeMethod::kFast, "motion-compensated total variation", kMaxCoreSites, 48,
+    {"fast", DecodeMethod::kFast, "motion-compensated total variation", kMaxCoreSites, 58,
      [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
@@ -33,7 +33,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      }},
     {"best", DecodeMethod::kBest,
      "collaborative filter of similar patches: slower, 2 to 3 dB better than fast", kMaxCoreSites,
-     48, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
+     58, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_collaborative(task.measurements, task.noise, task.options.best,
@@ -42,7 +42,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      }},
     {"portz2013", DecodeMethod::kPortz2013,
      "the method of the paper (Portz, Zhang, Jiang, ICCP 2013), in two stages", kPortz2013CoreSites,
-     400, [](Config& config, DecodeOptions& options) { read_options(config, options.portz2013); },
+     490, [](Config& config, DecodeOptions& options) { read_options(config, options.portz2013); },
      [](const BlockTask& block) {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
                                  block.progress);

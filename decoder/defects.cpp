@@ -12,8 +12,8 @@
 namespace stipple {
 namespace {
 
-constexpr int kFewestSamples = 4;
-constexpr int kFewestNeighbours = 3;
+constexpr int kMinSamples = 4;
+constexpr int kMinNeighbours = 3;
 constexpr int kMaxUnsound = 2;
 constexpr float kHotTimes = 3;         ///< brighter than every neighbour
 constexpr float kDarkErrors = 3;       ///< standard errors that no light may differ from 0
@@ -87,14 +87,14 @@ Surroundings around(const std::vector<SiteSum>& plane, FrameShape shape, int row
 }
 
 bool is_stuck(const SiteSum& site, const Surroundings& beside) {
-    if (site.samples < kFewestSamples || beside.with_samples < kFewestNeighbours) return false;
+    if (site.samples < kMinSamples || beside.with_samples < kMinNeighbours) return false;
     if (beside.sound < beside.with_samples - kMaxUnsound) return false;
     if (site.all_saturated()) return site.at_least > kHotTimes * beside.brightest;
     const float expected = beside.darkest * static_cast<float>(site.open_slots);
     return site.all_dark() && expected > kExpectedErrors * site.error();
 }
 
-void unobserve(Measurements& m, std::size_t site) {
+void mask_site(Measurements& m, std::size_t site) {
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t i = index(slot) * m.shape.sites() + site;
         m.state[i] = 0;
@@ -123,7 +123,7 @@ std::size_t mask_defects(Measurements& measurements) {
                 const SiteSum& site = plane[pixel];
                 if (site.samples == 0 || site.sound()) continue;
                 if (!is_stuck(site, around(plane, shape, row, col))) continue;
-                unobserve(measurements, begin + pixel);
+                mask_site(measurements, begin + pixel);
                 ++found;
             }
     }

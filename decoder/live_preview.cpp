@@ -27,7 +27,7 @@ void stop_waiting_for_idle(std::thread& thread) {
     static_cast<void>(pthread_setschedparam(thread.native_handle(), SCHED_OTHER, &parameters));
 }
 
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kSlowEnd{2};
 
 /// CLOCK_MONOTONIC.
 std::int64_t now_ns() {
@@ -82,10 +82,10 @@ void LivePreview::run() {
 
 void LivePreview::show() {
     try {
-        const auto goes_on = [this](double) { return !give_up_ && options_.goes_on(); };
-        if (!goes_on(0)) return;
+        const auto keep_going = [this](double) { return !give_up_ && options_.keep_going(); };
+        if (!keep_going(0)) return;
         const auto frame =
-            decoder_.decode(first_slot_, std::span(packets_).first(packet_count_), goes_on);
+            decoder_.decode(first_slot_, std::span(packets_).first(packet_count_), keep_going);
         if (!frame) return;
         options_.show(*frame);
         ++made_;
@@ -104,7 +104,7 @@ void LivePreview::finish(const std::function<void()>& slow) {
     if (made_ + failed_ > 0) give_up_ = true;
     wake_.release();
     stop_waiting_for_idle(thread_);
-    if (!ended_.try_acquire_for(kPatience)) slow();
+    if (!ended_.try_acquire_for(kSlowEnd)) slow();
     thread_.join();
 }
 

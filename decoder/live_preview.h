@@ -18,10 +18,10 @@ struct LivePreviewOptions {
     std::function<void(const PreviewFrame&)> show;  ///< what it throws is a failure
     /// Told of a failure that is not that of the frame before.
     std::function<void(const std::string&)> tell;
-    std::function<bool()> goes_on;  ///< asked while a frame is decoded; false gives it up
+    std::function<bool()> keep_going;  ///< called while a frame is decoded; false cancels it
 };
 
-/// What has become of a preview.
+/// Figures of a preview.
 struct PreviewCounts {
     int made = 0;
     int failed = 0;
@@ -30,10 +30,10 @@ struct PreviewCounts {
     DurationHistogram delays;        ///< from the light of the slot to its frame shown
 };
 
-/// Shows what the decoder makes of a stream that is under way. A thread of idle priority decodes
-/// the newest slots; while it is busy, slots pass it by. Whoever records never waits for it: the
-/// slots are handed over without a lock, in memory that stays the recorder's. After a failure it
-/// goes on with the next frame. The options are called by the thread.
+/// Decoded preview of a live stream. A thread of idle priority decodes the newest slots; while it
+/// is busy, slots are skipped. The recorder never waits for it: the slots are handed over without a
+/// lock, in memory that stays the recorder's. After a failure it goes on with the next frame. The
+/// options are called by the thread.
 class LivePreview {
   public:
     LivePreview(PreviewDecoder decoder, LivePreviewOptions options);

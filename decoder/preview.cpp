@@ -32,8 +32,9 @@ VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options)
     const FrameShape whole = decoded_shape(header);
     VideoWindow region{.slots = std::max(kMinSlots, 2 * header.schedule.longest_span_slots()),
                        .shape = whole};
-    const double most = options.method == DecodeMethod::kNaive ? kNaiveVoxels : kFastVoxels;
-    const double scale = std::min(1.0, std::sqrt(most / static_cast<double>(region.voxels())));
+    const double max_voxels = options.method == DecodeMethod::kNaive ? kNaiveVoxels : kFastVoxels;
+    const double scale =
+        std::min(1.0, std::sqrt(max_voxels / static_cast<double>(region.voxels())));
     const auto side = [&](int all, int wanted) {
         return wanted > 0 ? std::min(wanted, all)
                           : std::max(1, static_cast<int>(std::floor(all * scale)));
@@ -47,7 +48,7 @@ VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options)
 }
 
 /// By pixel: it has samples of some plane, and all of these are saturated.
-std::vector<bool> too_bright_pixels(const Measurements& measurements) {
+std::vector<bool> saturated_pixels(const Measurements& measurements) {
     const std::size_t sites = measurements.shape.sites();
     const std::size_t pixels = measurements.shape.pixels();
     std::vector<bool> sampled(sites), told(sites);
@@ -65,9 +66,9 @@ std::vector<bool> too_bright_pixels(const Measurements& measurements) {
 
 }  // namespace
 
-double PreviewFrame::too_bright_fraction() const {
-    const auto count = std::count(too_bright.begin(), too_bright.end(), true);
-    return static_cast<double>(count) / static_cast<double>(too_bright.size());
+double PreviewFrame::saturated_fraction() const {
+    const auto count = std::count(saturated.begin(), saturated.end(), true);
+    return static_cast<double>(count) / static_cast<double>(saturated.size());
 }
 
 double PreviewFrame::mean_light() const {
@@ -86,7 +87,7 @@ std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
     PreviewFrame frame{.slot = first_slot + shown_slot(),
                        .shape = region_.shape,
                        .light = {},
-                       .too_bright = too_bright_pixels(measurements)};
+                       .saturated = saturated_pixels(measurements)};
     const auto video =
         decode_block(std::move(measurements), header_.calibration, options_of(method_), progress);
     if (!video) return std::nullopt;

@@ -18,9 +18,9 @@ namespace stipple {
 struct PreviewFrame {
     std::int64_t slot = 0;
     FrameShape shape;
-    std::vector<float> light;      ///< order (plane, row, col), units of FluxVideo
-    std::vector<bool> too_bright;  ///< by pixel: all samples of a colour are saturated
-    [[nodiscard]] double too_bright_fraction() const;
+    std::vector<float> light;     ///< order (plane, row, col), units of FluxVideo
+    std::vector<bool> saturated;  ///< by pixel: all samples of a colour are saturated
+    [[nodiscard]] double saturated_fraction() const;
     [[nodiscard]] double mean_light() const;
 };
 

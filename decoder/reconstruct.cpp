@@ -45,7 +45,7 @@ class PacketBuffer {
     void drop_below(std::int64_t slot) {
         std::erase_if(packets_, [&](const SamplePacket& packet) { return packet.slot < slot; });
     }
-    /// Slots that are known to be in the recording; all, once it has been read to its end.
+    /// Number of slots of the stream, as far as it has been read.
     [[nodiscard]] std::int64_t slots() const { return slots_; }
     [[nodiscard]] std::span<const SamplePacket> packets() const { return packets_; }
     /// Of all packets so far.
@@ -57,8 +57,9 @@ class PacketBuffer {
     void reach(std::int64_t slot) {
         if (slot <= slots_) return;
         missing_ += slot - slots_;
-        const std::int64_t most = max_missing_slots(present_, decoded_shape(reader_.header()));
-        if (!options_.fill_gaps && missing_ > most)
+        const std::int64_t max_missing =
+            max_missing_slots(present_, decoded_shape(reader_.header()));
+        if (!options_.fill_gaps && missing_ > max_missing)
             throw InputError(options_.where,
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
                                          "decode them too, give --fill-gaps",

@@ -115,7 +115,7 @@ void read_planes(Imf::InputFile& input, const std::string& where, Image& image) 
     input.readPixels(window.min.y, window.max.y);
 }
 
-/// The file of a image, in memory: OpenEXR swallows errors that occur when a file is closed.
+/// The file of an image, in memory: OpenEXR swallows errors that occur when a file is closed.
 std::string encoded(const Imf::Header& header, const Imf::FrameBuffer& planes,
                     std::string_view where) {
     // Here, as a pool that cannot be made while tasks wait for it is waited for without end.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <cstring>
@@ -14,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/parsed_number.h"
 #include "io/footage_files.h"
 
 namespace stipple {
@@ -83,11 +83,9 @@ std::optional<double> Header::number(std::string_view key) const {
     std::string value = text(key);
     if (value.empty()) return {};
     std::ranges::replace(value, 'D', 'E');  // Fortran's exponent
-    double number = 0;
-    const char* const begin = value.data() + (value.starts_with('+') ? 1 : 0);
-    const char* const end = value.data() + value.size();
-    const auto [last, error] = std::from_chars(begin, end, number);
-    if (error == std::errc() && last == end && std::isfinite(number)) return number;
+    const auto number =
+        parsed_number<double>(std::string_view(value).substr(value.starts_with('+') ? 1 : 0));
+    if (number && std::isfinite(*number)) return number;
     throw InputError(name_, fmt::format("{} is \"{}\", no number", key, text(key)));
 }
 

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -52,14 +52,6 @@ struct Step {
     std::string_view after;  ///< the number
 };
 
-std::optional<std::int64_t> whole_number(std::string_view digits) {
-    std::int64_t number = 0;
-    const auto [last, error] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (digits.empty() || error != std::errc() || last != digits.data() + digits.size()) return {};
-    return number;
-}
-
 std::optional<Step> step_between(std::string_view before, std::string_view name) {
     auto begin = static_cast<std::size_t>(std::ranges::mismatch(before, name).in1 - before.begin());
     while (begin > 0 && is_digit(name[begin - 1])) --begin;
@@ -70,8 +62,8 @@ std::optional<Step> step_between(std::string_view before, std::string_view name)
     const std::size_t end = end_of_digits(name);
     const std::size_t end_before = end_of_digits(before);
     if (name.substr(end) != before.substr(end_before)) return {};
-    const auto from = whole_number(before.substr(begin, end_before - begin));
-    const auto to = whole_number(name.substr(begin, end - begin));
+    const auto from = parsed_number<std::int64_t>(before.substr(begin, end_before - begin));
+    const auto to = parsed_number<std::int64_t>(name.substr(begin, end - begin));
     if (!from || !to) return {};
     return Step{begin, end_before - begin, *from, *to, name.substr(end)};
 }
@@ -139,7 +131,7 @@ std::optional<std::int64_t> Pattern::number_of(std::string_view name) const {
     if (!name.starts_with(before) || !name.ends_with(after)) return {};
     name.remove_prefix(before.size());
     name.remove_suffix(after.size());
-    return is_digit(name.front()) ? whole_number(name) : std::nullopt;
+    return is_digit(name.front()) ? parsed_number<std::int64_t>(name) : std::nullopt;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -63,10 +64,10 @@ class ImageSequence {
         if (next_ > 1) load(next_ - 1);
         if (image_.shape != shape_)
             throw InputError(where(),
-                             fmt::format("is {} x {} x {} (rows x columns x planes), but "
+                             fmt::format("is {} x {} x {} (width x height x planes), but "
                                          "the first frame is {} x {} x {}",
-                                         image_.shape.rows, image_.shape.cols, image_.shape.planes,
-                                         shape_.rows, shape_.cols, shape_.planes));
+                                         image_.shape.cols, image_.shape.rows, image_.shape.planes,
+                                         shape_.cols, shape_.rows, shape_.planes));
         if (image_.traits.filter != traits_.filter)
             throw InputError(where(), "has another colour filter array than the first frame");
         std::copy(image_.values.begin(), image_.values.end(), frame.begin());
@@ -141,6 +142,7 @@ struct FootageReader::Impl {
     Impl(const fs::path& path, const FootageOptions& wanted);
     [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
     void make_linear(std::span<float> light) const;
+    void multiply(std::span<float> light, const std::string& where) const;
     void warn(std::string text) {
         if (!text.empty()) warnings.push_back(std::move(text));
     }
@@ -156,7 +158,8 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         },
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
-    if (const auto* video = std::get_if<VideoReader>(&source)) traits.frames_hz = video->video_hz();
+    if (const auto* video = std::get_if<VideoReader>(&source))
+        traits.frames_hz = video->frames_hz();
     if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(path.string(),
@@ -173,8 +176,20 @@ void FootageReader::Impl::make_linear(std::span<float> light) const {
     linearise(light, transfer);
     const bool hdr = transfer == Transfer::kPq || transfer == Transfer::kHlg;
     if (hdr && traits.bt2020 && source_shape.planes == 3) bt2020_to_bt709(light);
-    if (options.scale != 1)
-        for (float& value : light) value *= static_cast<float>(options.scale);
+}
+
+/// \throws InputError if light becomes infinite.
+void FootageReader::Impl::multiply(std::span<float> light, const std::string& where) const {
+    const auto factor = static_cast<float>(options.scale);
+    bool finite = true;
+    for (float& value : light) {
+        value *= factor;
+        finite &= value <= std::numeric_limits<float>::max();
+    }
+    if (!finite)
+        throw InputError(where,
+                         fmt::format("light becomes infinite by --scale {}; give a smaller factor",
+                                     options.scale));
 }
 
 FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
@@ -198,7 +213,7 @@ std::optional<int> FootageReader::slots() const {
     return std::visit(slots_of, impl_->source);
 }
 
-std::optional<double> FootageReader::video_hz() const {
+std::optional<double> FootageReader::frames_hz() const {
     return impl_->traits.frames_hz;
 }
 
@@ -235,6 +250,7 @@ bool FootageReader::read(std::span<float> frame) {
         if (!source.read(light)) return false;
         impl_->make_linear(light);
         check_light(light, impl_->source_shape, source.where());
+        if (impl_->options.scale != 1) impl_->multiply(light, source.where());
         if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
             impl_->options.scale == 1)
             impl_->warn(brightness_warning(light, source.where()));
@@ -248,8 +264,8 @@ bool FootageReader::read(std::span<float> frame) {
     }
     if (impl_->reduces()) reduce_to_luminance(light, frame);
     if (impl_->options.max_value) {
-        const auto most = static_cast<float>(*impl_->options.max_value);
-        for (float& value : frame) value = std::min(value, most);
+        const auto max_light = static_cast<float>(*impl_->options.max_value);
+        for (float& value : frame) value = std::min(value, max_light);
     }
     return true;
 }

@@ -28,7 +28,8 @@ struct FootageOptions {
 /// divided by 255 / 65535, floating-point files are taken as they are.
 /// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
 /// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3)
-/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header.
+/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header. ReadAhead
+/// (capture/recording/read_ahead.h) reads recordings of cameras too, and in the background.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.
@@ -39,18 +40,18 @@ class FootageReader {
     FootageReader& operator=(FootageReader&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
-    /// Number of frames where the source tells; a video file may not.
+    /// Number of frames, if the source declares it; a video file may not.
     [[nodiscard]] std::optional<int> slots() const;
 
-    /// Frames a second at which a video plays or a camera took them, if the source tells.
-    [[nodiscard]] std::optional<double> video_hz() const;
-    /// Exposure time of a frame in microseconds, if the source tells.
+    /// Frame rate at which a video plays or a camera took the frames, if the source declares it.
+    [[nodiscard]] std::optional<double> frames_hz() const;
+    /// Exposure time of a frame in microseconds, if the source declares it.
     [[nodiscard]] std::optional<double> exposure_us() const;
-    /// Whose mosaic the frames are.
+    /// Colour filter array of the frames; kNone: they are no mosaic.
     [[nodiscard]] ColourFilter filter() const;
     /// Whether the numbers are no linear light by what the source declares or by its kind.
     [[nodiscard]] bool gamma_coded() const;
-    /// All that the source tells of its numbers and of the camera.
+    /// What the source declares about its numbers and the camera.
     [[nodiscard]] const SourceTraits& traits() const;
     /// What the source is: "PNG images", "video", ".cine file".
     [[nodiscard]] std::string kind() const;

@@ -29,7 +29,7 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
     const bool hdr = traits.declared == Transfer::kPq || traits.declared == Transfer::kHlg;
     if (hdr && transfer != Transfer::kAuto && transfer != traits.declared)
         warnings.push_back(fmt::format("{}: is HDR video in the curve {}: add --transfer {}", name,
-                                       traits.curve, transfer_name(*traits.declared)));
+                                       traits.curve, name_of(*traits.declared)));
     else if (traits.gamma_coded && !options.transfer)
         warnings.push_back(
             fmt::format("{}: looks gamma-coded: add --transfer srgb, or --transfer "
@@ -39,7 +39,7 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
         warnings.push_back(
             fmt::format("{}: holds floating-point numbers, which are linear light as "
                         "a rule; --transfer {} bends them",
-                        name, transfer_name(transfer)));
+                        name, name_of(transfer)));
     constexpr double kMicrosecondsASecond = 1e6;
     const double period_us = kMicrosecondsASecond / traits.frames_hz.value_or(0);
     if (traits.frames_hz && traits.exposure_us && *traits.exposure_us < period_us / 2)

@@ -61,7 +61,7 @@ float sample(std::span<const float> plane, FrameShape shape, float col, float ro
 }  // namespace
 
 std::int64_t resampled_slots(std::int64_t frames, double frames_per_slot) {
-    assert(frames_per_slot > 0);
+    assert(frames_per_slot >= kMinFramesPerSlot);
     return static_cast<std::int64_t>((static_cast<double>(frames) + kSameTime) / frames_per_slot);
 }
 
@@ -70,7 +70,9 @@ FrameResampler::FrameResampler(FrameShape shape, ResamplingOptions options, Sour
       options_(std::move(options)),
       source_(std::move(source)),
       light_(shape.sites()) {
-    assert(options_.frames_per_slot > 0);
+    assert(options_.frames_per_slot >= kMinFramesPerSlot &&
+           options_.frames_per_slot <= kMaxFramesPerSlot);
+    if (std::min(shape.rows, shape.cols) < options_.min_flow_side) options_.flow = {};
 }
 
 bool FrameResampler::have(std::int64_t index) {

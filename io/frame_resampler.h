@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -8,9 +9,15 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/named_value.h"
 #include "core/plane.h"
 
 namespace stipple {
+
+/// The least and the most frames a slot: beyond them the times of slots are no longer exact, and a
+/// frame would make more slots than anybody looks at.
+inline constexpr double kMinFramesPerSlot = 1e-4;
+inline constexpr double kMaxFramesPerSlot = 1e6;
 
 /// How footage of one frame rate becomes slots of another.
 enum class Resampling {
@@ -19,14 +26,18 @@ enum class Resampling {
     kFlow,   ///< as kBlend; where slots are shorter than frames, frames moved by optical flow
 };
 
+inline constexpr auto kResamplings = std::to_array<NamedValue<Resampling>>(
+    {{"hold", Resampling::kHold}, {"blend", Resampling::kBlend}, {"flow", Resampling::kFlow}});
+
 /// Dense motion between images: (x, y) in pixels for each pixel.
 using FlowFunction = std::function<void(PlaneView<const float> from, PlaneView<const float> to,
                                         std::span<float> flow)>;
 
 struct ResamplingOptions {
     Resampling method = Resampling::kHold;
-    double frames_per_slot = 1;  ///< above 0
+    double frames_per_slot = 1;  ///< kMinFramesPerSlot to kMaxFramesPerSlot
     FlowFunction flow = {};      ///< of kFlow; empty: frames are blended without motion
+    int min_flow_side = 0;       ///< pixels; smaller frames are blended without motion
 };
 
 /// Resamples linear light in time. Frame j is the mean light of the time [j, j + 1), slot k that of
@@ -78,7 +89,7 @@ class FrameResampler {
     std::vector<float> back_;
 };
 
-/// Slots that `frames` frames give. Precondition: frames_per_slot > 0.
+/// Slots that `frames` frames give. Precondition: frames_per_slot >= kMinFramesPerSlot.
 [[nodiscard]] std::int64_t resampled_slots(std::int64_t frames, double frames_per_slot);
 
 }  // namespace stipple

@@ -106,14 +106,14 @@ OutputKind checked_kind(const fs::path& output, FrameShape shape,
                                     static_cast<std::uint64_t>(shape.cols),
                                     static_cast<std::uint64_t>(shape.planes), output.string()));
     const VideoCoding& video = options.video;
-    if (!(video.frames_per_second >= 0.01 && video.frames_per_second <= 10000))
+    if (!(video.frames_hz >= 0.01 && video.frames_hz <= 10000))
         throw InputError(output.string(),
                          fmt::format("a playback rate of {} is outside 0.01..10000 frames per "
                                      "second",
-                                     video.frames_per_second));
+                                     video.frames_hz));
     const Format format = format_of(output);
     if (video.curve != VideoCurve::kSdr && format != Format::kVideo)
-        throw InputError(output.string(), "holds linear light; PQ and HLG are of .mp4 and .mkv");
+        throw InputError(output.string(), "holds linear light; PQ and HLG need .mp4 or .mkv");
     return format == Format::kFolder ? OutputKind::kFolder : OutputKind::kFile;
 }
 

@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-/// What a image or a video says of its numbers, and of the camera that took it.
+/// What an image or a video says of its numbers, and of the camera that took it.
 struct SourceTraits {
     bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
     bool floating = false;

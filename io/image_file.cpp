@@ -73,7 +73,7 @@ void read_image(const std::filesystem::path& file, Image& image) {
         case ImageFormat::kNone:
             break;
     }
-    throw InputError(file.string(), "is not a image that can be read; give PNG, TIFF, EXR or DNG");
+    throw InputError(file.string(), "is not an image that can be read; give PNG, TIFF, EXR or DNG");
 }
 
 void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame) {

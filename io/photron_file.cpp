@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -19,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/parsed_number.h"
 #include "io/footage_files.h"
 #include "io/pixel_unpack.h"
 
@@ -125,12 +125,11 @@ std::string_view Header::text(const Key& key) const {
 
 std::uint32_t Header::count(const Key& key) const {
     const std::string_view value = text(key);
-    std::uint32_t number = 0;
-    const auto [last, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (error != std::errc() || last != value.data() + value.size() || number == 0)
+    const auto number = parsed_number<std::uint32_t>(value);
+    if (!number || *number == 0)
         throw InputError(name_,
                          fmt::format("\"{}\" is \"{}\", no number above 0", key.name, value));
-    return number;
+    return *number;
 }
 
 std::optional<double> Header::number(const Key& key) const {
@@ -138,15 +137,10 @@ std::optional<double> Header::number(const Key& key) const {
     if (found == values_.end()) return {};
     const std::string_view value = found->second;
     const auto slash = std::min(value.find('/'), value.size());
-    const auto parsed = [](std::string_view part) {
-        double number = 0;
-        const char* const end = part.data() + part.size();
-        const auto [last, error] = std::from_chars(part.data(), end, number);
-        return error == std::errc() && last == end ? number : 0.0;
-    };
-    const double numerator = parsed(value.substr(0, slash));
+    const auto part = [](std::string_view text) { return parsed_number<double>(text).value_or(0); };
+    const double numerator = part(value.substr(0, slash));
     const double result =
-        slash == value.size() ? numerator : numerator / parsed(value.substr(slash + 1));
+        slash == value.size() ? numerator : numerator / part(value.substr(slash + 1));
     return std::isfinite(result) && result > 0 ? std::optional(result) : std::nullopt;
 }
 
@@ -171,16 +165,17 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
     const std::uint32_t stored = header.count(kStoredBits);
     const std::uint32_t depth = header.count(kDepth);
     if (!same_letters(header.text(kFormat), "mraw"))
-        throw InputError(header.name(), fmt::format("tells of files of the format \"{}\"; MRAW is "
-                                                    "read",
-                                                    header.text(kFormat)));
+        throw InputError(header.name(),
+                         fmt::format("declares the format \"{}\"; only MRAW is supported",
+                                     header.text(kFormat)));
     if (header.has(kColour) && !same_letters(header.text(kColour), "mono"))
-        throw InputError(header.name(), fmt::format("tells of colour (\"{}\"); grey is read",
-                                                    header.text(kColour)));
+        throw InputError(
+            header.name(),
+            fmt::format("declares colour (\"{}\"); only grey is supported", header.text(kColour)));
     if (stored != 8 && stored != 12 && stored != 16)
-        throw InputError(header.name(), fmt::format("tells of {} bits per pixel; 8, 12 and 16 are "
-                                                    "read",
-                                                    stored));
+        throw InputError(
+            header.name(),
+            fmt::format("declares {} bits per pixel; only 8, 12 and 16 are supported", stored));
     PixelFormat format{.name = "MRAW"};
     format.bits_per_pixel = format.significant_bits = static_cast<int>(stored);
     format.packing = stored == 12 ? Packing::kMsbPacked : Packing::kBytes;
@@ -214,9 +209,10 @@ RawVideo open_photron(const fs::path& file) {
         .slots = header.count(kFrames),
         .light_of_dn = light_table(format, 0, white_dn)};
     if (video.shape.cols * format.bits_per_pixel % 8 != 0)
-        throw InputError(header.name(), fmt::format("tells of packed rows of {} pixels, which end "
-                                                    "within a byte; they are not read",
-                                                    video.shape.cols));
+        throw InputError(header.name(),
+                         fmt::format("declares packed rows of {} pixels, which end within a byte; "
+                                     "only whole bytes are supported",
+                                     video.shape.cols));
     video.traits.bits = std::popcount(static_cast<unsigned>(white_dn));
     video.traits.white_dn = white_dn;
     video.traits.frames_hz = header.number(kRate);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/parsed_number.h"
 #include "io/pixel_unpack.h"
 
 namespace stipple {
@@ -18,15 +18,6 @@ std::string_view take_until(std::string_view& text, char separator) {
     const std::string_view part = text.substr(0, text.find(separator));
     text.remove_prefix(std::min(text.size(), part.size() + 1));
     return part;
-}
-
-template <typename Number>
-std::optional<Number> number_of(std::string_view text) {
-    Number number{};
-    const char* const end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(text.data(), end, number);
-    if (error != std::errc() || last != end) return {};
-    return number;
 }
 
 bool same_letters(std::string_view a, std::string_view b) {
@@ -59,13 +50,13 @@ void set_key(RawFormat& raw, std::string_view key, std::string_view value) {
     const std::string_view where = raw.text;
     const double full_scale = (1 << raw.format.significant_bits) - 1;
     if (key == "offset") {
-        if (const auto offset = number_of<std::uint64_t>(value)) {
+        if (const auto offset = parsed_number<std::uint64_t>(value)) {
             raw.offset = *offset;
             return;
         }
         throw InputError(where, fmt::format("offset={}: give a number of bytes", value));
     }
-    const double number = number_of<double>(value).value_or(NAN);
+    const double number = parsed_number<double>(value).value_or(NAN);
     if (key == "black") {
         if (!(number >= 0 && number < full_scale))
             throw InputError(
@@ -90,8 +81,8 @@ RawFormat parse_raw_format(std::string_view text) {
     raw.text = text;
     std::string_view rest = text;
     std::string_view size = take_until(rest, ':');
-    const auto cols = number_of<std::uint64_t>(take_until(size, 'x'));
-    const auto rows = number_of<std::uint64_t>(size);
+    const auto cols = parsed_number<std::uint64_t>(take_until(size, 'x'));
+    const auto rows = parsed_number<std::uint64_t>(size);
     if (!cols || !rows || rest.empty())
         throw InputError(text, "give columns x rows and a pixel format, such as 640x480:mono12p");
     raw.cols = *cols;

@@ -17,7 +17,7 @@ enum class HdrCodec { kHevc, kAv1 };
 struct VideoCoding {
     VideoCurve curve = VideoCurve::kSdr;
     HdrCodec codec = HdrCodec::kHevc;
-    double frames_per_second = 30;           ///< of playback
+    double frames_hz = 30;                   ///< of playback
     double cd_per_unit = kReferenceWhiteCd;  ///< luminance of light 1.0, in cd/m2
     double peak_cd = 1000;                   ///< PQ: brighter light is clipped to it
 };

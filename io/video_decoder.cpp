@@ -262,7 +262,7 @@ const AVFrame* VideoDecoder::next() {
     return &frame;
 }
 
-std::optional<double> VideoDecoder::video_hz() const {
+std::optional<double> VideoDecoder::frames_hz() const {
     constexpr double kMaxHz = 80'000;  // where a container has no rate: the tick of its time stamps
     const AVRational rate = impl_->stream->avg_frame_rate;
     if (rate.num <= 0 || rate.den <= 0 || av_q2d(rate) >= kMaxHz) return {};

@@ -29,7 +29,7 @@ class VideoDecoder {
     /// if another angle or mirroring is necessary.
     [[nodiscard]] int quarter_turns() const;
     /// Playback rate in frames per second, if the file gives it.
-    [[nodiscard]] std::optional<double> video_hz() const;
+    [[nodiscard]] std::optional<double> frames_hz() const;
     /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;
 

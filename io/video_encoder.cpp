@@ -73,9 +73,11 @@ std::string x265_parameters(const VideoCoding& coding) {
     std::string text = fmt::format("log-level=none:info=0:pools={}:frame-threads=1", kThreads);
     if (coding.curve == VideoCurve::kPq)
         text += fmt::format(
-            ":hdr10=1:master-display=G({},{})B({},{})R({},{})WP({},{})L({:.0f},{:.0f})", kGreen[0],
-            kGreen[1], kBlue[0], kBlue[1], kRed[0], kRed[1], kWhite[0], kWhite[1],
-            coding.peak_cd * kLuminanceUnits, kMinDisplayCd * kLuminanceUnits);
+            ":hdr10=1:max-cll={},{}"
+            ":master-display=G({},{})B({},{})R({},{})WP({},{})L({:.0f},{:.0f})",
+            kUnknownMaxCll, kUnknownMaxFall, kGreen[0], kGreen[1], kBlue[0], kBlue[1], kRed[0],
+            kRed[1], kWhite[0], kWhite[1], coding.peak_cd * kLuminanceUnits,
+            kMinDisplayCd * kLuminanceUnits);
     return text;
 }
 
@@ -109,7 +111,7 @@ AVDictionary* options_of(const VideoCoding& coding) {
 
 FfmpegPtr<AVCodecContext> open_encoder(FrameShape shape, const VideoCoding& coding,
                                        bool global_header, const std::string& where) {
-    constexpr int kMostInRate = 60'000;  // numerator, denominator
+    constexpr int kMaxRateTerm = 60'000;  // numerator, denominator
     check_size(shape, coding, where);
     const AVCodec* const codec = find_encoder(coding, where);
     FfmpegPtr<AVCodecContext> encoder(avcodec_alloc_context3(codec));
@@ -118,7 +120,7 @@ FfmpegPtr<AVCodecContext> open_encoder(FrameShape shape, const VideoCoding& codi
     encoder->width = std::max(shape.cols + shape.cols % 2, 4);
     encoder->height = shape.rows + shape.rows % 2;
     encoder->pix_fmt = coding.curve == VideoCurve::kSdr ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV420P10;
-    encoder->framerate = av_d2q(coding.frames_per_second, kMostInRate);
+    encoder->framerate = av_d2q(coding.frames_hz, kMaxRateTerm);
     encoder->time_base = av_inv_q(encoder->framerate);
     encoder->thread_count = kThreads;
     declare_colours(*encoder, coding.curve);

@@ -57,8 +57,8 @@ std::vector<std::string> VideoReader::warnings() const {
     return impl_->decoder.warnings();
 }
 
-std::optional<double> VideoReader::video_hz() const {
-    return impl_->decoder.video_hz();
+std::optional<double> VideoReader::frames_hz() const {
+    return impl_->decoder.frames_hz();
 }
 
 std::string VideoReader::where() const {

@@ -28,7 +28,7 @@ class VideoReader {
 
     [[nodiscard]] FrameShape shape() const;
     /// Playback rate in frames per second, if the file gives it.
-    [[nodiscard]] std::optional<double> video_hz() const;
+    [[nodiscard]] std::optional<double> frames_hz() const;
     [[nodiscard]] const SourceTraits& traits() const;
     /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;

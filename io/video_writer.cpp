@@ -61,11 +61,35 @@ constexpr const char* kCreate = "cannot be created";
 /// The longest header of a file in which light levels are looked for.
 constexpr std::size_t kHeadBytes = 1 << 16;
 
+constexpr auto high_byte(unsigned value) {
+    return static_cast<std::uint8_t>(value >> 8U);
+}
+constexpr auto low_byte(unsigned value) {
+    return static_cast<std::uint8_t>(value & 0xFFU);
+}
+
+/// Light levels in HEVC: a unit of its own (0x4E, 0x01) with the message 144 of four bytes, and the
+/// end mark (ITU-T H.265, 7.3.1 and D.2.35).
+constexpr std::array<std::uint8_t, 9> hevc_light_levels(unsigned max_cll, unsigned max_fall) {
+    return {0x4E,
+            0x01,
+            144,
+            4,
+            high_byte(max_cll),
+            low_byte(max_cll),
+            high_byte(max_fall),
+            low_byte(max_fall),
+            0x80};
+}
+constexpr auto kUnknownLevels = hevc_light_levels(kUnknownMaxCll, kUnknownMaxFall);
+
 /// Where the bytes of the file go. A failure must not pass through FFmpeg.
 struct Sink {
     OutputFile file;
     std::vector<std::uint8_t> head = {};  ///< the first bytes of the file
     std::size_t position = 0;
+    std::vector<std::size_t> unknown_levels = {};  ///< places of kUnknownLevels
+    std::size_t equal = 0;                         ///< the last bytes to the first of these
     std::exception_ptr failure = nullptr;
 
     void write(std::span<const std::uint8_t> bytes) {
@@ -73,10 +97,21 @@ struct Sink {
         const std::size_t kept = std::min(kHeadBytes, position + bytes.size());
         if (head.size() < kept) head.resize(kept);
         for (std::size_t i = 0; position + i < kept; ++i) head[position + i] = bytes[i];
-        position += bytes.size();
+        for (const std::uint8_t byte : bytes) compare(byte);
+    }
+    void compare(std::uint8_t byte) {
+        ++position;
+        if (byte == kUnknownLevels[equal])
+            ++equal;
+        else
+            equal = byte == kUnknownLevels[0] ? 1 : 0;  // which is none of the others
+        if (equal < kUnknownLevels.size()) return;
+        unknown_levels.push_back(position - equal);
+        equal = 0;
     }
     void seek(std::int64_t offset) {
         file.seek(offset);
+        equal = 0;
         position = static_cast<std::size_t>(offset);
     }
 
@@ -237,11 +272,11 @@ void VideoWriter::Impl::pad() {
 }
 
 /// Of Matroska, whose header is at the beginning: its elements MaxCLL (55BC) and MaxFALL (55BD),
-/// each of two bytes. The header of .mp4 comes last, and has them already.
+/// each of two bytes. The header of .mp4 comes last, and has them already. Of HEVC: those in the
+/// headers of the stream, which the container holds, and before its key frames.
 void VideoWriter::Impl::replace_light_levels(unsigned max_cll, unsigned max_fall) {
     const auto element = [](std::uint8_t id, unsigned value) {
-        return std::array<std::uint8_t, 5>{0x55, id, 0x82, static_cast<std::uint8_t>(value >> 8U),
-                                           static_cast<std::uint8_t>(value & 0xFFU)};
+        return std::array<std::uint8_t, 5>{0x55, id, 0x82, high_byte(value), low_byte(value)};
     };
     const auto replace = [&](std::uint8_t id, unsigned unknown, unsigned value) {
         const auto old = element(id, unknown);
@@ -252,6 +287,10 @@ void VideoWriter::Impl::replace_light_levels(unsigned max_cll, unsigned max_fall
     };
     replace(0xBC, kUnknownMaxCll, max_cll);
     replace(0xBD, kUnknownMaxFall, max_fall);
+    for (const std::size_t place : sink.unknown_levels) {
+        sink.seek(static_cast<std::int64_t>(place));
+        sink.write(hevc_light_levels(max_cll, max_fall));
+    }
 }
 
 /// Null: what the encoder still holds.
@@ -297,8 +336,10 @@ std::optional<LightLevels> VideoWriter::light_levels() const {
 void VideoWriter::finish() {
     impl_->encode(nullptr);
     const LightLevels levels = light_levels().value_or(LightLevels{});
-    const auto max_cll = static_cast<unsigned>(std::ceil(levels.max_cll));
+    auto max_cll = static_cast<unsigned>(std::max(1.0, std::ceil(levels.max_cll)));
     const auto max_fall = static_cast<unsigned>(std::ceil(levels.max_fall));
+    // HEVC has an escape for two zero bytes in a row, which would take another byte.
+    if (low_byte(max_cll) == 0 && high_byte(max_fall) == 0) ++max_cll;
     const bool is_pq = impl_->coding.curve == VideoCurve::kPq;
     if (is_pq) declare_light_levels(*impl_->stream, max_cll, max_fall);
     impl_->check(av_write_trailer(impl_->muxer.get()), "cannot be written");

@@ -48,26 +48,26 @@ QualityMeter::QualityMeter(FrameShape shape, const QualityOptions& options)
         throw InputError("quality", "the frames are empty");
     if (options.margin < 0)
         throw InputError("margin", fmt::format("{} is negative", options.margin));
-    if (options.max_value && !(*options.max_value > 0))
+    if (options.max_value && !(static_cast<float>(*options.max_value) > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *options.max_value));
-    if (!(options.peak > 0))
-        throw InputError("peak", fmt::format("{} is not above 0", options.peak));
-    if (!(options.unit_cd_per_m2 > 0))
+    if (!(options.peak > 0 && std::isfinite(options.peak)))
+        throw InputError("peak", fmt::format("{} is not finite and above 0", options.peak));
+    if (!(options.unit_cd_per_m2 > 0 && std::isfinite(options.unit_cd_per_m2)))
         throw InputError("unit_cd_per_m2",
-                         fmt::format("{} is not above 0", options.unit_cd_per_m2));
+                         fmt::format("{} is not finite and above 0", options.unit_cd_per_m2));
     if (options.pixels_per_degree) csf_.emplace(shape, *options.pixels_per_degree);
 }
 
 QualityMeter::SquaredErrors QualityMeter::add_row(std::span<const float> result,
                                                   std::span<const float> reference, int row) {
-    const auto most = static_cast<float>(
+    const auto max_light = static_cast<float>(
         options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
     const auto width = static_cast<std::size_t>(shape_.cols);
     const std::size_t begin = static_cast<std::size_t>(row) * width;
     SquaredErrors sum;
     for (std::size_t i = begin; i < begin + width; ++i) {
-        const float a = std::min(result[i], most);
-        const float b = std::min(reference[i], most);
+        const float a = std::min(result[i], max_light);
+        const float b = std::min(reference[i], max_light);
         result_gamma_[i] = gamma_encoded(a);
         reference_gamma_[i] = gamma_encoded(b);
         const auto x = static_cast<double>(a);
@@ -100,10 +100,10 @@ void QualityMeter::add(std::span<const float> result, std::span<const float> ref
 
 std::vector<float> QualityMeter::pu21_luminance(std::span<const float> light) const {
     const std::size_t pixels = shape_.pixels();
-    const auto most = static_cast<float>(
+    const auto max_light = static_cast<float>(
         options_.max_value.value_or(static_cast<double>(std::numeric_limits<float>::max())));
     std::vector<float> clipped(light.begin(), light.end());
-    for (float& value : clipped) value = std::min(value, most);
+    for (float& value : clipped) value = std::min(value, max_light);
     std::vector<float> luminance(pixels);
     if (shape_.planes == 3)
         reduce_to_luminance(clipped, luminance);
@@ -177,6 +177,10 @@ std::vector<VideoQuality> QualityMeter::frame_qualities() const {
     for (std::size_t i = 0; i < frames.size(); ++i)
         qualities.push_back(quality_of(frames.subspan(i, 1)));
     return qualities;
+}
+
+VideoQuality QualityMeter::last_quality() const {
+    return quality_of(std::span(frames_).last(1));
 }
 
 }  // namespace stipple

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,12 @@ struct QualityOptions {
     /// Compute `pu21_csf_psnr_db` for a viewer to whom a degree of visual angle has so many pixels.
     std::optional<double> pixels_per_degree = {};
 };
+
+/// The margin of demo, reports and benchmarks, as less is known of the light at the ends: 4 frames,
+/// fewer if they would leave none of `frames`.
+[[nodiscard]] constexpr int usual_margin(int frames) {
+    return std::min(4, (frames - 1) / 2);
+}
 
 /// Quality of a video against its reference; all in dB except `ssim` (up to 1). Identical videos
 /// have infinite PSNR.
@@ -49,6 +56,8 @@ class QualityMeter {
     [[nodiscard]] VideoQuality quality() const;
     /// The same of each frame between the margins alone, in order.
     [[nodiscard]] std::vector<VideoQuality> frame_qualities() const;
+    /// The same of the frame that was added last, in a margin or not. Precondition: there is one.
+    [[nodiscard]] VideoQuality last_quality() const;
 
   private:
     /// Sums of squared errors on three scales.

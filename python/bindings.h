@@ -21,7 +21,9 @@ void bind_recording(py::module_& module);
 void bind_characterize(py::module_& module);
 void bind_camera(py::module_& module);
 void bind_camera_frames(py::module_& module);
+void bind_camera_search(py::module_& module);
 void bind_record(py::module_& module);
+void bind_live_preview(py::module_& module);
 void bind_live(py::module_& module);
 
 }  // namespace stipple::python

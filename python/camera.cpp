@@ -5,36 +5,31 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "capture/camera_kind.h"
 #include "capture/image_camera.h"
+#include "capture/live_camera.h"
+#include "capture/session_figures.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "python/bindings.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
 #include "python/sensor.h"
 
 namespace stipple::python {
 namespace {
 
-using namespace pybind11::literals;
-
 CameraSettings settings_for(const py::dict& settings,
                             const std::optional<std::filesystem::path>& config) {
     const auto texts = settings_of(settings);
     if (!config) return Config(texts, "camera").entries();
     return reading(*config, [&] { return Config(*config, texts, "camera").entries(); });
-}
-
-IncompletePolicy incomplete_policy(const std::string& name) {
-    if (name == "drop") return IncompletePolicy::kDrop;
-    if (name == "keep") return IncompletePolicy::kKeep;
-    if (name == "mask") return IncompletePolicy::kMask;
-    throw InputError("incomplete", fmt::format("\"{}\" is none of drop, keep, mask", name));
 }
 
 CaptureLimits limits_of(std::optional<std::int64_t> frames, std::optional<double> seconds) {
@@ -48,11 +43,13 @@ CaptureLimits limits_of(std::optional<std::int64_t> frames, std::optional<double
 
 SessionOptions session_of(const std::string& address, const std::string& incomplete,
                           std::int64_t stall_ms, bool reconnect) {
-    if (stall_ms < 0 || stall_ms > 3'600'000)
-        throw InputError("stall_ms", fmt::format("{} is outside 0..3600000", stall_ms));
-    return session_options(address, {.incomplete = incomplete_policy(incomplete),
-                                     .stall = std::chrono::milliseconds(stall_ms),
-                                     .reconnect = reconnect});
+    constexpr std::int64_t kMaxMs = SessionOptions::kMaxStall.count();
+    if (stall_ms < 0 || stall_ms > kMaxMs)
+        throw InputError("stall_ms", fmt::format("{} is outside 0..{}", stall_ms, kMaxMs));
+    return session_options(address,
+                           {.incomplete = value_in(kIncompletePolicies, incomplete, "incomplete"),
+                            .stall = std::chrono::milliseconds(stall_ms),
+                            .reconnect = reconnect});
 }
 
 }  // namespace
@@ -63,13 +60,20 @@ CaptureSession::Opener CameraTask::opener() const {
     };
 }
 
+std::size_t queue_of(std::size_t frames) {
+    constexpr std::size_t kMax = LiveCameraOptions::kMaxWaitingFrames;
+    if (frames < 1 || frames > kMax)
+        throw InputError("queue", fmt::format("{} is outside 1..{}", frames, kMax));
+    return frames;
+}
+
 bool CameraTask::is_replay() const {
     return camera_kind(address).is_replay;
 }
 
 void SessionWarnings::take(const SessionEvent& event) {
     if (const auto* const outage = std::get_if<Outage>(&event))
-        take(fmt::format("the camera is gone ({}); opening it anew", outage->reason));
+        take(fmt::format("camera lost ({}); reopening it", outage->reason));
     if (const auto* const recovery = std::get_if<Recovery>(&event))
         take(fmt::format("the camera is back after {:.1f} s", recovery->gone_s));
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) take(lost->warning);
@@ -90,17 +94,11 @@ void SessionWarnings::pass_on() {
 }
 
 py::dict lost_dict(const SessionTotals& totals) {
-    py::dict dict;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        dict[py::str(std::string(kGapCauseNames[i]))] = totals.lost[i];
-    return dict;
+    return dict_of([&](const auto& add) { visit_lost_figures(totals, add); });
 }
 
 py::dict transport_dict(const TransportCounts& counts) {
-    return py::dict("underruns"_a = counts.underruns, "packets_resent"_a = counts.packets_resent,
-                    "packets_missing"_a = counts.packets_missing,
-                    "socket_drops"_a = counts.socket_drops, "link_faults"_a = counts.link_faults,
-                    "size_mismatches"_a = counts.size_mismatches);
+    return dict_of([&](const auto& add) { visit_transport_figures(counts, add); });
 }
 
 void bind_camera(py::module_& module) {

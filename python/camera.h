@@ -2,6 +2,8 @@
 
 #include <pybind11/pytypes.h>
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -41,6 +43,12 @@ auto opening(const CameraTask& task, Open&& open) {
         throw;
     }
 }
+
+/// The argument `queue`: frames that may wait. \throws InputError if it is out of range.
+[[nodiscard]] std::size_t queue_of(std::size_t frames);
+
+/// Interval at which a wait looks for Ctrl-C.
+inline constexpr std::chrono::milliseconds kSignalInterval{100};
 
 /// What a session tells from its own threads, for a warning in Python.
 class SessionWarnings {

@@ -1,6 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,18 +14,13 @@
 namespace stipple::python {
 namespace {
 
-/// How often a wait looks for Ctrl-C.
-constexpr std::chrono::milliseconds kPatience{100};
-
 /// The frames of a camera that runs, handed over without a copy.
 class CameraFrames {
   public:
     CameraFrames(CameraTask task, std::size_t queue_frames) : task_(std::move(task)) {
-        if (queue_frames < 1 || queue_frames > 4096)
-            throw InputError("queue", "give 1 to 4096 frames");
         const py::gil_scoped_release released;
         LiveCameraOptions options{.session = task_.session,
-                                  .waiting_frames = queue_frames,
+                                  .waiting_frames = queue_of(queue_frames),
                                   .from_start = task_.is_replay(),
                                   .tell = {}};
         options.tell = [this](const SessionEvent& event) { warnings_.take(event); };
@@ -41,7 +35,7 @@ class CameraFrames {
             bool came = false;
             {
                 const py::gil_scoped_release released;
-                came = camera_->next(*frame, kPatience);
+                came = camera_->next(*frame, kSignalInterval);
             }
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             warnings_.pass_on();

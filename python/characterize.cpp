@@ -114,7 +114,7 @@ py::dict characterize(const py::object& chosen, std::uint64_t seed, const py::ob
     }
     auto photons = photons_of_image.begin();
     const auto take = [&](const fs::path& /*file*/) {
-        return SeriesImage{series.rows, series.cols, field.photograph(*photons++)};
+        return SeriesImage{series.rows, series.cols, field.capture(*photons++)};
     };
     const std::string where = fmt::format("sensor \"{}\"", sensor.choice.sensor);
     return evaluation_dict(evaluate_series(series, where, {}, tell, take),

@@ -28,9 +28,9 @@ struct ComparedVideos : VideoQuality {
     const FrameShape a = result.shape();
     const FrameShape b = reference.shape();
     throw InputError(result.name(),
-                     fmt::format("has frames of {} x {} x {} (rows x columns x planes), but the "
+                     fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
                                  "reference has {} x {} x {}",
-                                 a.rows, a.cols, a.planes, b.rows, b.cols, b.planes));
+                                 a.cols, a.rows, a.planes, b.cols, b.rows, b.planes));
 }
 
 /// Adds up the frames that both have. Without the GIL. Returns a warning if one has more, else an

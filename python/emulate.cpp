@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/error.h"
 #include "io/disk_sync.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
@@ -30,9 +29,7 @@ py::dict figures_of(const StreamRecorder& recorder) {
 }
 
 OverrunPolicy overrun_policy(const std::string& name) {
-    if (name != "stretch" && name != "drop")
-        throw InputError("overrun", "\"" + name + "\" is none of stretch, drop");
-    return name == "drop" ? OverrunPolicy::kDrop : OverrunPolicy::kStretch;
+    return value_in(kOverrunPolicies, name, "overrun");
 }
 
 namespace {

@@ -38,13 +38,9 @@ std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& opti
 FootageOptions options_of(const std::optional<std::string>& transfer, bool luminance,
                           std::optional<double> max_value) {
     FootageOptions options{.transfer = {}, .luminance = luminance, .max_value = max_value};
-    if (max_value && !(*max_value > 0))
+    if (max_value && !(static_cast<float>(*max_value) > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *max_value));
-    if (!transfer) return options;
-    options.transfer = transfer_from_name(*transfer);
-    if (!options.transfer)
-        throw InputError("transfer",
-                         fmt::format("\"{}\" is none of {}", *transfer, transfer_names()));
+    if (transfer) options.transfer = value_in(kTransfers, *transfer, "transfer");
     return options;
 }
 

@@ -17,10 +17,13 @@
 #include "python/camera.h"
 #include "python/emulation.h"
 #include "python/errors.h"
+#include "python/figures_dict.h"
 #include "python/footage.h"
+#include "python/live_preview.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "readout/emulation_figures.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -28,25 +31,22 @@ namespace {
 
 using namespace pybind11::literals;
 
-/// The sensor behind a camera, and how late it may be.
+/// The sensor behind a camera, how late it may be, and who watches.
 struct LiveTask {
     ChosenSensor sensor;
     py::object schedule;
     double black_level_dn;
     std::size_t queue_frames;
     double late_after_slots;
+    std::optional<PreviewTask> preview;
 };
 
-/// The keys of "capture live" in docs/cli.md, without its preview.
+/// The keys of "capture live" in docs/cli.md.
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);
-    const ReadoutStats& stats = recorder.stats();
-    const auto& hz = live.slots_per_s;
-    dict["slots_per_second"] = hz;
-    dict["samples_per_second"] = hz ? std::optional(*hz * static_cast<double>(stats.samples) /
-                                                    static_cast<double>(stats.slots))
-                                    : std::nullopt;
+    dict.attr("update")(dict_of(
+        [&](const auto& add) { visit_speed_figures(recorder, live.slots_per_second, add); }));
     py::list late;
     for (const LateSlot& slot : live.late)
         late.append(py::dict("slot"_a = slot.slot, "arrival_monotonic_ns"_a = slot.arrival_ns,
@@ -55,9 +55,11 @@ py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
         "frames"_a = live.latencies.count(), "frames_hz"_a = live.rate.hz(),
         "slots_hz"_a = 1e6 / recorder.setup().params.slot_us,
         "incomplete"_a = live.totals.incomplete, "repeated"_a = live.totals.repeated,
-        "lost"_a = lost_dict(live.totals), "transport"_a = transport_dict(camera.transport()),
-        "held_slots"_a = live.held_slots, "unheld_slots"_a = live.unheld_slots,
-        "late_slots"_a = live.late_slots, "late"_a = late, "queue_peak_frames"_a = camera.peak(),
+        "lost"_a = lost_dict(live.totals),
+        "missing_before_first"_a = live.totals.missing_before_first,
+        "transport"_a = transport_dict(camera.transport()), "held_slots"_a = live.held_slots,
+        "unheld_slots"_a = live.unheld_slots, "late_slots"_a = live.late_slots, "late"_a = late,
+        "queue_peak_frames"_a = camera.peak(),
         "latency_us"_a = py::dict("median"_a = live.latencies.quantile_us(0.5),
                                   "p99"_a = live.latencies.quantile_us(0.99),
                                   "max"_a = live.latencies.longest_us())));
@@ -77,6 +79,7 @@ struct LiveSetup {
     SessionWarnings warnings;
     LiveCamera camera;
     FrameLight to_light;
+    std::optional<ShownPreview> preview;
 };
 
 /// Emulates until the camera, a limit or Python ends it, and puts the stream in place.
@@ -88,15 +91,21 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
     options.tell = [&](const LeftOut& left_out) {
         warnings.take(left_out_text(task.address, left_out));
     };
+    if (auto& preview = setup.preview)
+        options.show = [&](auto packets, auto arrival_ns) { preview->add(packets, arrival_ns); };
     LiveEmulator emulator(setup.camera, setup.to_light, recorder, std::move(options));
+    bool goes_on = true;
     LiveEmulation result = emulator.run([&](const LiveEmulation& now) {
-        return progress.reach(static_cast<double>(now.latencies.count()));
+        goes_on = progress.reach(static_cast<double>(now.latencies.count())) &&
+                  (!setup.preview || setup.preview->pass_on());
+        return goes_on;
     });
     static_cast<void>(progress.reach(static_cast<double>(result.latencies.count())));
     result.totals.repeated = setup.camera.stop().repeated;
     if (result.latencies.count() == 0) return result;
     warnings.take(camera_rate_warning(result.rate, recorder.setup().params));
     put_in_place(recorder, result);
+    if (setup.preview) setup.preview->finish(!goes_on);
     return result;
 }
 
@@ -119,12 +128,17 @@ py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path
     });
     for (const std::string& text : camera->camera.description().warnings) warn(text);
     warn(mosaic_warning(setup, to_light.filter()));
+    if (live.preview)
+        camera->preview.emplace(*live.preview, stream_header_of(setup, {}), camera->warnings);
     CallProgress progress(tell, task.limits.total(), CallProgress::Early::kYes);
     const LiveEmulation result = emulate_live(task, live, *camera, *recorder, progress);
     camera->warnings.pass_on();
     progress.finish();
+    if (camera->preview) camera->preview->throw_raised();
     throw_early_end(result, task.address);
-    return live_dict(result, *recorder, camera->camera);
+    py::dict figures = live_dict(result, *recorder, camera->camera);
+    if (camera->preview) figures["preview"] = camera->preview->figures();
+    return figures;
 }
 
 std::unique_ptr<StreamFile> live(const CameraTask& task, const LiveTask& live,
@@ -145,13 +159,12 @@ void bind_live(py::module_& module) {
     py::class_<LiveTask>(module, "LiveTask")
         .def(py::init([](const py::object& sensor, const py::object& schedule, std::uint64_t seed,
                          const std::string& overrun, double black_level_dn,
-                         std::size_t queue_frames, double late_after_slots) {
-            if (queue_frames < 1 || queue_frames > 4096)
-                throw InputError("queue", fmt::format("{} is outside 1..4096", queue_frames));
+                         std::size_t queue_frames, double late_after_slots,
+                         std::optional<PreviewTask> preview) {
             if (!(late_after_slots > 0))
                 throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
-            LiveTask task{sensor_of(sensor), schedule, black_level_dn, queue_frames,
-                          late_after_slots};
+            LiveTask task{sensor_of(sensor),      schedule,         black_level_dn,
+                          queue_of(queue_frames), late_after_slots, std::move(preview)};
             task.sensor.choice.seed = seed;
             task.sensor.choice.overrun = overrun_policy(overrun);
             return task;

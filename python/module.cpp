@@ -19,6 +19,8 @@ PYBIND11_MODULE(_stipple, module) {
     bind_characterize(module);
     bind_camera(module);
     bind_camera_frames(module);
+    bind_camera_search(module);
     bind_record(module);
+    bind_live_preview(module);
     bind_live(module);
 }

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "capture/capture_end.h"
@@ -31,20 +30,21 @@ auto creating_from_camera(const CameraTask& task, const fs::path& file, Create&&
     try {
         return opening(task, std::forward<Create>(create));
     } catch (const InputError& error) {
-        if (std::string_view(error.what()).starts_with(file.string() + ": "))
-            check_creatable(file, error);
+        if (error.where() == file.string()) check_creatable(file, error);
         throw;
     }
 }
 
 py::dict recording_dict(const std::string& file, const CameraRecording& recording) {
-    return py::dict(
-        "file"_a = file, "frames"_a = recording.end.frames,
-        "incomplete"_a = recording.end.incomplete, "repeated"_a = recording.session.repeated,
-        "lost"_a = lost_dict(recording.session), "outages"_a = recording.session.outages,
-        "transport"_a = transport_dict(recording.transport),
-        "payload_bytes"_a = recording.end.payload_bytes, "seconds"_a = recording.seconds,
-        "frames_per_s"_a = recording.frames_per_s);
+    return py::dict("file"_a = file, "frames"_a = recording.end.frames,
+                    "incomplete"_a = recording.end.incomplete,
+                    "repeated"_a = recording.session.repeated,
+                    "lost"_a = lost_dict(recording.session),
+                    "missing_before_first"_a = recording.session.missing_before_first,
+                    "outages"_a = recording.session.outages,
+                    "transport"_a = transport_dict(recording.transport),
+                    "payload_bytes"_a = recording.end.payload_bytes,
+                    "seconds"_a = recording.seconds, "frames_hz"_a = recording.frames_hz);
 }
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,

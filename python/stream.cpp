@@ -88,7 +88,7 @@ of the readout. Fast from slot to slot; going back begins at the first. Raises I
             const FrameShape shape = self.header().shape;
             return fmt::format("<stipple.Stream {}: {} slots of {} x {} x {}>",
                                self.is_temporary() ? "(temporary)" : self.path().string(),
-                               self.slots(), shape.rows, shape.cols, shape.planes);
+                               self.slots(), shape.cols, shape.rows, shape.planes);
         });
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "readout/stream_recorder.h"
 
 namespace stipple {
@@ -15,6 +17,19 @@ void visit_emulation_figures(const StreamRecorder& recorder, const Add& add) {
     add("light_throughput", recorder.light_throughput());
     add("light_read", recorder.light_read());
     add("saturated_fraction", recorder.saturated_fraction());
+}
+
+/// The speed of an emulation; std::nullopt where it is not known.
+template <typename Add>
+void visit_speed_figures(const StreamRecorder& recorder, std::optional<double> slots_per_second,
+                         const Add& add) {
+    const ReadoutStats& stats = recorder.stats();
+    std::optional<double> samples_per_s;
+    if (slots_per_second)
+        samples_per_s = *slots_per_second * static_cast<double>(stats.samples) /
+                        static_cast<double>(stats.slots);
+    add("slots_per_second", slots_per_second);
+    add("samples_per_second", samples_per_s);
 }
 
 }  // namespace stipple

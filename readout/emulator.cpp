@@ -35,7 +35,8 @@ std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
         frame = mosaic_;
     }
     sensor_.expose(frame, packets_[0]);
-    return readout_cost_ ? what_fits(readout_cost_->add_next()) : std::span(packets_).first(1);
+    return readout_cost_ ? split_at_overrun(readout_cost_->add_next())
+                         : std::span(packets_).first(1);
 }
 
 double Emulator::light_read() const {
@@ -45,7 +46,7 @@ double Emulator::light_read() const {
            (static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.pixels()));
 }
 
-std::span<const SamplePacket> Emulator::what_fits(const SlotCost& slot) {
+std::span<const SamplePacket> Emulator::split_at_overrun(const SlotCost& slot) {
     SamplePacket& whole = packets_[0];
     if (slot.end_row == whole.rows) {
         whole.flags = slot.overrun ? SamplePacket::kOverrun : 0;

@@ -44,7 +44,7 @@ class Emulator {
     }
 
   private:
-    [[nodiscard]] std::span<const SamplePacket> what_fits(const SlotCost& slot);
+    [[nodiscard]] std::span<const SamplePacket> split_at_overrun(const SlotCost& slot);
 
     const SensorSetup& setup_;
     CalibrationTile filters_;

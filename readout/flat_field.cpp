@@ -88,7 +88,7 @@ const SamplePacket& FlatField::expose(double photons) {
     return impl_->packet;
 }
 
-const std::vector<std::uint16_t>& FlatField::photograph(double photons) {
+const std::vector<std::uint16_t>& FlatField::capture(double photons) {
     return expose(photons).dn;
 }
 

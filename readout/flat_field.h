@@ -54,7 +54,7 @@ class FlatField {
     FlatField& operator=(const FlatField&) = delete;
 
     /// The DN of the next image, by row and column; valid until the next call.
-    [[nodiscard]] const std::vector<std::uint16_t>& photograph(double photons);
+    [[nodiscard]] const std::vector<std::uint16_t>& capture(double photons);
     /// The next image as a slot of a stream; valid until the next call.
     [[nodiscard]] const SamplePacket& expose(double photons);
     /// Of this stream, without provenance.

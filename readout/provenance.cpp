@@ -10,6 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "core/shell_quoted.h"
 #include "core/toml_keys.h"
 #include "core/version.h"
 #include "sensor_model/sensor_keys.h"
@@ -56,10 +57,9 @@ toml::table sensor_table(const SensorSetup& setup) {
 }
 
 toml::table footage_table(const FootageOrigin& footage) {
-    toml::table table{
-        {"name", footage.name},
-        {"transfer", transfer_name(footage.reading.transfer.value_or(Transfer::kLinear))},
-        {"luminance", footage.reading.luminance}};
+    toml::table table{{"name", footage.name},
+                      {"transfer", name_of(footage.reading.transfer.value_or(Transfer::kLinear))},
+                      {"luminance", footage.reading.luminance}};
     if (!footage.sha256.empty()) table.insert("sha256", footage.sha256);
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
@@ -95,17 +95,6 @@ toml::table schedule_table(const NamedSchedule& schedule) {
     return table;
 }
 
-/// An argument as a shell takes it.
-std::string shell_quoted(const std::string& argument) {
-    constexpr std::string_view kPlain =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./=:,%+@-";
-    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos)
-        return argument;
-    std::string text = "'";
-    for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 std::string text_of(const toml::node_view<const toml::node>& node) {
     return node.value<std::string>().value_or("");
 }
@@ -126,7 +115,7 @@ std::string options_of(const toml::table& provenance) {
         add("--scale", fmt::format("{}", *scale));
     if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
     if (const auto hz = footage["frames_hz"].value<double>())
-        add("--footage-hz", fmt::format("{}", *hz));
+        add("--frames-hz", fmt::format("{}", *hz));
     if (const auto max_value = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *max_value));
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kFirstCells = 4;
 constexpr int kDefaultTexels = 512;  // two texels a pixel at 240 rows
-constexpr int kLargestTexels = 4096;
+constexpr int kMaxTexels = 4096;
 
 /// Uniform cubic B-spline weights of the four lattice points around a cell, t in [0, 1).
 std::array<float, 4> spline_weights(float t) {
@@ -52,7 +52,7 @@ std::vector<float> random_lattice(int cells, const SceneRandom& random, std::uin
 
 int texels_for(int rows) {
     int texels = kDefaultTexels;
-    while (texels < kLargestTexels && texels < rows * 3 / 2) texels *= 2;
+    while (texels < kMaxTexels && texels < rows * 3 / 2) texels *= 2;
     return texels;
 }
 

@@ -8,13 +8,13 @@
 namespace stipple {
 namespace {
 
-constexpr std::int64_t kLongestSpanSlots = 64;
+constexpr std::int64_t kMaxSpanSlots = 64;
 
 using DuePixels = std::span<const DuePixel>;
 
 /// Those whose exposure began in slot 0 or later.
 std::size_t count_begun(DuePixels due, std::int64_t slot) {
-    if (slot >= kLongestSpanSlots) return due.size();
+    if (slot >= kMaxSpanSlots) return due.size();
     return static_cast<std::size_t>(std::ranges::count_if(
         due, [slot](const DuePixel& pixel) { return pixel.span_slots <= slot + 1; }));
 }
@@ -32,7 +32,7 @@ DueCounts::DueCounts(int rows, int period_slots)
     : rows_(rows),
       period_slots_(period_slots),
       steady_(index(rows) * index(period_slots)),
-      absent_(index(rows) * index(std::min<std::int64_t>(period_slots, kLongestSpanSlots))) {}
+      absent_(index(rows) * index(std::min<std::int64_t>(period_slots, kMaxSpanSlots))) {}
 
 void DueCounts::add(int row, std::span<const Exposure> of_pixel) {
     for (const Exposure& exposure : of_pixel) {

@@ -40,8 +40,8 @@ constexpr std::size_t kMaxHeaderBytes = kFixedBytes + kMaxNameBytes + kMaxProven
 struct Field {
     std::size_t offset;
     const char* name;
-    double least;
-    double most;
+    double min;
+    double max;
 };
 
 constexpr Field kHeaderLength{12, "header bytes", kMinHeaderBytes, kMaxHeaderBytes};
@@ -69,10 +69,10 @@ constexpr std::size_t kScheduleCrc = 88;
 constexpr struct { std::size_t offset, bytes; } kReserved[] = {{10, 2}, {86, 2}};
 
 void check(const Field& field, double value, std::string_view where) {
-    if (value >= field.least && value <= field.most) return;  // false for NaN
+    if (value >= field.min && value <= field.max) return;  // false for NaN
     fail_at(where, field.offset,
-            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.least,
-                        field.most));
+            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.min,
+                        field.max));
 }
 
 /// The part of a header that is numbers.

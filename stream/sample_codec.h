@@ -25,8 +25,8 @@ struct DecodedSamples {
     std::string fault;      ///< empty if the packet is good
 };
 
-/// The packet of samples at the begin of `bytes`. It is good if its CRCs are correct, its slot and
-/// row are not before `expected`, and its number of samples follows the schedule of `stream`.
+/// The packet of samples at the beginning of `bytes`. It is good if its CRCs are correct, its slot
+/// and row are not before `expected`, and its number of samples follows the schedule of `stream`.
 [[nodiscard]] DecodedSamples decode_samples(const StreamHeader& stream, const Framing& framing,
                                             std::span<const std::uint8_t> bytes,
                                             StreamPosition expected);

@@ -8,7 +8,7 @@ namespace stipple {
 
 void SlotIndex::add(IndexEntry entry) {
     if (entry.slot % stride_ != 0) return;
-    if (entries_.size() == most_) {
+    if (entries_.size() == max_entries_) {
         stride_ *= 2;
         std::erase_if(entries_, [&](const IndexEntry& old) { return old.slot % stride_ != 0; });
         if (entry.slot % stride_ != 0) return;

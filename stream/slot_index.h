@@ -15,18 +15,19 @@ struct IndexEntry {
 
 inline constexpr std::size_t kIndexEntryBytes = 16;
 
-/// The offsets of slots in a file of any length, in bounded memory: beyond `most` entries it keeps
-/// only every second one, then every fourth, and so on.
+/// The offsets of slots in a file of any length, in bounded memory: beyond `max_entries` entries it
+/// keeps only every second one, then every fourth, and so on.
 class SlotIndex {
   public:
-    explicit SlotIndex(std::size_t most = std::size_t{1} << 16U) : most_(most) {}
+    explicit SlotIndex(std::size_t max_entries = std::size_t{1} << 16U)
+        : max_entries_(max_entries) {}
 
     /// Precondition: slots rise.
     void add(IndexEntry entry);
     [[nodiscard]] std::span<const IndexEntry> entries() const { return entries_; }
 
   private:
-    std::size_t most_;
+    std::size_t max_entries_;
     std::uint64_t stride_ = 1;
     std::vector<IndexEntry> entries_;
 };

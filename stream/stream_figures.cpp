@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "core/fault_list.h"
+
 namespace stipple {
 
 TileShape tile_shape_of(const StreamHeader& header) {
@@ -26,9 +28,8 @@ std::string damage_text(const StreamReport& report) {
             "the stream is cut off: {} slot{} are whole, then it ends within a packet, of which "
             "there are {} bytes",
             report.slots, report.slots == 1 ? "" : "s", report.tail_bytes);
-    constexpr std::size_t kMaxPlaces = 10;
     const std::uint64_t places = report.damage.size() + report.unlisted_damage;
-    const std::size_t listed = std::min(report.damage.size(), kMaxPlaces);
+    const std::size_t listed = std::min(report.damage.size(), kMaxShownFaults);
     std::string text = fmt::format("the stream is damaged; {} of {} slots are incomplete",
                                    report.missing_slots, report.slots);
     for (const StreamDamage& where : std::span(report.damage).first(listed))

@@ -26,7 +26,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::size_t kSearchBytes = std::size_t{1} << 16U;
 constexpr std::string_view kOtherPackets =
     "the packets are not those that were recorded, though each is good (checksum of all packets)";
-constexpr std::uint64_t kMaxVainBytes = std::uint64_t{1} << 32U;
+constexpr std::uint64_t kMaxRescanBytes = std::uint64_t{1} << 32U;
 
 /// The next `bytes` bytes, or fewer if they do not come.
 Bytes peek_or_wait(FileWindow& window, std::size_t bytes, const WaitForMore& wait) {
@@ -89,7 +89,7 @@ struct StreamReader::Impl {
 
     enum class Step { kDelivered, kGoOn, kStop };
 
-    /// One step over the file: a packet, an end marker, or the begin of a search.
+    /// One step over the file: a packet, an end marker, or the beginning of a search.
     Step step(SamplePacket& packet);
     Step take_packet(const PacketHeader& found, SamplePacket& packet);
     void deliver(const PacketHeader& found, Bytes payload, SamplePacket& packet);
@@ -122,9 +122,9 @@ struct StreamReader::Impl {
     PacketOrder order;
     StreamReport report;
     std::optional<std::uint64_t> search_begin;  ///< set while searching
-    std::uint64_t searched_to = 0;  ///< end of the tail that `wait_for_rest` has searched
-    std::uint32_t checksum;         ///< of all packets with good CRCs so far
-    std::uint64_t vain_bytes = 0;   ///< of payloads whose CRC was wrong
+    std::uint64_t searched_to = 0;   ///< end of the tail that `wait_for_rest` has searched
+    std::uint32_t checksum;          ///< of all packets with good CRCs so far
+    std::uint64_t rescan_bytes = 0;  ///< of payloads whose CRC was wrong
     std::optional<std::uint64_t> index_offset;  ///< of the index packet, once it was read
     std::optional<std::uint64_t> end_offset;    ///< after the end marker, once it was read
 };
@@ -147,8 +147,8 @@ void StreamReader::Impl::begin_search(std::string_view cause) {
 // Damaged packets may overlap, each header in the payload of the one before. What is left of an
 // honest file does so now and then; a crafted one could make the work quadratic.
 void StreamReader::Impl::limit_rescans(std::size_t payload_bytes) {
-    vain_bytes += payload_bytes;
-    if (vain_bytes / 16 > kMaxVainBytes / 16 + window.offset())
+    rescan_bytes += payload_bytes;
+    if (rescan_bytes / 16 > kMaxRescanBytes / 16 + window.offset())
         throw InputError(fmt::format("{}: byte {}", where, window.offset()),
                          "too many damaged packets overlap; get another copy of the file");
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "apps/arguments/checks.h"
@@ -18,9 +19,9 @@ void add_camera_arguments(Command& command, CameraArguments& arguments) {
                     "settings of the camera, a file of lines Feature = value")
         .type_name("FILE")
         .input();
-    command.add_option("--buffers", arguments.buffers.frames, "frames that the host can hold")
+    command.add_option("--buffers", arguments.buffers.frames, "number of frame buffers on the host")
         .shows_default()
-        .check(whole_check(2, 1024))
+        .check(whole_check(CameraBuffers::kMinFrames, CameraBuffers::kMaxFrames))
         .type_name("N");
 }
 
@@ -37,15 +38,13 @@ bool is_replay(const CameraArguments& arguments) {
 
 void add_incomplete_argument(Command& command, IncompletePolicy& policy) {
     command
-        .add_choice("--incomplete", policy,
-                    {{"drop", IncompletePolicy::kDrop},
-                     {"keep", IncompletePolicy::kKeep},
-                     {"mask", IncompletePolicy::kMask}},
+        .add_choice("--incomplete", policy, kIncompletePolicies,
                     "incomplete frames: drop, keep, or mask (fill missing pixels with 0)")
         .type_name("POLICY");
 }
 
 void add_session_arguments(Command& command, SessionOptions& options) {
+    constexpr std::uint64_t kMaxStallMs{SessionOptions::kMaxStall.count()};
     command
         .add_parsed(
             "--stall",
@@ -55,10 +54,10 @@ void add_session_arguments(Command& command, SessionOptions& options) {
             "open the camera again after a silence of this time and of five frame periods; "
             "0: never")
         .default_text(fmt::format("{} ms", options.stall.count()))
-        .check(whole_check(0, 3'600'000))
+        .check(whole_check(0, kMaxStallMs))
         .type_name("MS");
     command.add_flag(
-        "--no-reconnect", [&options] { options.reconnect = false; }, "end when the camera is gone");
+        "--no-reconnect", [&options] { options.reconnect = false; }, "end when the camera is lost");
 }
 
 void check_session_arguments(const Command& command, const CameraArguments& camera) {

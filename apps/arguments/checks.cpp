@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 
 namespace stipple {
 namespace {
@@ -25,7 +26,8 @@ ValueCheck range_check(std::string kind, Number min, Number max) {
         bool too_large = false;
         const auto value = number_of<Number>(text, &too_large);
         if (value && *value >= min && *value <= max) return {};
-        if (too_large) return fmt::format("\"{}\" is too large; {} is the most", text, max);
+        if (too_large && std::is_integral_v<Number>)
+            return fmt::format("\"{}\" is too large; {} is the most", text, max);
         if (max == std::numeric_limits<Number>::max())
             return fmt::format("\"{}\" is not {} of {} or more", text, kind, min);
         return fmt::format("\"{}\" is not {} from {} to {}", text, kind, min, max);
@@ -39,10 +41,14 @@ ValueCheck number_check(double min, double max) {
 }
 
 ValueCheck positive_check() {
-    return [](const std::string& text) {
+    return [](const std::string& text) -> std::string {
+        constexpr auto kMin = static_cast<double>(std::numeric_limits<float>::min());
+        constexpr auto kMax = static_cast<double>(std::numeric_limits<float>::max());
         const auto value = number_of<double>(text);
-        const bool usable = value && *value > 0 && *value <= std::numeric_limits<double>::max();
-        return usable ? std::string() : fmt::format("\"{}\" is not a number above 0", text);
+        if (value && *value >= kMin && *value <= kMax) return {};
+        if (value && *value > 0)
+            return fmt::format("{} is outside {:.2g}..{:.2g}", text, kMin, kMax);
+        return fmt::format("\"{}\" is not a number above 0", text);
     };
 }
 

@@ -15,7 +15,7 @@ namespace stipple {
 
 /// Finite, and min..max.
 [[nodiscard]] ValueCheck number_check(double min, double max = std::numeric_limits<double>::max());
-/// Finite and above 0.
+/// Above 0, and neither 0 nor infinite as the float that light is.
 [[nodiscard]] ValueCheck positive_check();
 /// Without a fraction, and min..max.
 [[nodiscard]] ValueCheck whole_check(std::uint64_t min,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "apps/arguments/command_description.h"
+#include "core/named_value.h"
 
 namespace CLI {
 class App;
@@ -139,6 +141,16 @@ class Command {
         };
         CommandOption option = add_parsed(names, take, text).one_of(known);
         return preset.empty() ? option : option.default_text(preset);
+    }
+    /// The same, for the values of a table.
+    template <typename Target, typename Value, std::size_t kCount>
+    CommandOption add_choice(const std::string& names, Target& value,
+                             const std::array<NamedValue<Value>, kCount>& table,
+                             const std::string& text) {
+        std::vector<std::pair<std::string, Target>> choices;
+        choices.reserve(kCount);
+        for (const auto& [name, choice] : table) choices.emplace_back(name, choice);
+        return add_choice(names, value, std::move(choices), text);
     }
     CommandOption add_flag(const std::string& names, bool& value, const std::string& text);
     /// A flag that does something.

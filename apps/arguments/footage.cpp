@@ -1,32 +1,18 @@
 #include "apps/arguments/footage.h"
 
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <memory>
 #include <string>
 
 #include "apps/arguments/checks.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "decoder/portz2013/late_opencv.h"
-#include "io/frame_resampler.h"
 #include "scenes/scene.h"
 
 namespace stipple {
 
 void add_footage_arguments(Command& command, FootageOptions& options, const std::string& footage) {
     command
-        .add_choice<std::optional<Transfer>>(
-            "--transfer", options.transfer,
-            {{"linear", Transfer::kLinear},
-             {"gamma22", Transfer::kGamma22},
-             {"srgb", Transfer::kSrgb},
-             {"bt709", Transfer::kBt709},
-             {"pq", Transfer::kPq},
-             {"hlg", Transfer::kHlg},
-             {"auto", Transfer::kAuto}},
-            "how the numbers of " + footage + " map to light; auto: as it declares")
+        .add_choice("--transfer", options.transfer, kTransfers,
+                    "transfer function of " + footage + "; auto: the declared one")
         .default_text("linear, with a warning if they look gamma-coded")
         .type_name("NAME");
     add_raw_argument(command, options.raw, footage);
@@ -55,17 +41,17 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
         .type_name("V");
 }
 
-void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOptions& options) {
+void add_resample_arguments(Command& command, std::optional<Resampling>& method,
+                            FootageOptions& options) {
     constexpr double kMinHz = 0.001;
     constexpr double kMaxHz = 1e9;
     command
-        .add_option("--resample", choice.method,
+        .add_choice("--resample", method, kResamplings,
                     "make slots of frames of another rate: hold the frame before, blend light, or "
                     "move it by optical flow")
         .default_text("each frame is a slot")
-        .one_of({"hold", "blend", "flow"})
         .type_name("METHOD");
-    command.add_option("--footage-hz", options.frames_hz, "frame rate of the footage")
+    command.add_option("--frames-hz", options.frames_hz, "frame rate of the footage")
         .default_text("that in its file")
         .check(number_check(kMinHz, kMaxHz))
         .type_name("HZ");
@@ -73,35 +59,6 @@ void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOpt
         .shows_default()
         .check(positive_check())
         .type_name("FACTOR");
-}
-
-SlotSource slots_of(ReadAhead& footage, const std::string& source, const ResampleChoice& choice,
-                    const FootageOptions& options, double slot_us) {
-    if (choice.method.empty()) return {[&footage] { return footage.next(); }, footage.slots()};
-    const auto hz = options.frames_hz ? options.frames_hz : footage.video_hz();
-    if (!hz)
-        throw InputError(source, "does not tell its frame rate; --resample needs --footage-hz");
-    const bool flow = choice.method == "flow";
-    if (flow && footage.filter() != ColourFilter::kNone)
-        throw InputError(source,
-                         "is the mosaic of a colour filter array, whose colours --resample flow "
-                         "would mix; use blend");
-    const FrameShape shape = footage.shape();
-    const double frames_per_slot = *hz * slot_us * 1e-6;
-    const bool is_small = std::min(shape.rows, shape.cols) < kMinDisFlowSide;
-    const auto resampler = std::make_shared<FrameResampler>(
-        shape,
-        ResamplingOptions{.method = flow                       ? Resampling::kFlow
-                                    : choice.method == "blend" ? Resampling::kBlend
-                                                               : Resampling::kHold,
-                          .frames_per_slot = frames_per_slot,
-                          .flow = is_small ? FlowFunction() : dis_flow},
-        [&footage] { return footage.next(); });
-    SlotSource slots{[resampler] { return resampler->next(); }, {}};
-    if (const auto frames = footage.slots())
-        slots.slots = static_cast<int>(std::min<std::int64_t>(
-            resampled_slots(*frames, frames_per_slot), std::numeric_limits<int>::max()));
-    return slots;
 }
 
 ReadAhead read_footage(const std::string& source, const FootageOptions& options) {

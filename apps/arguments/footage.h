@@ -1,12 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "apps/arguments/command_line.h"
 #include "capture/recording/read_ahead.h"
+#include "io/frame_resampler.h"
 
 namespace stipple {
 
@@ -22,25 +21,9 @@ void add_raw_argument(Command& command, std::optional<RawFormat>& raw, const std
 /// `--max-value V`: positive and finite.
 void add_max_value(Command& command, std::optional<double>& max_value);
 
-/// How the frames of footage become slots.
-struct ResampleChoice {
-    std::string method;  ///< hold, blend, flow; empty: each frame is a slot
-};
-
-/// `--resample`, `--footage-hz` and `--scale`.
-void add_resample_arguments(Command& command, ResampleChoice& choice, FootageOptions& options);
-
-/// Slots of the sensor one after the other, empty at the end.
-struct SlotSource {
-    std::function<std::span<const float>()> next;
-    std::optional<int> slots;  ///< if the footage tells
-};
-
-/// The slots of `footage`, which must outlive them. \throws InputError naming `source` if its frame
-/// rate is necessary but unknown, or if it is a mosaic that flow would mix.
-[[nodiscard]] SlotSource slots_of(ReadAhead& footage, const std::string& source,
-                                  const ResampleChoice& choice, const FootageOptions& options,
-                                  double slot_us);
+/// `--resample`, `--frames-hz` and `--scale`.
+void add_resample_arguments(Command& command, std::optional<Resampling>& method,
+                            FootageOptions& options);
 
 /// Footage or a recording. What its reader warns of goes to standard error. \throws InputError as
 /// ReadAhead.

@@ -25,7 +25,7 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .type_name("S");
 }
 
-NamedSchedule set_up_schedule(const ScheduleChoice& choice) {
+NamedSchedule chosen_schedule(const ScheduleChoice& choice) {
     return set_up_schedule(
         {.schedule = choice.schedule, .schedule_settings = choice.settings, .seed = choice.seed},
         choice.shape, ColumnAddressing{});

@@ -26,6 +26,6 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice);
 [[nodiscard]] SettingsSection schedule_section(ScheduleChoice& choice);
 
 /// Reads the schedule and makes it for the array. \throws InputError naming file, line and key.
-[[nodiscard]] NamedSchedule set_up_schedule(const ScheduleChoice& choice);
+[[nodiscard]] NamedSchedule chosen_schedule(const ScheduleChoice& choice);
 
 }  // namespace stipple

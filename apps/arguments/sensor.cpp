@@ -6,12 +6,16 @@
 
 namespace stipple {
 
-void add_sensor_arguments(Command& command, SensorChoice& sensor) {
-    command.add_option("--sensor", sensor.sensor, "sensor, of \"stipple list sensors\"")
+CommandOption add_sensor(Command& command, std::string& sensor) {
+    return command.add_option("--sensor", sensor, "sensor, of \"stipple list sensors\"")
         .shows_default()
         .type_name("NAME|FILE")
         .listed("sensors")
         .input();
+}
+
+void add_sensor_arguments(Command& command, SensorChoice& sensor) {
+    add_sensor(command, sensor.sensor);
     command
         .add_option("--schedule", sensor.schedule,
                     "exposure schedule, of \"stipple list schedules\"")
@@ -28,8 +32,7 @@ void add_sensor_arguments(Command& command, SensorChoice& sensor) {
 
 void add_overrun(Command& command, OverrunPolicy& policy) {
     command
-        .add_choice("--overrun", policy,
-                    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}},
+        .add_choice("--overrun", policy, kOverrunPolicies,
                     "a readout that exceeds its slot: stretch the slot, or drop its last rows; "
                     "drop needs a sensor with timing")
         .type_name("POLICY");

@@ -12,6 +12,9 @@
 
 namespace stipple {
 
+/// `--sensor`.
+CommandOption add_sensor(Command& command, std::string& sensor);
+
 /// `--sensor`, `--schedule`, `--seed` and `--overrun`.
 void add_sensor_arguments(Command& command, SensorChoice& sensor);
 

@@ -19,8 +19,6 @@
 namespace stipple {
 namespace {
 
-constexpr double kFramesPerS = 25;
-
 void say_warnings_of_footage(const ServedSourceChoice& choice) {
     FootageReader reader(choice.path, choice.reading);
     for (const std::string& warning : reader.take_warnings()) say_warning(warning);
@@ -36,7 +34,8 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
                 "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
     return std::make_unique<FootageFrames>(choice.path, choice.reading,
-                                           choice.frames_per_s.value_or(kFramesPerS), format);
+                                           choice.frames_hz.value_or(ServedImage::kUsualFramesHz),
+                                           format);
 }
 
 }  // namespace
@@ -52,10 +51,11 @@ void add_served_source(Command& command, ServedSourceChoice& source) {
                     {{"frames", ServedMode::kFrames}, {"coded", ServedMode::kCoded}},
                     "send frames as they are, or the coded samples of a sensor")
         .type_name("MODE");
-    command.add_option("--fps", source.frames_per_s, "frames or slots per second")
-        .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}", kFramesPerS))
-        .check(number_check(0.01, 100000.0))
-        .type_name("N");
+    command.add_option("--frames-hz", source.frames_hz, "frame rate, or slot rate of mode coded")
+        .default_text(fmt::format("as recorded; in mode coded as the sensor; else {}",
+                                  ServedImage::kUsualFramesHz))
+        .check(number_check(ServedImage::kMinFramesHz, ServedImage::kMaxFramesHz))
+        .type_name("HZ");
     command.add_option("--format", source.format, "pixel format of footage, in mode frames")
         .default_text("Mono8, RGB8 for colour")
         .type_name("NAME");
@@ -72,13 +72,13 @@ std::unique_ptr<FrameSource> open_served_source(const ServedSourceChoice& choice
     if (coded)
         return std::make_unique<CodedFrames>(
             choice.path, origin_of(choice.path, choice.reading, [] { throw_if_stopped(); }),
-            choice.sensor, choice.frames_per_s);
+            choice.sensor, choice.frames_hz);
     if (!is_recording(choice.path)) return open_footage(choice);
     if (!choice.format.empty())
         throw InputError("--format " + choice.format,
                          "a recording is served in the format it was recorded in; leave it out");
     check_recording_options(choice.path, choice.reading);
-    return std::make_unique<RecordingFrames>(choice.path, choice.frames_per_s);
+    return std::make_unique<RecordingFrames>(choice.path, choice.frames_hz);
 }
 
 }  // namespace stipple

@@ -21,14 +21,14 @@ enum class ServedMode : std::uint8_t {
 struct ServedSourceChoice {
     std::string path;
     ServedMode mode = ServedMode::kFrames;
-    std::optional<double> frames_per_s;
+    std::optional<double> frames_hz;
     std::string format;  ///< of footage in mode frames; empty: Mono8
     FootageOptions reading;
     SensorChoice sensor;  ///< of mode coded
 };
 
-/// SOURCE and how it is served: `--mode`, `--fps`, `--format`, and the arguments of footage and
-/// sensor.
+/// SOURCE and how it is served: `--mode`, `--frames-hz`, `--format`, and the arguments of footage
+/// and sensor.
 void add_served_source(Command& command, ServedSourceChoice& source);
 
 /// Opens the source. \throws InputError naming the file or option that cannot be used.

@@ -93,8 +93,8 @@ std::string leftover_problem(const std::vector<const CLI::App*>& commands) {
 std::string count_problem(const CLI::App& command, const std::string& last_word) {
     for (const CLI::Option* option : command.get_options()) {
         const auto count = static_cast<int>(option->count());
-        const int most = option->get_items_expected_max();  // of flags 0
-        if (most > 0 && count > most)
+        const int max_count = option->get_items_expected_max();  // of flags 0
+        if (max_count > 0 && count > max_count)
             return fmt::format("{} is given {} times; give it once", option->get_name(), count);
     }
     const CLI::Option* last = command.get_option_no_throw(last_word);

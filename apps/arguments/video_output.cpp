@@ -26,11 +26,11 @@ void add_image_arguments(Command& command, ImageCoding& images) {
         .type_name("f32|f16|u16");
     command
         .add_option("--full-scale", images.full_scale,
-                    "of u16: the light that 65535 stands for; brighter light is clipped")
+                    "with u16: light of code 65535; brighter light is clipped")
         .shows_default()
         .check(positive_check())
         .type_name("LIGHT");
-    command.add_option("--pixel-um", images.pixel_um, "of .tif: size of a pixel, for OME-XML")
+    command.add_option("--pixel-um", images.pixel_um, "with .tif: size of a pixel, for OME-XML")
         .check(number_check(0, kMaxPixelUm))
         .type_name("UM");
 }
@@ -44,24 +44,24 @@ void add_video_arguments(Command& command, VideoCoding& video, ImageCoding& imag
     command
         .add_choice("--video", video.curve,
                     {{"sdr", VideoCurve::kSdr}, {"pq", VideoCurve::kPq}, {"hlg", VideoCurve::kHlg}},
-                    "of .mp4 and .mkv: tone-mapped, or HDR of 10 bits by BT.2100 ")
+                    "of .mp4 and .mkv: tone-mapped, or 10-bit HDR by BT.2100")
         .type_name("sdr|pq|hlg");
     command
         .add_choice("--codec", video.codec, {{"hevc", HdrCodec::kHevc}, {"av1", HdrCodec::kAv1}},
-                    "of HDR video")
+                    "codec of HDR video")
         .type_name("hevc|av1");
-    command.add_option("--fps", video.frames_per_second, "frames per second at which video plays")
+    command.add_option("--fps", video.frames_hz, "frames per second at which video plays")
         .shows_default()
         .check(number_check(kMinHz, kMaxHz))
         .type_name("RATE");
     command
         .add_option("--cd-per-unit", video.cd_per_unit,
-                    "of HDR video: luminance of light 1.0 in cd/m2")
+                    "with HDR video: luminance of light 1.0 in cd/m2")
         .shows_default()
         .check(positive_check())
         .type_name("L");
     command
-        .add_option("--peak-cd", video.peak_cd, "of --video pq: clip to this luminance, in cd/m2")
+        .add_option("--peak-cd", video.peak_cd, "with --video pq: clip to this luminance, in cd/m2")
         .shows_default()
         .check(number_check(kMinPeakCd, kPqMaxCd))
         .type_name("L");
@@ -74,21 +74,22 @@ void check_video_arguments(const Command& command, const VideoCoding& video,
     const bool is_stack = extension == ".tif" || extension == ".tiff";
     const bool is_video = extension == ".mp4" || extension == ".mkv";
     if (is_video || is_stack || extension == ".npy")
-        command.refuse({"--images"}, "is of a folder of images");
+        command.refuse({"--images"}, "needs a folder of images as output");
     if (is_video || extension == ".npy")
-        command.refuse({"--samples", "--full-scale"}, "is of a folder of images, or of .tif");
-    if (!is_stack) command.refuse({"--pixel-um"}, "is of .tif");
+        command.refuse({"--samples", "--full-scale"},
+                       "needs a folder of images or a .tif as output");
+    if (!is_stack) command.refuse({"--pixel-um"}, "needs a .tif as output");
     const bool png = images.format == ImageFormat::kPng;
     if (images.samples.value_or(png ? SampleKind::kWord : SampleKind::kFloat) != SampleKind::kWord)
-        command.refuse({"--full-scale"}, "is of integers; add --samples u16");
+        command.refuse({"--full-scale"}, "needs integers; add --samples u16");
     if (!is_video)
         command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd"},
-                       "is of .mp4 and .mkv; this output is linear light");
+                       "needs .mp4 or .mkv; this output is linear light");
     if (video.curve == VideoCurve::kSdr)
         command.refuse({"--codec", "--cd-per-unit", "--peak-cd"},
-                       "is of HDR video; add --video pq or --video hlg");
+                       "needs HDR video; add --video pq or --video hlg");
     if (video.curve == VideoCurve::kHlg)
-        command.refuse({"--peak-cd"}, "is of --video pq; the peak of HLG is that of the display");
+        command.refuse({"--peak-cd"}, "needs --video pq; the peak of HLG is that of the display");
 }
 
 }  // namespace stipple

@@ -13,7 +13,7 @@ struct TrialResult {
     std::string name;
     std::string schedule;
     std::string text;  ///< description
-    RecordingSize size;
+    StreamSize size;
     VideoQuality quality;
 };
 

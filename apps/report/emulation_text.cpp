@@ -12,22 +12,17 @@
 namespace stipple {
 
 nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
-                                      std::optional<double> slots_per_s) {
-    const ReadoutStats& stats = recorder.stats();
-    auto json = json_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
-    json["slots_per_second"] = nullptr;
-    json["samples_per_second"] = nullptr;
-    if (slots_per_s) {
-        json["slots_per_second"] = *slots_per_s;
-        json["samples_per_second"] =
-            *slots_per_s * static_cast<double>(stats.samples) / static_cast<double>(stats.slots);
-    }
+                                      std::optional<double> slots_per_second) {
+    auto json = json_of([&](const auto& add) {
+        visit_emulation_figures(recorder, add);
+        visit_speed_figures(recorder, slots_per_second, add);
+    });
     if (const ReadoutCost* cost = recorder.readout_cost())
         json["readout"] = readout_json(*cost, recorder.light_throughput());
     return json;
 }
 
-std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_s) {
+std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_second) {
     const SensorSetup& setup = recorder.setup();
     const ReadoutStats& stats = recorder.stats();
     const std::string per_sample =
@@ -42,7 +37,7 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         counted(recorder.samples(), "sample"), setup.params.bit_depth,
         any ? per_sample : ": no exposure ended within the footage",
         100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
-        slots_per_s ? fmt::format(", {} slots/s", rounded(*slots_per_s)) : "");
+        slots_per_second ? fmt::format(", {} slots/s", rounded(*slots_per_second)) : "");
     if (const ReadoutCost* cost = recorder.readout_cost())
         text.append(1, '\n').append(readout_text(*cost));
     return text;

@@ -2,8 +2,18 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 namespace stipple {
+
+/// What is known; null if there is no value, or the text is empty.
+template <typename Value>
+[[nodiscard]] nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+[[nodiscard]] inline nlohmann::ordered_json or_null(const std::string& text) {
+    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
 
 /// A JSON object of the figures that `visit(add)` adds, in their order: the functions
 /// `visit_..._figures` of the libraries. std::nullopt becomes null.
@@ -12,7 +22,7 @@ template <typename Visit>
     auto json = nlohmann::ordered_json::object();  // [] of null aborts where memory runs out
     visit([&](const char* name, const auto& value) {
         if constexpr (requires { value.has_value(); })
-            json[name] = value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+            json[name] = or_null(value);
         else
             json[name] = value;
     });

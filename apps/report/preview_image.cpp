@@ -21,14 +21,14 @@ std::vector<float> marked(const PreviewFrame& frame) {
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
             const float own = frame.light[frame.shape.planes == 3 ? plane * pixels + pixel : pixel];
             const float red = plane == 0 ? kWhiteLight : 0;
-            light[plane * pixels + pixel] = frame.too_bright[pixel] ? red : own;
+            light[plane * pixels + pixel] = frame.saturated[pixel] ? red : own;
         }
     return light;
 }
 
 void write_image(const std::filesystem::path& file, const PreviewFrame& frame) {
-    const auto text = fmt::format("slot {}: mean light {:.3f}, {:.2f} % too bright", frame.slot,
-                                  frame.mean_light(), 100 * frame.too_bright_fraction());
+    const auto text = fmt::format("slot {}: mean light {:.3f}, {:.2f} % saturated", frame.slot,
+                                  frame.mean_light(), 100 * frame.saturated_fraction());
     SideBySide image({frame.shape.rows, frame.shape.cols, 3}, {text});
     image.put(0, marked(frame));
     image.write(file, true);

@@ -100,6 +100,23 @@ std::string table_csv(const FrameTable& table) {
     return text;
 }
 
+/// gnuplot chooses no range where nothing is finite, and ends.
+std::string ranges_of(const FrameTable& table) {
+    const auto has_point = [&](bool of_similarity) {
+        return std::ranges::any_of(table.metrics, [&](const QualityMetric& metric) {
+            return metric.of_a_frame && metric.is_similarity == of_similarity &&
+                   std::ranges::any_of(table.frames, [&](const VideoQuality& frame) {
+                       return std::isfinite(metric.value(frame));
+                   });
+        });
+    };
+    const double begin = static_cast<double>(table.first_frame) - 0.5;
+    return fmt::format("set xrange [{}:{}]\n{}{}", begin,
+                       begin + static_cast<double>(table.frames.size()),
+                       has_point(false) ? "" : "set yrange [0:1]\n",
+                       has_point(true) ? "set y2range [*:1]\n" : "set y2range [0:1]\n");
+}
+
 std::string table_chart(const FrameTable& table, std::string_view extension) {
     std::string commands = "$frames << END\n";
     for (std::size_t i = 0; i < table.frames.size(); ++i) {
@@ -110,18 +127,19 @@ std::string table_chart(const FrameTable& table, std::string_view extension) {
     }
     commands +=
         "END\n"
-        "set title 'Quality of each frame'\nset xlabel 'frame'\nset grid\nset key outside right\n";
+        "set title 'Quality of each frame'\nset xlabel 'frame'\nset grid\nset key outside right\n" +
+        ranges_of(table);
     std::string plot;
     for (std::size_t i = 0; i < table.metrics.size(); ++i) {
         const QualityMetric& metric = table.metrics[i];
         if (!metric.of_a_frame) continue;
-        plot +=
-            fmt::format("{}$frames using 1:{} axes x1{} title '{}' with lines linewidth 2{}",
-                        plot.empty() ? "plot " : ", ", i + 2, metric.is_similarity ? "y2" : "y1",
-                        metric.title, metric.is_similarity ? " dashtype 2" : "");
-        commands += metric.is_similarity
-                        ? "set y2label 'similarity'\nset y2tics\nset y2range [*:1]\n"
-                        : "set ylabel 'dB'\nset ytics nomirror\n";
+        plot += fmt::format(
+            "{}$frames using 1:{} axes x1{} title '{}' with linespoints pointtype 7 pointsize 0.4 "
+            "linewidth 2{}",
+            plot.empty() ? "plot " : ", ", i + 2, metric.is_similarity ? "y2" : "y1", metric.title,
+            metric.is_similarity ? " dashtype 2" : "");
+        commands += metric.is_similarity ? "set y2label 'similarity'\nset y2tics\n"
+                                         : "set ylabel 'dB'\nset ytics nomirror\n";
     }
     return draw_chart(extension, {}, commands + plot + "\n");
 }

@@ -42,7 +42,7 @@ std::string readout_text(const ReadoutCost& cost) {
         "Mbit/s",
         slots_hz, 100 * use.rows, 100 * use.adc, 100 * use.link, totals.bits,
         totals.energy_pj * 1e-6, schedule_memory_bits(cost.schedule()),
-        1e-6 * code_bits_per_s(cost, slots_hz));
+        1e-6 * code_bits_per_second(cost, slots_hz));
     if (cost.overruns() > 0)
         text += fmt::format(
             "\noverruns     {} longer than {} clocks: {}", counted(cost.overruns(), "slot"),
@@ -79,7 +79,7 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
         rate.speedup, name_of(rate.slowest.limit), rate.balanced_speedup, 100 * use.rows,
         100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
         rate.period.energy_pj / period * 1e-6, coded_sample_pj(rate),
-        schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_s(cost, rate.coded_hz),
+        schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_second(cost, rate.coded_hz),
         cost.timing().code_load_clocks, cost.budget().clocks,
         fits_slot(rate, cost) ? "fits" : "does not fit");
 }

@@ -6,15 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "apps/report/json_figures.h"
 #include "apps/standard_error.h"
+#include "capture/session_figures.h"
 
 namespace stipple {
 
 nlohmann::ordered_json lost_json(const SessionTotals& totals) {
-    auto json = nlohmann::ordered_json::object();  // [] of null aborts where memory runs out
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        json[std::string(kGapCauseNames[i])] = totals.lost[i];
-    return json;
+    return json_of([&](const auto& add) { visit_lost_figures(totals, add); });
 }
 
 std::string lost_text(const SessionTotals& totals) {
@@ -26,12 +25,7 @@ std::string lost_text(const SessionTotals& totals) {
 }
 
 nlohmann::ordered_json transport_json(const TransportCounts& counts) {
-    return {{"underruns", counts.underruns},
-            {"packets_resent", counts.packets_resent},
-            {"packets_missing", counts.packets_missing},
-            {"socket_drops", counts.socket_drops},
-            {"link_faults", counts.link_faults},
-            {"size_mismatches", counts.size_mismatches}};
+    return json_of([&](const auto& add) { visit_transport_figures(counts, add); });
 }
 
 std::string losses_text(const SessionTotals& totals) {
@@ -42,7 +36,7 @@ std::string losses_text(const SessionTotals& totals) {
 
 void say_event(const SessionEvent& event) {
     if (const auto* const outage = std::get_if<Outage>(&event))
-        say_error("the camera is gone ({}); opening it anew", outage->reason);
+        say_error("camera lost ({}); reopening it", outage->reason);
     if (const auto* const recovery = std::get_if<Recovery>(&event))
         say_error("the camera is back after {:.1f} s", recovery->gone_s);
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);

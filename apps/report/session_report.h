@@ -20,7 +20,7 @@ namespace stipple {
 /// all is well.
 [[nodiscard]] std::string losses_text(const SessionTotals& totals);
 
-/// Tells on standard error that the camera is gone or back, or what is wrong at the end of a
+/// Tells on standard error that the camera is lost or back, or what is wrong at the end of a
 /// replay.
 void say_event(const SessionEvent& event);
 

@@ -13,16 +13,16 @@ namespace stipple {
 namespace {
 
 /// Differences with their sign in the lowest bit; low bytes, then high bytes.
-std::vector<unsigned char> difference_bytes(std::span<const std::uint16_t> values) {
+std::vector<unsigned char> difference_bytes(std::span<const std::uint16_t> values,
+                                            std::size_t step) {
     const std::size_t count = values.size();
     std::vector<unsigned char> bytes(2 * count);
-    std::uint16_t before = 0;
     for (std::size_t i = 0; i < count; ++i) {
+        const int before = i < step ? 0 : values[i - step];
         const auto difference = static_cast<std::int16_t>(values[i] - before);
         const auto folded = static_cast<unsigned>(2 * difference ^ (difference < 0 ? -1 : 0));
         bytes[i] = static_cast<unsigned char>(folded & 0xffU);
         bytes[count + i] = static_cast<unsigned char>(folded >> 8U & 0xffU);
-        before = values[i];
     }
     return bytes;
 }
@@ -51,8 +51,8 @@ double light_of_code(std::uint16_t code) noexcept {
     return code == 0 ? 0 : kDarkestCodedLight * std::exp2((code - 1) / double{kCodesPerStop});
 }
 
-std::string packed_plane(std::span<const std::uint16_t> values) {
-    const auto bytes = deflated(difference_bytes(values));
+std::string packed_plane(std::span<const std::uint16_t> values, std::size_t step) {
+    const auto bytes = deflated(difference_bytes(values, step));
     std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // EVP_EncodeBlock ends it with a zero
     EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(),
                     static_cast<int>(bytes.size()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -17,9 +18,10 @@ inline constexpr int kCodesPerStop = 128;
 /// The light of a code.
 [[nodiscard]] double light_of_code(std::uint16_t code) noexcept;
 
-/// `values` as text for the page: the differences of successive values (modulo 2^16, the first from
-/// 0) with their sign in the lowest bit (2 d, or -2 d - 1 below 0), all low bytes and then all high
-/// bytes, deflated (zlib), in base64. page/planes.js reads it.
-[[nodiscard]] std::string packed_plane(std::span<const std::uint16_t> values);
+/// `values` as text for the page: the difference of each value from that `step` before it (modulo
+/// 2^16, the first ones from 0) with its sign in the lowest bit (2 d, or -2 d - 1 below 0), all low
+/// bytes and then all high bytes, deflated (zlib), in base64. page/planes.js reads it. `step` > 1:
+/// values of so many colours take turns.
+[[nodiscard]] std::string packed_plane(std::span<const std::uint16_t> values, std::size_t step = 1);
 
 }  // namespace stipple

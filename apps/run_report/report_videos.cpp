@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/report/json_figures.h"
 #include "apps/report/quality_json.h"
 #include "apps/run_report/plane_code.h"
 
@@ -42,11 +43,7 @@ void ReportVideos::put(std::size_t video, std::int64_t slot, std::span<const flo
     const auto reference = truth_->frame(static_cast<int>(slot));
     if (reference.data() == frame.data()) return;  // the truth itself
     to.meter.add(frame, reference);
-    QualityOptions of_one = options_;
-    of_one.margin = 0;
-    QualityMeter one(shape_, of_one);
-    one.add(frame, reference);
-    to.frames.push_back(one.quality());
+    to.frames.push_back(to.meter.last_quality());
 }
 
 /// Of the last one of the first `pictures`.
@@ -89,7 +86,7 @@ ordered_json ReportVideos::json() const {
     ordered_json list = ordered_json::array();
     for (const Video& video : videos_) {
         ordered_json entry{{"name", video.title.name}, {"text", video.title.text}};
-        entry["run"] = video.title.run ? ordered_json(*video.title.run) : ordered_json();
+        entry["run"] = or_null(video.title.run);
         entry["quality"] = quality_of(video);
         list.push_back(entry);
     }

@@ -23,6 +23,13 @@ std::optional<int> take_number(std::string_view& text) {
 
 }  // namespace
 
+PixelArea middle_area(FrameShape frame, int max_rows, int max_cols) {
+    PixelArea area{.rows = std::min(frame.rows, max_rows), .cols = std::min(frame.cols, max_cols)};
+    area.first_row = (frame.rows - area.rows) / 2;
+    area.first_col = (frame.cols - area.cols) / 2;
+    return area;
+}
+
 std::optional<PixelArea> parse_area(std::string_view text) {
     constexpr std::string_view kSeparators = "x++";
     std::array<int, 4> numbers{};
@@ -47,11 +54,7 @@ PixelArea report_area(FrameShape frame, const std::optional<PixelArea>& wanted) 
                                                    frame.cols, frame.rows));
         return *wanted;
     }
-    PixelArea area{.rows = std::min(frame.rows, kLargestReportArea.rows),
-                   .cols = std::min(frame.cols, kLargestReportArea.cols)};
-    area.first_row = (frame.rows - area.rows) / 2;
-    area.first_col = (frame.cols - area.cols) / 2;
-    return area;
+    return middle_area(frame, kLargestReportArea.rows, kLargestReportArea.cols);
 }
 
 std::vector<float> cropped(std::span<const float> frame, FrameShape shape, const PixelArea& area) {

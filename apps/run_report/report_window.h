@@ -23,6 +23,9 @@ struct PixelArea {
 /// The most pixels that a report shows unless it is told otherwise.
 inline constexpr PixelArea kLargestReportArea{.rows = 480, .cols = 640};
 
+/// The middle of `frame`, with at most so many pixels.
+[[nodiscard]] PixelArea middle_area(FrameShape frame, int max_rows, int max_cols);
+
 /// "320x240+100+50": width, height, first column, first row; without a place it lies at (0, 0).
 /// Nothing for other texts, and for an area without pixels.
 [[nodiscard]] std::optional<PixelArea> parse_area(std::string_view text);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "apps/report/json_figures.h"
 #include "apps/report/stream_text.h"
 #include "apps/run_report/plane_code.h"
 #include "apps/run_report/report_page.h"
@@ -78,7 +79,7 @@ ordered_json RunReport::Run::json() const {
     const StreamHeader& header = reader.header();
     const std::string command = command_of(header.provenance);
     ordered_json json{{"name", name}, {"stream", stream_json(header, reader.report())}};
-    json["command"] = command.empty() ? ordered_json() : ordered_json(command);
+    json["command"] = or_null(command);
     json["filter"] = filter_json(header.cfa);
     json["samples"] = samples.json();
     json["loads"] = loads.json();
@@ -91,11 +92,12 @@ RunReport::RunReport(RunReportOptions options, FrameShape shape, const FluxVideo
     : options_(std::move(options)),
       shape_(shape),
       area_(report_area(shape, options_.area)),
-      truth_(truth != nullptr),
+      truth_slots_(truth == nullptr ? 0 : truth->slots()),
       videos_(shape, area_, options_.quality, truth) {
     if (area_.rows < shape.rows || area_.cols < shape.cols)
         notes_.push_back(fmt::format(
-            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on (--crop).",
+            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on (report "
+            "--crop).",
             area_.cols, area_.rows, shape.cols, shape.rows, area_.first_col, area_.first_row));
     if (truth == nullptr) return;
     videos_.add({"truth", "the light that the sensor saw", {}});
@@ -109,9 +111,9 @@ std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::s
     const FrameShape shape = decoded_shape(run->reader.header());
     if (shape != shape_)
         throw InputError(stream.string(),
-                         fmt::format("has frames of {} x {} x {} (rows x columns x planes), the "
+                         fmt::format("has frames of {} x {} x {} (width x height x planes), the "
                                      "report has {} x {} x {}",
-                                     shape.rows, shape.cols, shape.planes, shape_.rows, shape_.cols,
+                                     shape.cols, shape.rows, shape.planes, shape_.cols, shape_.rows,
                                      shape_.planes));
     run->read(options_);
     slots_ = std::max(slots_, run->loads.slots());
@@ -138,6 +140,9 @@ void RunReport::set_camera(const ordered_json& camera) {
 }
 
 void RunReport::fit() {
+    if (truth_slots_ > 0 && truth_slots_ < slots_)
+        notes_.push_back(fmt::format("The truth has {} of {} slots; quality is of these.",
+                                     truth_slots_, slots_));
     std::size_t beside = report_page(options_.title, json(), {}).size();
     for (const auto& run : runs_) beside += run->samples.bytes();
     while (beside + videos_.bytes() > options_.max_bytes && videos_.step() < slots_)
@@ -172,7 +177,7 @@ ordered_json empty_report_json(const std::string& title, const std::string& comm
 
 ordered_json RunReport::json() const {
     ordered_json json = empty_report_json(options_.title, options_.command);
-    json["truth"] = truth_ ? ordered_json(0) : ordered_json();
+    json["truth"] = truth_slots_ > 0 ? ordered_json(0) : ordered_json();
     json["notes"] = notes_;
     json["featured"] = featured_;
     json["slots"] = slots_;

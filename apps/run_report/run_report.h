@@ -72,7 +72,7 @@ class RunReport {
     RunReportOptions options_;
     FrameShape shape_;
     PixelArea area_;
-    bool truth_;
+    std::int64_t truth_slots_;  ///< 0: there is no truth
     std::size_t featured_ = 0;
     ReportVideos videos_;
     std::vector<std::unique_ptr<Run>> runs_;

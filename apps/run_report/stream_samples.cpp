@@ -104,7 +104,8 @@ void StreamSamples::add(const SamplePacket& packet) {
 void StreamSamples::finish() {
     if (dn_.empty()) return;
     planes_.push_back({fmt::format("k-{}", slot_), packed_plane(kinds_)});
-    planes_.push_back({fmt::format("d-{}", slot_), packed_plane(dn_)});
+    planes_.push_back({fmt::format("d-{}", slot_),
+                       packed_plane(dn_, static_cast<std::size_t>(header_.shape.planes))});
     for (const PackedPlane& plane : std::span(planes_).last(2))
         bytes_ += plane.text.size() + kPlaneTagBytes;
     std::ranges::fill(kinds_, std::uint16_t{0});

@@ -49,7 +49,7 @@ def write_footage(file):
 
 
 def start_camera(stipple, footage):
-    camera = subprocess.Popen([*stipple, "capture", "serve", footage, "--format", "Mono16", "--fps",
+    camera = subprocess.Popen([*stipple, "capture", "serve", footage, "--format", "Mono16", "--frames-hz",
                                str(RATE), "--repeat", "--address", ADDRESS],
                               stdout=subprocess.PIPE, text=True)
     line = camera.stdout.readline()

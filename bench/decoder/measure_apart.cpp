@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/parallel.h"
+#include "core/shell_quoted.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
@@ -25,26 +25,14 @@ struct PipeCloser {
     void operator()(std::FILE* pipe) const { pclose(pipe); }
 };
 
-/// For the shell.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) {
-        if (c == '\'') result += "'\\'";
-        result += c;
-    }
-    result += '\'';
-    return result;
-}
-
 /// Without the first and last slots, where less is known.
 VideoQuality quality_of(const std::filesystem::path& decoded, const RecordedClip& clip) {
     FootageReader video(decoded);
     FootageReader reference(clip.truth);
     std::vector<float> frame(video.shape().sites());
     std::vector<float> reference_frame(reference.shape().sites());
-    QualityMeter meter(
-        reference.shape(),
-        {.margin = std::min(4, (reference.slots().value() - 1) / 2), .max_value = clip.brightest});
+    QualityMeter meter(reference.shape(), {.margin = usual_margin(reference.slots().value()),
+                                           .max_value = clip.brightest});
     while (video.read(frame) && reference.read(reference_frame)) meter.add(frame, reference_frame);
     return meter.quality();
 }
@@ -79,10 +67,12 @@ void decode_and_print(const RecordedClip& clip, const MethodRun& run) {
 
 MethodFigures measure_apart(const RecordedClip& clip, const MethodRun& run) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe");
-    std::string command = fmt::format("{} --child {} {} {} {} {:d}", quoted(program.string()),
-                                      quoted(clip.stream.string()), quoted(clip.truth.string()),
-                                      clip.brightest, quoted(run.method), run.one_thread);
-    for (const std::string& setting : run.settings) command += fmt::format(" {}", quoted(setting));
+    std::string command =
+        fmt::format("{} --child {} {} {} {} {:d}", shell_quoted(program.string()),
+                    shell_quoted(clip.stream.string()), shell_quoted(clip.truth.string()),
+                    clip.brightest, shell_quoted(run.method), run.one_thread);
+    for (const std::string& setting : run.settings)
+        command += fmt::format(" {}", shell_quoted(setting));
     const std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
     MethodFigures f;
     long long peak = 0;

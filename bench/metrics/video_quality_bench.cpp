@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "metrics/csf_error.h"
 #include "metrics/ssim.h"
+#include "tests/support/noise.h"
 
 namespace stipple {
 namespace {
@@ -17,20 +18,17 @@ namespace {
 constexpr FrameShape kVga{480, 640, 3};
 
 /// Light 0..2 of no structure.
-std::vector<float> noise(std::uint32_t state) {
-    std::vector<float> values(kVga.sites());
-    for (float& value : values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 8388608.0F;
-    }
+std::vector<float> vga_noise(std::uint32_t state) {
+    std::vector<float> values = noise(kVga.sites(), state);
+    for (float& value : values) value *= 2;
     return values;
 }
 
 /// One colour frame in all measures. Argument: threads.
 void compare_frame(benchmark::State& state) {
     const ThreadLimit limit(static_cast<int>(state.range(0)));
-    const std::vector<float> result = noise(1);
-    const std::vector<float> reference = noise(2);
+    const std::vector<float> result = vga_noise(1);
+    const std::vector<float> reference = vga_noise(2);
     QualityMeter meter(kVga, {});
     for ([[maybe_unused]] auto unused : state) meter.add(result, reference);
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kVga.sites()));
@@ -39,8 +37,8 @@ BENCHMARK(compare_frame)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillis
 
 void ssim_of_a_plane(benchmark::State& state) {
     const ThreadLimit limit(1);
-    const std::vector<float> x = noise(1);
-    const std::vector<float> y = noise(2);
+    const std::vector<float> x = vga_noise(1);
+    const std::vector<float> y = vga_noise(2);
     for ([[maybe_unused]] auto unused : state)
         benchmark::DoNotOptimize(
             ssim({x.data(), kVga.rows, kVga.cols}, {y.data(), kVga.rows, kVga.cols}));
@@ -50,7 +48,7 @@ BENCHMARK(ssim_of_a_plane)->Unit(benchmark::kMillisecond);
 
 void weighted_error_of_a_plane(benchmark::State& state) {
     const ThreadLimit limit(1);
-    const std::vector<float> error = noise(1);
+    const std::vector<float> error = vga_noise(1);
     const CsfError meter(kVga, 60);
     for ([[maybe_unused]] auto unused : state)
         benchmark::DoNotOptimize(meter.mean_square(std::span(error).first(kVga.pixels())));

@@ -1,5 +1,5 @@
 // One thread, Msamples/s (items_per_second), the argument is the mean in electrons. The mean
-// varies by +-10 % from sample to sample, as in a image; the pixels are every fourth or so.
+// varies by +-10 % from sample to sample, as in an image; the pixels are every fourth or so.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -3,19 +3,19 @@
 #include <arv.h>
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "capture/aravis/aravis_device.h"
 #include "capture/aravis/aravis_stream.h"
-#include "capture/recording/recording_format.h"
+#include "capture/payload_hash.h"
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace {
 
-/// GVSP block ids are 1 to 65535.
+/// GVSP block ids are 1 to 65535, and begin with 1 when the stream channel is opened.
 constexpr std::uint64_t kGigeIdPeriod = 65535;
+constexpr std::uint64_t kGigeFirstId = 1;
 constexpr std::uint64_t kUsbIdPeriod = ~std::uint64_t{0};
 
 std::string formats_we_read() {
@@ -65,12 +65,11 @@ FrameLayout layout_of(const AravisDevice& device) {
 constexpr std::string_view kPacketSize = "GevSCPSPacketSize";
 
 int packet_bytes_of(const std::string& address, const std::string& text) {
-    int bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error != std::errc() || end != text.data() + text.size() || bytes < 220 || bytes > 65500)
+    const auto bytes = parsed_number<int>(text);
+    if (!bytes || *bytes < 220 || *bytes > 65500)
         throw InputError(fmt::format("{}: {}", address, kPacketSize),
                          fmt::format("\"{}\" is no number from 220 to 65500", text));
-    return bytes;
+    return *bytes;
 }
 
 class AravisCamera : public Camera {
@@ -107,8 +106,13 @@ class AravisCamera : public Camera {
 
     [[nodiscard]] CameraDescription description() const override;
     [[nodiscard]] FrameLayout layout() const override { return stream_->layout(); }
+    [[nodiscard]] std::size_t buffer_bytes() const override { return stream_->buffer_bytes(); }
     [[nodiscard]] std::uint64_t wire_id_period() const override {
         return device_.is_gige() ? kGigeIdPeriod : kUsbIdPeriod;
+    }
+    [[nodiscard]] std::optional<StreamStart> stream_start() const override {
+        if (!device_.is_gige()) return {};
+        return StreamStart{kGigeFirstId, stream_->started_ns()};
     }
     [[nodiscard]] TransportCounts counts() const override { return stream_->counts(); }
     void start() override { stream_->start(); }

@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "capture/aravis/genicam_check.h"
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
+#include "core/parsed_number.h"
 #include "core/suggestion.h"
 
 namespace stipple {
@@ -80,14 +81,6 @@ ArvDevice* open_device(const std::string& address) {
     return address.starts_with("gige:") ? open_gige(address, rest) : open_usb(address, rest);
 }
 
-template <typename Number>
-std::optional<Number> parsed(const std::string& text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
 std::string choices_of(ArvDevice* device, const char* feature) {
     guint count = 0;
     const char** names = arv_device_dup_available_enumeration_feature_values_as_strings(
@@ -118,11 +111,11 @@ constexpr std::array<NumberFeature, 4> kNumbers{{
 /// The values that an integer feature takes.
 std::string range_of(ArvDevice* device, const char* feature) {
     GlibError error;
-    gint64 least = 0, most = 0;
-    arv_device_get_integer_feature_bounds(device, feature, &least, &most, error.slot());
+    gint64 min = 0, max = 0;
+    arv_device_get_integer_feature_bounds(device, feature, &min, &max, error.slot());
     if (error.any()) return {};
     const gint64 step = arv_device_get_integer_feature_increment(device, feature, nullptr);
-    return fmt::format("; it takes {} to {}{}", least, most,
+    return fmt::format("; it takes {} to {}{}", min, max,
                        step > 1 ? fmt::format(" in steps of {}", step) : "");
 }
 
@@ -137,6 +130,7 @@ constexpr std::uint64_t kPrimaryApplicationIp = 0x0A14;
 struct AravisDevice::Impl {
     ArvCamera* camera = nullptr;
     ArvDevice* device = nullptr;
+    std::optional<GenicamCheck> check;
 
     ~Impl() { g_clear_object(&camera); }
     void set_number(const std::string& where, const NumberFeature& feature,
@@ -152,7 +146,7 @@ AravisDevice::AravisDevice(const std::string& address)
 AravisDevice::AravisDevice(std::string address, void* device)
     : address_(std::move(address)), impl_(std::make_unique<Impl>()) {
     const std::unique_ptr<void, void (*)(void*)> opened(device, g_object_unref);
-    check_genicam(device, address_);
+    impl_->check.emplace(device, address_);
     GlibError error;
     impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), error.slot());
     if (impl_->camera == nullptr)
@@ -187,6 +181,7 @@ std::string AravisDevice::controller() const {
 }
 
 bool AravisDevice::has(const std::string& feature) const {
+    impl_->check->check_lengths();
     ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
     return node != nullptr && ARV_IS_GC_FEATURE_NODE(node) != FALSE &&
            arv_gc_feature_node_is_available(ARV_GC_FEATURE_NODE(node), nullptr) != FALSE;
@@ -207,21 +202,21 @@ std::optional<std::string> AravisDevice::read(const std::string& feature) const 
 
 std::optional<double> AravisDevice::read_number(const std::string& feature) const {
     const auto text = read(feature);
-    return text ? parsed<double>(*text) : std::nullopt;
+    return text ? parsed_number<double>(*text) : std::nullopt;
 }
 
 void AravisDevice::Impl::set_number(const std::string& where, const NumberFeature& feature,
                                     const std::string& value) const {
-    const auto number = parsed<double>(value);
+    const auto number = parsed_number<double>(value);
     if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
     // Aravis sets some to the nearest value that can be.
-    double least = 0, most = 0;
+    double min = 0, max = 0;
     GlibError no_bounds;
-    feature.bounds(camera, &least, &most, no_bounds.slot());
-    const double rounding = 1e-6 * std::abs(most);
-    if (!no_bounds.any() && !(*number >= least - rounding && *number <= most + rounding))
+    feature.bounds(camera, &min, &max, no_bounds.slot());
+    const double rounding = 1e-6 * std::abs(max);
+    if (!no_bounds.any() && !(*number >= min - rounding && *number <= max + rounding))
         throw InputError(where,
-                         fmt::format("{} cannot be set; it takes {} to {}", value, least, most));
+                         fmt::format("{} cannot be set; it takes {} to {}", value, min, max));
     GlibError error;
     feature.set(camera, *number, error.slot());
     if (error.any())
@@ -235,6 +230,7 @@ void AravisDevice::Impl::set_choice(const std::string& where, const char* featur
     if (error.any())
         throw InputError(where, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
                                             error.text(), choices_of(device, feature)));
+    check->check_lengths();
     const char* back = arv_device_get_string_feature_value(device, feature, nullptr);
     if (back == nullptr || value != back)
         throw DeviceError(where, fmt::format("asked for {}, the camera stays at {}", value,
@@ -243,13 +239,14 @@ void AravisDevice::Impl::set_choice(const std::string& where, const char* featur
 
 void AravisDevice::Impl::set_integer(const std::string& where, const char* feature,
                                      const std::string& value) const {
-    const auto number = parsed<gint64>(value);
+    const auto number = parsed_number<gint64>(value);
     if (!number) throw InputError(where, fmt::format("needs an integer, but is \"{}\"", value));
     GlibError error;
     arv_device_set_integer_feature_value(device, feature, *number, error.slot());
     if (error.any())
         throw InputError(where, fmt::format("{} cannot be set ({}){}", value, error.text(),
                                             range_of(device, feature)));
+    check->check_lengths();
     const gint64 back = arv_device_get_integer_feature_value(device, feature, nullptr);
     if (back != *number)
         throw DeviceError(where, fmt::format("asked for {}, the camera made it {}; ask for that if "
@@ -269,7 +266,7 @@ void AravisDevice::Impl::set_other(const std::string& where, const char* feature
     } else if (ARV_IS_GC_COMMAND(node)) {
         arv_device_execute_command(device, feature, error.slot());
     } else if (ARV_IS_GC_FLOAT(node)) {
-        const auto number = parsed<double>(value);
+        const auto number = parsed_number<double>(value);
         if (!number) throw InputError(where, fmt::format("needs a number, but is \"{}\"", value));
         arv_device_set_float_feature_value(device, feature, *number, error.slot());
     } else {
@@ -287,6 +284,7 @@ std::string AravisDevice::nearest_feature(const std::string& name) const {
 }
 
 void AravisDevice::set(const std::string& feature, const std::string& value) {
+    impl_->check->check_lengths();
     const std::string where = fmt::format("{}: {}", address_, feature);
     const auto* const known = std::find_if(
         kNumbers.begin(), kNumbers.end(), [&](const auto& entry) { return feature == entry.name; });

@@ -36,6 +36,8 @@ class AravisDevice {
     /// GigE: "IP:port" of the program that controls the camera, if the camera tells.
     [[nodiscard]] std::string controller() const;
 
+    /// \throws DeviceError if values of the camera have made its registers too long
+    /// (GenicamCheck); the same holds for `read` and `set`.
     [[nodiscard]] bool has(const std::string& feature) const;
     /// Value as text; empty if the feature does not exist or cannot be read.
     [[nodiscard]] std::optional<std::string> read(const std::string& feature) const;

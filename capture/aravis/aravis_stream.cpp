@@ -71,6 +71,7 @@ struct AravisStream::Impl {
     ArvBuffer* held_back = nullptr;  ///< of the last frame, if that was incomplete
     std::uint64_t last_wire_id = 0;
     bool running = false;
+    std::int64_t started_ns = 0;
     std::atomic<bool> lost = false;
     gulong lost_handler = 0;
     std::optional<GigeLink> link;  ///< empty: USB3 Vision
@@ -164,7 +165,8 @@ void AravisStream::Impl::check_buffers() const {
                     buffers.frames, bytes, max_memory(), kMaxPayloadBytes));
 }
 
-/// A leader may be forged: it is believed as far as bytes came, or the camera itself says so.
+/// A leader may be forged: its size is trusted up to the bytes that came, or up to the size that
+/// the camera itself states.
 bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) const {
     if (said.format == nullptr || said.width <= 0 || said.height <= 0) return false;
     const std::size_t bytes = said.payload_bytes();
@@ -316,6 +318,10 @@ const FrameLayout& AravisStream::layout() const {
     return impl_->layout;
 }
 
+std::size_t AravisStream::buffer_bytes() const {
+    return impl_->buffer_bytes * static_cast<std::size_t>(impl_->buffers.frames);
+}
+
 std::map<std::string, std::string> AravisStream::facts() const {
     return impl_->link ? impl_->link->facts() : std::map<std::string, std::string>();
 }
@@ -338,6 +344,7 @@ void AravisStream::start() {
     if (impl_->link) impl_->drop_foreign_packets();
     GError* error = nullptr;
     arv_camera_set_acquisition_mode(impl_->camera, ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
+    impl_->started_ns = monotonic_ns();
     arv_camera_start_acquisition(impl_->camera, &error);
     if (error != nullptr) {
         const std::string why = error->message;
@@ -345,6 +352,10 @@ void AravisStream::start() {
         throw DeviceError(impl_->device.address(), fmt::format("does not start: {}", why));
     }
     impl_->running = true;
+}
+
+std::int64_t AravisStream::started_ns() const {
+    return impl_->started_ns;
 }
 
 Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {
@@ -368,7 +379,7 @@ Arrival AravisStream::wait(std::chrono::milliseconds timeout, FramePool& pool) {
 }
 
 void AravisStream::stop() noexcept {
-    // A camera that is gone would be waited for.
+    // The wait for a lost camera would not end.
     if (impl_->running && !impl_->lost) arv_camera_stop_acquisition(impl_->camera, nullptr);
     impl_->running = false;
 }

@@ -23,12 +23,15 @@ class AravisStream {
     AravisStream& operator=(const AravisStream&) = delete;
 
     [[nodiscard]] const FrameLayout& layout() const;
+    [[nodiscard]] std::size_t buffer_bytes() const;  ///< of all buffers
     [[nodiscard]] TransportCounts counts() const;
     /// Sizes of packets and buffers, for CameraDescription.
     [[nodiscard]] std::map<std::string, std::string> facts() const;
     [[nodiscard]] std::vector<std::string> warnings() const;
 
     void start();  ///< \throws DeviceError
+    /// CLOCK_MONOTONIC just before the camera was told to begin.
+    [[nodiscard]] std::int64_t started_ns() const;
     /// As Camera::wait; the payload is taken from `pool`.
     [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout, FramePool& pool);
     void stop() noexcept;

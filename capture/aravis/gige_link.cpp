@@ -45,10 +45,10 @@ void GigeLink::watch_interface(std::uint32_t packet_bytes) {
 
 void GigeLink::set_socket_buffer(void* stream, std::size_t frame_bytes, int frames) {
     const std::int64_t wanted = static_cast<std::int64_t>(frame_bytes) * frames;
-    const std::int64_t most = rmem_max_bytes();
+    const std::int64_t max_bytes = rmem_max_bytes();
     packet_socket_ = can_open_packet_socket();
-    const std::int64_t given =
-        std::clamp<std::int64_t>(most > 0 ? std::min(wanted, most) : wanted, 65536, 1 << 30);
+    const std::int64_t given = std::clamp<std::int64_t>(
+        max_bytes > 0 ? std::min(wanted, max_bytes) : wanted, 65536, 1 << 30);
     g_object_set(stream, "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS, "socket-buffer",
                  ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", static_cast<gint>(given),
                  nullptr);
@@ -56,12 +56,13 @@ void GigeLink::set_socket_buffer(void* stream, std::size_t frame_bytes, int fram
     facts_["socket"] = packet_socket_ ? "packet" : "udp";
     facts_["socket_buffer_wanted_bytes"] = fmt::format("{}", wanted);
     facts_["socket_buffer_bytes"] = fmt::format("{}", given);
-    facts_["rmem_max_bytes"] = fmt::format("{}", most);
-    if (!packet_socket_ && wanted > most)
+    facts_["rmem_max_bytes"] = fmt::format("{}", max_bytes);
+    if (!packet_socket_ && wanted > max_bytes)
         warnings_.push_back(fmt::format(
             "the receive buffer holds {:.1f} frames of {} wanted, packets may be lost: \"sysctl -w "
             "net.core.rmem_max={}\" (now {}) or give CAP_NET_RAW",
-            static_cast<double>(given) / static_cast<double>(frame_bytes), frames, wanted, most));
+            static_cast<double>(given) / static_cast<double>(frame_bytes), frames, wanted,
+            max_bytes));
 }
 
 void GigeLink::count(void* stream, TransportCounts& counts) const {

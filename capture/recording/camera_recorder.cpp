@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "capture/camera_timing.h"
 #include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
+#include "capture/waiting_frames.h"
 #include "core/version.h"
 #include "io/pending_output.h"
 
@@ -27,6 +31,16 @@ SessionRecord session_record(const CameraDescription& camera, const CameraSettin
     record.host["stipple"] = version();
     record.started_realtime_ns = realtime_ns();
     return record;
+}
+
+/// Frames of 10 s, for which a disk seldom stands still; memory for them is allocated in advance.
+std::size_t reserved_frames(const Camera& camera) {
+    constexpr std::chrono::seconds kDiskPause{10};
+    constexpr std::int64_t kMinFrames = 64, kUsualFrames = 256, kMaxFrames = 4096;
+    const std::chrono::nanoseconds period = nominal_period(camera.description());
+    if (period.count() == 0) return kUsualFrames;
+    return static_cast<std::size_t>(
+        std::clamp<std::int64_t>(kDiskPause / period, kMinFrames, kMaxFrames));
 }
 
 std::string text_of(const std::exception_ptr& failure) {
@@ -46,12 +60,21 @@ struct CameraRecorder::Impl {
          const std::filesystem::path& file, CameraRecorderOptions given)
         : options(std::move(given)),
           output(file, options.force),
-          session(std::move(open), options.session),
+          session(std::move(open), options.session,
+                  [this](const Camera& camera) { return plan_queue(camera); }),
           writer(output.partial(), session_record(session.description(), settings),
                  output.final_path().string()),
-          queue(writer, options.queue_bytes) {}
+          queue(writer, waiting, [this](std::vector<std::uint8_t>&& payload) {
+              session.give_back(std::move(payload));
+          }) {}
 
-    void run(const GoesOn& goes_on);
+    /// Before it starts. Returns the frames to reserve memory for: waiting, and being written.
+    [[nodiscard]] std::size_t plan_queue(const Camera& camera) {
+        waiting = waiting_frames(camera, {.bytes = options.queue_bytes});
+        return std::min(waiting.frames, reserved_frames(camera)) + 1;
+    }
+
+    void run(const ProgressCallback& progress);
     void take(SessionEvent event);
     void take(CapturedFrame frame);
     void note_failure();
@@ -60,7 +83,8 @@ struct CameraRecorder::Impl {
 
     CameraRecorderOptions options;
     PendingOutput output;
-    CaptureSession session;
+    WaitingFrames waiting;
+    CaptureSession session;  ///< behind what is planned when it opens the camera
     RecordingWriter writer;
     RecordingQueue queue;
     std::uint64_t taken = 0;    ///< frames that the queue took
@@ -69,11 +93,11 @@ struct CameraRecorder::Impl {
     CameraRecording result;
 };
 
-void CameraRecorder::Impl::run(const GoesOn& goes_on) {
+void CameraRecorder::Impl::run(const ProgressCallback& progress) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     try {
-        while (goes_on(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
+        while (progress(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
                !result.lost && !queue.failed())
             take(session.next(kPollInterval));
     } catch (...) {
@@ -94,10 +118,12 @@ void CameraRecorder::Impl::take(CapturedFrame frame) {
     if (queue.push(std::move(frame))) {
         rate.add(record);
         ++taken;
-    } else {
-        ++refused;
-        session.count_own_drop(record);
+        return;
     }
+    ++refused;
+    session.count_queue_drop(record);
+    // push() leaves the frame that it refuses. NOLINTNEXTLINE(bugprone-use-after-move)
+    session.give_back(std::move(frame.payload));
 }
 
 /// Of what is being thrown; the first one counts.
@@ -124,7 +150,7 @@ void CameraRecorder::Impl::finish() {
         end.reason = end_reason();
         end.lost = session.totals().lost;
         // Frames that the queue took and could not write after all.
-        end.lost[static_cast<std::size_t>(GapCause::kOwnDrop)] += queue.dropped() - refused;
+        end.lost[static_cast<std::size_t>(GapCause::kQueueDrop)] += queue.dropped() - refused;
         end.transport = result.transport;
         writer.finish(end);
     } catch (...) {
@@ -139,7 +165,7 @@ void CameraRecorder::Impl::finish() {
     }
     result.kept = output.committed();
     result.session = session.totals();
-    result.frames_per_s = rate.hz();
+    result.frames_hz = rate.hz();
 }
 
 CameraRecorder::CameraRecorder(CaptureSession::Opener open, const CameraSettings& settings,
@@ -156,8 +182,8 @@ const std::filesystem::path& CameraRecorder::file() const {
     return impl_->output.final_path();
 }
 
-CameraRecording CameraRecorder::record(const GoesOn& goes_on) {
-    impl_->run(goes_on);
+CameraRecording CameraRecorder::record(const ProgressCallback& progress) {
+    impl_->run(progress);
     impl_->finish();
     return std::move(impl_->result);
 }

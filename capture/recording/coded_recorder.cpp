@@ -60,7 +60,7 @@ struct CodedRecorder::Impl {
           writer(output.partial(), header.stream, output.final_path().string()),
           order(header.stream.shape.rows) {}
 
-    [[nodiscard]] bool run(const GoesOn& goes_on);
+    [[nodiscard]] bool run(const ProgressCallback& progress);
     void take(const CapturedFrame& frame);
     void drop_before(StreamPosition next);
     void write(const SamplePacket& packet);
@@ -76,13 +76,13 @@ struct CodedRecorder::Impl {
 };
 
 /// True if all slots are there, or the camera sends no more; false if it was stopped or lost.
-bool CodedRecorder::Impl::run(const GoesOn& goes_on) {
+bool CodedRecorder::Impl::run(const ProgressCallback& progress) {
     const auto start = Clock::now();
     auto last = start;
     while (!slots || result.slots < *slots) {
         const auto now = Clock::now();
         const std::chrono::duration<double> elapsed = now - start;
-        if (!goes_on(result) || (limits.seconds > 0 && elapsed.count() >= limits.seconds))
+        if (!progress(result) || (limits.seconds > 0 && elapsed.count() >= limits.seconds))
             return false;
         const Arrival arrival = camera->wait(kPollInterval);
         if (const auto* const frame = std::get_if<CapturedFrame>(&arrival)) {
@@ -136,12 +136,12 @@ std::optional<std::int64_t> CodedRecorder::slots() const {
     return impl_->slots;
 }
 
-CodedRecording CodedRecorder::record(const GoesOn& goes_on) {
+CodedRecording CodedRecorder::record(const ProgressCallback& progress) {
     Impl& impl = *impl_;
     CodedRecording& result = impl.result;
     impl.camera->start();
     try {
-        const bool to_the_end = impl.run(goes_on);
+        const bool to_the_end = impl.run(progress);
         impl.camera->stop();
         if (to_the_end && impl.slots && result.slots > 0) impl.drop_before({*impl.slots, 0});
         if (result.slots > 0) impl.writer.finish();

@@ -17,7 +17,7 @@ struct CodedRecording {
     std::int64_t slots = 0;
     std::int64_t missing_slots = 0;   ///< of these; they are dropped packets in the stream
     std::int64_t damaged_frames = 0;  ///< whose payload held something else behind its packets
-    std::optional<DeviceLost> lost;   ///< the camera is gone; nothing stands for what it kept
+    std::optional<DeviceLost> lost;   ///< the camera is lost; slots that it still held are absent
     bool kept = false;                ///< the file is in place; it is where a slot is in it
     std::exception_ptr failure;       ///< of the disk (DeviceError), or the stream (InputError)
 };
@@ -27,7 +27,7 @@ struct CodedRecording {
 class CodedRecorder {
   public:
     /// Asked before each wait for a frame, every 100 ms at least; false ends the recording.
-    using GoesOn = std::function<bool(const CodedRecording&)>;
+    using ProgressCallback = std::function<bool(const CodedRecording&)>;
 
     /// \throws InputError if the camera sends no coded stream; InputError, DeviceError as
     /// PendingOutput and StreamWriter.
@@ -40,10 +40,10 @@ class CodedRecorder {
     /// The slots that there will be, if the camera or the limits say so.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
-    /// Records until all slots are there, a limit is reached, `goes_on` says no, or the camera is
+    /// Records until all slots are there, a limit is reached, `progress` says no, or the camera is
     /// silent for 3 s or gone (`lost`), and puts the file in place, as far as it goes. Called once.
     /// \throws DeviceError if the camera refuses to start, or if the file cannot be put in place.
-    [[nodiscard]] CodedRecording record(const GoesOn& goes_on);
+    [[nodiscard]] CodedRecording record(const ProgressCallback& progress);
 
   private:
     struct Impl;

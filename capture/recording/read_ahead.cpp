@@ -52,14 +52,19 @@ std::optional<int> ReadAhead::slots() const {
     return footage == nullptr ? std::nullopt : footage->slots();
 }
 
-std::optional<double> ReadAhead::video_hz() const {
+std::optional<double> ReadAhead::frames_hz() const {
     const auto* const footage = std::get_if<FootageReader>(&reader_);
-    return footage == nullptr ? std::nullopt : footage->video_hz();
+    return footage == nullptr ? std::nullopt : footage->frames_hz();
 }
 
 std::optional<double> ReadAhead::exposure_us() const {
     const auto* const footage = std::get_if<FootageReader>(&reader_);
     return footage == nullptr ? std::nullopt : footage->exposure_us();
+}
+
+SourceTraits ReadAhead::traits() const {
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    return footage == nullptr ? SourceTraits{} : footage->traits();
 }
 
 ColourFilter ReadAhead::filter() const {

@@ -27,11 +27,13 @@ class ReadAhead {
 
     [[nodiscard]] FrameShape shape() const;
     [[nodiscard]] std::optional<int> slots() const;
-    /// As FootageReader::video_hz; a recording tells its rate at its end.
-    [[nodiscard]] std::optional<double> video_hz() const;
-    /// As FootageReader::exposure_us; a recording does not tell.
+    /// As FootageReader::frames_hz; the rate of a recording is known at its end.
+    [[nodiscard]] std::optional<double> frames_hz() const;
+    /// As FootageReader::exposure_us; unknown for a recording.
     [[nodiscard]] std::optional<double> exposure_us() const;
-    /// Whose mosaic the frames are.
+    /// As FootageReader::traits; empty of a recording.
+    [[nodiscard]] SourceTraits traits() const;
+    /// Colour filter array of the frames; kNone: they are no mosaic.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.
     [[nodiscard]] bool gamma_coded() const;

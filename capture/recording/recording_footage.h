@@ -19,7 +19,7 @@ namespace stipple {
 void check_recording_options(const std::filesystem::path& recording, const FootageOptions& options);
 
 struct RecordingFootageOptions {
-    /// True: the previous frame stands in for missing frames, so that each slot keeps its time.
+    /// True: the previous frame replaces missing frames, so that each slot keeps its time.
     /// False: missing frames are left out.
     bool hold_missing = true;
     /// True: incomplete frames count as missing. False: they are used, with black holes.

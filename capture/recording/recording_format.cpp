@@ -1,9 +1,7 @@
 #include "capture/recording/recording_format.h"
 
-#define XXH_INLINE_ALL
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cassert>
@@ -190,10 +188,6 @@ std::string take_holes(std::span<const std::uint8_t> bytes, std::uint64_t payloa
 
 std::span<const RecordField> frame_record_fields() {
     return kFields;
-}
-
-std::uint64_t payload_hash(std::span<const std::uint8_t> payload) {
-    return XXH3_64bits(payload.data(), payload.size());
 }
 
 std::array<std::uint8_t, kBlockHeaderBytes> encode_block_header(const BlockHeader& header) {

@@ -64,9 +64,6 @@ void store_payload_hash(std::span<std::uint8_t> record, std::uint64_t hash);
 [[nodiscard]] std::string decode_frame_record(std::span<const std::uint8_t> bytes,
                                               std::uint64_t payload_bytes, CapturedFrame& frame);
 
-/// XXH3, 64 bit, seed 0: the payload hash of a frame.
-[[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
-
 /// A field of the frame record: name and type string as NumPy has them.
 struct RecordField {
     std::string_view name;

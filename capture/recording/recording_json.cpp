@@ -1,4 +1,6 @@
+#include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "capture/recording/recording_format.h"
 #include "core/error.h"
@@ -9,6 +11,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using ReadJson = nlohmann::json;  // which finds a key among very many
 using Texts = std::map<std::string, std::string>;
+
+/// By GapCause: the names in a recording (docs/recording_format.md). Reports say `queue_drop` where
+/// version 1 of the format says `own_drop`.
+constexpr std::array<std::string_view, kGapCauseNames.size()> kStoredCauses{
+    "none", "device", "transport", "host_underrun", "own_drop", "reconnect"};
 
 std::string dumped(const Json& json) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -74,7 +81,7 @@ std::string encode_session(const SessionRecord& session) {
     Json settings = Json::array();
     for (const auto& [name, value] : session.settings) settings.push_back({name, value});
     return dumped({{"frame_record", fields},
-                   {"causes", kGapCauseNames},
+                   {"causes", kStoredCauses},
                    {"camera", json_of(session.camera)},
                    {"settings", settings},
                    {"host", session.host},
@@ -92,8 +99,8 @@ SessionRecord decode_session(std::string_view text, std::string_view where) {
 
 std::string encode_end(const RecordingEnd& end) {
     Json lost = Json::object();
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        lost[std::string(kGapCauseNames[i])] = end.lost[i];
+    for (std::size_t i = 1; i < kStoredCauses.size(); ++i)
+        lost[std::string(kStoredCauses[i])] = end.lost[i];
     Json clocks = Json::array();
     for (const ClockFit& fit : end.clocks) clocks.push_back(json_of(fit));
     return dumped({{"reason", end.reason},
@@ -117,8 +124,8 @@ RecordingEnd decode_end(std::string_view text, std::string_view where) {
                          .frames = json.at("frames"),
                          .incomplete = json.at("incomplete"),
                          .payload_bytes = json.at("payload_bytes")};
-        for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-            end.lost[i] = json.at("lost").at(std::string(kGapCauseNames[i]));
+        for (std::size_t i = 1; i < kStoredCauses.size(); ++i)
+            end.lost[i] = json.at("lost").at(std::string(kStoredCauses[i]));
         const ReadJson& transport = json.at("transport");
         end.transport = {.underruns = transport.at("underruns"),
                          .packets_resent = transport.at("packets_resent"),

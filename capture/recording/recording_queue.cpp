@@ -1,13 +1,14 @@
 #include "capture/recording/recording_queue.h"
 
-#include <limits>
 #include <utility>
 
 namespace stipple {
 
-RecordingQueue::RecordingQueue(RecordingWriter& writer, std::size_t max_bytes)
+RecordingQueue::RecordingQueue(RecordingWriter& writer, const WaitingFrames& most,
+                               GiveBack give_back)
     : writer_(writer),
-      frames_(std::numeric_limits<std::size_t>::max(), max_bytes),
+      frames_(most.frames, most.bytes),
+      give_back_(std::move(give_back)),
       thread_([this] { run(); }) {}
 
 RecordingQueue::~RecordingQueue() {
@@ -22,7 +23,10 @@ bool RecordingQueue::push(CapturedFrame&& frame) {
 
 void RecordingQueue::run() {
     try {
-        while (const auto frame = frames_.pop()) writer_.write(*frame);
+        while (auto frame = frames_.pop()) {
+            writer_.write(*frame);
+            if (give_back_) give_back_(std::move(frame->payload));
+        }
     } catch (...) {
         failure_ = std::current_exception();
         dropped_ += 1 + frames_.close_and_clear();

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "capture/payload_hash.h"
 #include "core/error.h"
 #include "stream/crc32c.h"
 #include "stream/file_window.h"
@@ -58,9 +59,9 @@ struct RecordingReader::Impl {
     void note(std::uint64_t offset, std::uint64_t bytes, std::string cause);
     /// Skips at least one byte, up to the next good header or the end of what there is.
     void skip_damage(std::string cause, std::size_t from = 1);
-    /// Counts bytes that were looked at in vain. Blocks that claim to overlap would take time
-    /// without end: what kept a sixteenth of its bytes stays below the limit.
-    void waste(std::uint64_t bytes);
+    /// Counts bytes that will be scanned again. Blocks that claim to overlap would take time
+    /// without end. A file that kept a sixteenth of its bytes stays below the limit.
+    void limit_rescans(std::uint64_t bytes);
     bool whole_block(const BlockHeader& header, Bytes block);
     void count_number(std::uint32_t number);
     std::string take(const BlockHeader& header, Bytes block, CapturedFrame* frame);
@@ -71,7 +72,7 @@ struct RecordingReader::Impl {
     std::optional<RecordingEnd> end;
     RecordingReport report;
     std::uint32_t next_number = 0;
-    std::uint64_t wasted_bytes = 0;
+    std::uint64_t rescan_bytes = 0;
 };
 
 void RecordingReader::Impl::note(std::uint64_t offset, std::uint64_t bytes, std::string cause) {
@@ -98,9 +99,9 @@ void RecordingReader::Impl::skip_damage(std::string cause, std::size_t from) {
     note(start, file.offset() - start, std::move(cause));
 }
 
-void RecordingReader::Impl::waste(std::uint64_t bytes) {
-    wasted_bytes += bytes;
-    if (wasted_bytes > std::uint64_t{1} << 32U && wasted_bytes / 16 > file.bytes_read())
+void RecordingReader::Impl::limit_rescans(std::uint64_t bytes) {
+    rescan_bytes += bytes;
+    if (rescan_bytes > std::uint64_t{1} << 32U && rescan_bytes / 16 > file.bytes_read())
         throw InputError(where, "is made of blocks that overlap; it is not a recording");
 }
 
@@ -108,7 +109,7 @@ void RecordingReader::Impl::waste(std::uint64_t bytes) {
 /// tail), or some of the block's bytes are missing and the next block is found.
 bool RecordingReader::Impl::whole_block(const BlockHeader& header, Bytes block) {
     if (block.size() == header.block_bytes()) return true;
-    waste(block.size());
+    limit_rescans(block.size());
     if (find_block(block, 1))
         skip_damage("bytes of a block are missing");
     else
@@ -172,7 +173,7 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
             continue;
         }
         if (std::string problem = take(*header, block, frame); !problem.empty()) {
-            waste(total);
+            limit_rescans(total);
             skip_damage(std::move(problem));
             continue;
         }

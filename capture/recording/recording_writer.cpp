@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "capture/payload_hash.h"
 #include "core/error.h"
 #include "stream/crc32c.h"
 

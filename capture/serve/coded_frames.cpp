@@ -7,7 +7,7 @@
 namespace stipple {
 
 CodedFrames::CodedFrames(std::filesystem::path footage, const FootageOrigin& origin,
-                         const SensorChoice& sensor, std::optional<double> slots_per_s)
+                         const SensorChoice& sensor, std::optional<double> slots_hz)
     : footage_(std::move(footage)),
       reading_(origin.reading),
       reader_(footage_, reading_),
@@ -15,7 +15,7 @@ CodedFrames::CodedFrames(std::filesystem::path footage, const FootageOrigin& ori
       header_(coded_header(stream_header_of(setup_, provenance_of(setup_, origin)))),
       image_(coded_image(header_.stream)),
       light_(setup_.footage.sites()) {
-    if (slots_per_s) image_.frames_per_s = *slots_per_s;
+    if (slots_hz) image_.frames_hz = *slots_hz;
     if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);
 }
 

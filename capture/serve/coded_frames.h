@@ -20,7 +20,7 @@ class CodedFrames final : public FrameSource {
     /// The light comes from `footage`, the files of `origin`. The default rate is the slot rate of
     /// the sensor. \throws InputError as FootageReader and set_up_sensor.
     CodedFrames(std::filesystem::path footage, const FootageOrigin& origin,
-                const SensorChoice& sensor, std::optional<double> slots_per_s);
+                const SensorChoice& sensor, std::optional<double> slots_hz);
 
     [[nodiscard]] const ServedImage& image() const override { return image_; }
     void start(const PixelFormat& format) override;

@@ -39,12 +39,12 @@ int digit_value(char digit) {
 
 /// Samples of the slot that has most. Later periods are like the second.
 std::size_t max_samples(const StreamHeader& header) {
-    std::size_t most = 0;
+    std::size_t max_due = 0;
     const std::int64_t period = header.schedule.period_slots();
     for (std::int64_t slot = period; slot < 2 * period; ++slot)
-        most = std::max(most,
-                        count_due(header.schedule, slot, 0, header.shape.rows, header.shape.cols));
-    return most * static_cast<std::size_t>(header.shape.planes);
+        max_due = std::max(
+            max_due, count_due(header.schedule, slot, 0, header.shape.rows, header.shape.cols));
+    return max_due * static_cast<std::size_t>(header.shape.planes);
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ ServedImage coded_image(const StreamHeader& header) {
     image.height = static_cast<int>((bytes + kCodedImageWidth - 1) / kCodedImageWidth);
     image.formats = {pixel_format_named("Mono8")};
     image.croppable = false;
-    image.frames_per_s = 1e6 / header.slot_us;
+    image.frames_hz = 1e6 / header.slot_us;
     image.exposure_map_id = load<std::uint32_t>(&encoded[kScheduleCrcAt]);
     image.coded_header = hexadecimal(encoded);
     return image;

@@ -34,7 +34,7 @@ std::vector<const PixelFormat*> formats_for(FrameShape shape, ColourFilter filte
 }  // namespace
 
 FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions& options,
-                             double frames_per_s, const PixelFormat* preferred)
+                             double frames_hz, const PixelFormat* preferred)
     : footage_(std::move(footage)), options_(options), reader_(footage_, options_) {
     shape_ = reader_.shape();
     image_.width = shape_.cols;
@@ -47,7 +47,7 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
     check_mosaic();
     check_cells();
     image_.formats = formats_for(shape_, filter_);
-    image_.frames_per_s = frames_per_s;
+    image_.frames_hz = frames_hz;
     if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);
     if (image_.formats.empty())
         throw InputError(footage_.string(), "has neither 1 nor 3 planes; add --luminance");

@@ -18,7 +18,7 @@ class FootageFrames final : public FrameSource {
   public:
     /// `preferred` becomes the default format; null: Mono8 or RGB8. \throws InputError as
     /// FootageReader, and if the footage does not suit that format.
-    FootageFrames(std::filesystem::path footage, const FootageOptions& options, double frames_per_s,
+    FootageFrames(std::filesystem::path footage, const FootageOptions& options, double frames_hz,
                   const PixelFormat* preferred = nullptr);
 
     [[nodiscard]] const ServedImage& image() const override { return image_; }

@@ -13,11 +13,15 @@ namespace stipple {
 
 /// What a source of frames for a served camera has to offer.
 struct ServedImage {
+    static constexpr double kUsualFramesHz = 25;  ///< where neither user nor source names a rate
+    static constexpr double kMinFramesHz = 0.01;
+    static constexpr double kMaxFramesHz = 100'000;
+
     int width = 0;
     int height = 0;
     std::vector<const PixelFormat*> formats;  ///< at least one; the first is the default
-    bool croppable = true;     ///< false: the region is fixed, for the bytes are no image
-    double frames_per_s = 25;  ///< unless the client asks for another rate
+    bool croppable = true;              ///< false: the region is fixed, for the bytes are no image
+    double frames_hz = kUsualFramesHz;  ///< unless the client asks for another rate
     std::optional<std::uint64_t> frames = {};  ///< from a start to the end, if known
     std::uint32_t exposure_map_id = 0;         ///< CRC of the exposure schedule, 0 without
     /// Header of the sample stream as hexadecimal digits; empty unless the frames are its packets.

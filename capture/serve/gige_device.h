@@ -39,7 +39,7 @@ struct GigeStreamSettings {
     std::uint32_t height = 0;
     std::uint32_t offset_x = 0;
     std::uint32_t offset_y = 0;
-    double frames_per_s = 0;
+    double frames_hz = 0;
     std::optional<std::uint64_t> frames;  ///< requested number; empty: until stopped
     bool chunk_mode = false;
     std::array<bool, gige::kChunkTypes> chunks = {};

@@ -65,8 +65,7 @@ void GigeDevice::fill_features() {
     set_word(gige::kPixelFormat, image_.formats.front()->pfnc);
     set_word(gige::kAcquisitionMode, gige::kContinuous);
     set_word(gige::kAcquisitionFrameCount, 1);
-    set_word(gige::kFrameRate,
-             std::bit_cast<std::uint32_t>(static_cast<float>(image_.frames_per_s)));
+    set_word(gige::kFrameRate, std::bit_cast<std::uint32_t>(static_cast<float>(image_.frames_hz)));
     for (std::uint32_t i = 0; i < gige::kChunkTypes; ++i) set_word(gige::kChunkEnable + 4 * i, 1);
     set_word(gige::kStreamMode, image_.coded_header.empty() ? 0 : 1);
     set_word(gige::kExposureMapId, image_.exposure_map_id);
@@ -114,7 +113,7 @@ GigeStreamSettings GigeDevice::stream() const {
     stream.height = word(gige::kHeight);
     stream.offset_x = word(gige::kOffsetX);
     stream.offset_y = word(gige::kOffsetY);
-    stream.frames_per_s = static_cast<double>(std::bit_cast<float>(word(gige::kFrameRate)));
+    stream.frames_hz = static_cast<double>(std::bit_cast<float>(word(gige::kFrameRate)));
     const std::uint32_t mode = word(gige::kAcquisitionMode);
     if (mode == gige::kSingleFrame) stream.frames = 1;
     if (mode == gige::kMultiFrame) stream.frames = word(gige::kAcquisitionFrameCount);
@@ -153,7 +152,8 @@ GvcpStatus GigeDevice::check_write(std::uint32_t address, std::uint32_t value) c
             return when(value >= 1);
         case gige::kFrameRate: {
             const float rate = std::bit_cast<float>(value);
-            return when(rate >= 0.01F && rate <= static_cast<float>(image_.frames_per_s));
+            return when(rate >= static_cast<float>(ServedImage::kMinFramesHz) &&
+                        rate <= static_cast<float>(image_.frames_hz));
         }
         case gige::kChunkModeActive:
             return when(value <= 1);

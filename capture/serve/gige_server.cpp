@@ -199,7 +199,7 @@ void GigeServer::Impl::stream(const GigeStreamSettings& settings) {
     sender.forget();
     source.start(*settings.format);
     offset = next_number = 0;
-    const nanoseconds period(static_cast<std::int64_t>(1e9 / settings.frames_per_s));
+    const nanoseconds period(static_cast<std::int64_t>(1e9 / settings.frames_hz));
     auto due = Clock::now();
     const nanoseconds begin = device_time(due);
     std::optional<std::uint64_t> first;
@@ -211,11 +211,14 @@ void GigeServer::Impl::stream(const GigeStreamSettings& settings) {
         if (behind > period) ++late_frames;
         if (behind > kMaxPeriodsBehind * period) due += behind;
         due += period;
-        if (options.faults.freeze_at && sent >= *options.faults.freeze_at) continue;
         const std::uint64_t number = number_with_gap(options.faults, frame->number);
         if (!first) first = number;
-        const auto periods = static_cast<std::int64_t>(number - *first);
-        send(std::move(*frame), settings, begin + periods * period);
+        if (sent < options.faults.begin_at) continue;
+        if (options.faults.freeze_at && sent >= *options.faults.freeze_at) continue;
+        // Unsigned: a damaged recording may have any ids.
+        const auto since_begin = (number - *first) * static_cast<std::uint64_t>(period.count());
+        const auto stamp = static_cast<std::uint64_t>(begin.count()) + since_begin;
+        send(std::move(*frame), settings, nanoseconds(static_cast<std::int64_t>(stamp)));
     }
 }
 

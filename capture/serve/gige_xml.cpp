@@ -74,9 +74,10 @@ Values values_of(const ServedImage& image) {
     add("height", image.height);
     add("col_step", gige_width_step(image));
     add("row_step", image.formats.front()->filter == ColourFilter::kNone ? 1 : 2);
+    add("min_frames_hz", ServedImage::kMinFramesHz);
     // The register holds it as a float, which may be the larger.
-    add("most_frames_per_s",
-        std::max(image.frames_per_s, static_cast<double>(static_cast<float>(image.frames_per_s))));
+    add("max_frames_hz",
+        std::max(image.frames_hz, static_cast<double>(static_cast<float>(image.frames_hz))));
     add("coded_header_bytes", image.coded_header.size() / 4 * 4 + 4);
     return values;
 }

@@ -15,6 +15,7 @@ struct GvspFaults {
     std::optional<std::uint64_t> gap_at = {};     ///< frame before which ids are skipped
     std::uint64_t gap_frames = 0;                 ///< number of skipped ids
     std::uint16_t first_block = 1;                ///< block id of the first frame, 1 to 65535
+    std::uint64_t begin_at = 0;                   ///< frame before which nothing is sent
     std::optional<std::uint64_t> freeze_at = {};  ///< frame from which on nothing is sent
     std::uint64_t seed = 1;
 };

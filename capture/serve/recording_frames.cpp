@@ -4,15 +4,12 @@
 
 #include <algorithm>
 
+#include "capture/frame_rate.h"
 #include "core/error.h"
 #include "core/joined.h"
 
 namespace stipple {
 namespace {
-
-constexpr double kFramesPerS = 25;
-constexpr double kMinFramesPerS = 0.01;
-constexpr double kMaxFramesPerS = 100000;
 
 void check_format(const FrameLayout& layout, const std::string& where) {
     const PixelFormat& format = *layout.format;
@@ -38,8 +35,7 @@ void remove_padding(std::vector<std::uint8_t>& payload, const FrameLayout& layou
 
 }  // namespace
 
-RecordingFrames::RecordingFrames(const std::filesystem::path& file,
-                                 std::optional<double> frames_per_s)
+RecordingFrames::RecordingFrames(const std::filesystem::path& file, std::optional<double> frames_hz)
     : file_(file), reader_(file) {
     CapturedFrame first;
     if (!read_complete(first)) throw InputError(file.string(), "holds no complete frame");
@@ -49,17 +45,20 @@ RecordingFrames::RecordingFrames(const std::filesystem::path& file,
     image_.width = layout_.width;
     image_.height = layout_.height;
     image_.formats = {layout_.format};
-    image_.frames_per_s = frames_per_s ? *frames_per_s : recorded_rate(first.record);
+    image_.frames_hz = frames_hz ? *frames_hz : recorded_rate(first.record);
 }
 
 /// By the frame that follows the first.
 double RecordingFrames::recorded_rate(const FrameRecord& first) {
     CapturedFrame next;
-    if (first.stamp_source == StampSource::kNone || !read_complete(next)) return kFramesPerS;
-    const auto frames = static_cast<double>(next.record.id - first.id);
-    const auto elapsed_s = static_cast<double>(next.record.device_ns - first.device_ns) * 1e-9;
-    const double rate = frames / elapsed_s;
-    return rate >= kMinFramesPerS && rate <= kMaxFramesPerS ? rate : kFramesPerS;
+    if (first.stamp_source == StampSource::kNone || !read_complete(next))
+        return ServedImage::kUsualFramesHz;
+    FrameRate frames;
+    frames.add(first);
+    frames.add(next.record);
+    const double rate = frames.hz().value_or(0);
+    const bool usable = rate >= ServedImage::kMinFramesHz && rate <= ServedImage::kMaxFramesHz;
+    return usable ? rate : ServedImage::kUsualFramesHz;
 }
 
 bool RecordingFrames::read_complete(CapturedFrame& frame) {

@@ -15,7 +15,7 @@ class RecordingFrames final : public FrameSource {
     /// The default rate is that of the stamps. \throws InputError as RecordingReader, if there is
     /// no complete frame, or if GigE Vision has no such format.
     explicit RecordingFrames(const std::filesystem::path& file,
-                             std::optional<double> frames_per_s = {});
+                             std::optional<double> frames_hz = {});
 
     [[nodiscard]] const ServedImage& image() const override { return image_; }
     void start(const PixelFormat& format) override;

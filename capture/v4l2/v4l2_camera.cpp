@@ -54,6 +54,9 @@ class V4l2Camera final : public Camera {
 
     [[nodiscard]] CameraDescription description() const override;
     [[nodiscard]] FrameLayout layout() const override { return format_.layout; }
+    [[nodiscard]] std::size_t buffer_bytes() const override {
+        return format_.buffer_bytes * static_cast<std::size_t>(buffers_.count());
+    }
     [[nodiscard]] std::uint64_t wire_id_period() const override { return std::uint64_t{1} << 32U; }
     [[nodiscard]] TransportCounts counts() const override { return counts_; }
 
@@ -88,8 +91,8 @@ CameraDescription V4l2Camera::description() const {
     about.features["OffsetX"] = std::to_string(format_.layout.offset_x);
     about.features["OffsetY"] = std::to_string(format_.layout.offset_y);
     about.features["PixelFormat"] = format_.layout.format->name;
-    if (format_.frames_per_s > 0)
-        about.features["AcquisitionFrameRate"] = fmt::format("{:.6g}", format_.frames_per_s);
+    if (format_.frames_hz > 0)
+        about.features["AcquisitionFrameRate"] = fmt::format("{:.6g}", format_.frames_hz);
     about.transport_facts = format_.facts;
     about.transport_facts["bus"] = device_.bus();
     about.transport_facts["driver"] = device_.driver();
@@ -211,8 +214,11 @@ V4l2Memory memory_setting(const std::string& address, const CameraSettings& sett
 
 std::unique_ptr<Camera> open_v4l2_camera(const std::string& address, const CameraSettings& settings,
                                          const CameraBuffers& buffers) {
-    if (buffers.frames < 2 || buffers.frames > 1024)
-        throw InputError(address, fmt::format("{} frame buffers: take 2 to 1024", buffers.frames));
+    constexpr int kMin = CameraBuffers::kMinFrames;
+    constexpr int kMax = CameraBuffers::kMaxFrames;
+    if (buffers.frames < kMin || buffers.frames > kMax)
+        throw InputError(
+            address, fmt::format("{} frame buffers: take {} to {}", buffers.frames, kMin, kMax));
     return std::make_unique<V4l2Camera>(v4l2_node_path(address), settings,
                                         memory_setting(address, settings), buffers.frames);
 }

@@ -128,15 +128,15 @@ class ControlSetter {
             refuse(control.name, fmt::format("\"{}\" is none of {}", text, joined(entries)));
         }
         const bool mask = control.type == V4L2_CTRL_TYPE_BITMASK;
-        const std::int64_t least = mask ? 0 : control.minimum;
-        const std::int64_t most = mask ? std::int64_t{0xFFFFFFFF} : control.maximum;
-        if (!value || *value < least || *value > most)
+        const std::int64_t min = mask ? 0 : control.minimum;
+        const std::int64_t max = mask ? std::int64_t{0xFFFFFFFF} : control.maximum;
+        if (!value || *value < min || *value > max)
             refuse(control.name,
-                   fmt::format("\"{}\" is no whole number from {} to {}", text, least, most));
-        const auto above = static_cast<std::uint64_t>(*value) - static_cast<std::uint64_t>(least);
+                   fmt::format("\"{}\" is no whole number from {} to {}", text, min, max));
+        const auto above = static_cast<std::uint64_t>(*value) - static_cast<std::uint64_t>(min);
         if (!mask && control.step > 1 && above % control.step != 0)
-            refuse(control.name, fmt::format("\"{}\" is not {} plus a multiple of {}", text, least,
-                                             control.step));
+            refuse(control.name,
+                   fmt::format("\"{}\" is not {} plus a multiple of {}", text, min, control.step));
         return *value;
     }
 
@@ -171,11 +171,11 @@ class ControlSetter {
         if (exposure == nullptr)
             refuse("ExposureTime", "the device has no exposure in microseconds; " + offer());
         const auto wanted = number_setting(text);
-        const auto least = static_cast<double>(exposure->minimum) * kExposureUnitUs;
-        const auto most = static_cast<double>(exposure->maximum) * kExposureUnitUs;
-        if (!wanted || !(*wanted >= least && *wanted <= most))
+        const auto min = static_cast<double>(exposure->minimum) * kExposureUnitUs;
+        const auto max = static_cast<double>(exposure->maximum) * kExposureUnitUs;
+        if (!wanted || !(*wanted >= min && *wanted <= max))
             refuse("ExposureTime",
-                   fmt::format("\"{}\" is no number from {} to {} us", text, least, most));
+                   fmt::format("\"{}\" is no number from {} to {} us", text, min, max));
         const double units = std::round(*wanted / kExposureUnitUs);
         if (units * kExposureUnitUs != *wanted)
             refuse("ExposureTime",

@@ -103,12 +103,12 @@ class FormatSetter {
     }
 
     [[nodiscard]] std::uint32_t number(std::string_view name, std::uint32_t otherwise,
-                                       int least) const {
+                                       int min) const {
         const std::string* const text = value_of(settings_, name);
         if (text == nullptr) return otherwise;
         const auto value = integer_setting(*text);
-        if (!value || *value < least || *value > kMaxFrameSide)
-            refuse(name, fmt::format("\"{}\" is no whole number from {} to {}", *text, least,
+        if (!value || *value < min || *value > kMaxFrameSide)
+            refuse(name, fmt::format("\"{}\" is no whole number from {} to {}", *text, min,
                                      kMaxFrameSide));
         return static_cast<std::uint32_t>(*value);
     }
@@ -253,10 +253,10 @@ class FormatSetter {
                 refuse("AcquisitionFrameRate", "the device does not let itself be told a rate");
             read_rate(rate);
             // Periods are coarse: UVC counts 100 ns, others whole lines.
-            if (!(std::abs(result_.frames_per_s / *wanted - 1) < 0.01))
+            if (!(std::abs(result_.frames_hz / *wanted - 1) < 0.01))
                 refuse("AcquisitionFrameRate",
                        fmt::format("the device would send {:.6g} frames/s instead of {}",
-                                   result_.frames_per_s, *text));
+                                   result_.frames_hz, *text));
             return;
         }
         if (device_.call(VIDIOC_G_PARM, &rate) == 0) read_rate(rate);
@@ -265,7 +265,7 @@ class FormatSetter {
     void read_rate(const v4l2_streamparm& rate) {
         const v4l2_fract& period = rate.parm.capture.timeperframe;
         if (period.numerator != 0)
-            result_.frames_per_s = static_cast<double>(period.denominator) / period.numerator;
+            result_.frames_hz = static_cast<double>(period.denominator) / period.numerator;
     }
 
     const V4l2Device& device_;

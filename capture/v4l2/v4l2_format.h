@@ -14,7 +14,7 @@ namespace stipple {
 struct V4l2Format {
     FrameLayout layout;
     std::size_t buffer_bytes = 0;              ///< size of a buffer, as the driver requires
-    double frames_per_s = 0;                   ///< 0: unknown
+    double frames_hz = 0;                      ///< 0: unknown
     std::map<std::string, std::string> facts;  ///< input, crop rectangle
 };
 

@@ -43,8 +43,7 @@ class CollaborativeSolver {
           runs_(site_runs(x.shape())),
           step_(index(x.slots()) * x.shape().pixels()) {}
 
-    /// The estimate becomes the filtered one; then, but in the last iteration, it is drawn to the
-    /// samples.
+    /// Filters the estimate. All iterations but the last end with the data-consistency step.
     void iterate(int iteration) {
         const float sigma = sigma_of(iteration);
         find_groups(iteration);
@@ -71,7 +70,7 @@ class CollaborativeSolver {
         const float offset =
             std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
                        options.light_offset, kMaxOffset);
-        return {.offset = offset, .least = std::max(options.min_light, -offset)};
+        return {.offset = offset, .min_light = std::max(options.min_light, -offset)};
     }
 
     template <typename Body>

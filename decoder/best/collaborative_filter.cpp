@@ -13,10 +13,11 @@
 namespace stipple {
 namespace {
 
-/// Cuts [0, count) into equal bands, as many as can be at least `least` long, and at least one.
+/// Cuts [0, count) into equal bands, as many as can be at least `min_length` long, and at least
+/// one.
 class Bands {
   public:
-    Bands(int count, int least) : count_(count), bands_(std::max(1, count / least)) {}
+    Bands(int count, int min_length) : count_(count), bands_(std::max(1, count / min_length)) {}
     [[nodiscard]] int size() const { return bands_; }
     [[nodiscard]] int begin(int band) const { return count_ * band / bands_; }
 

@@ -21,7 +21,7 @@ void stabilise_variance(std::span<const float> light, int planes, RootScale scal
                         std::span<float> stabilised) {
     assert(stabilised.size() == light.size());
     for (std::size_t i = 0; i < light.size(); ++i)
-        stabilised[i] = 2 * std::sqrt(std::max(light[i], scale.least) + scale.offset);
+        stabilised[i] = 2 * std::sqrt(std::max(light[i], scale.min_light) + scale.offset);
     if (planes == 3) to_opponents(light.size() / 3, planes_of(stabilised));
 }
 
@@ -32,7 +32,7 @@ void restore_light(std::span<const float> stabilised, int planes, RootScale scal
     if (planes == 3) from_opponents(light.size() / 3, planes_of(light));
     for (float& x : light) {
         const float root = std::max(x, 0.0F);
-        x = std::max(root * root / 4 - scale.offset, scale.least);
+        x = std::max(root * root / 4 - scale.offset, scale.min_light);
     }
 }
 

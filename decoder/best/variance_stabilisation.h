@@ -8,16 +8,16 @@ namespace stipple {
 // noise has the same variance everywhere. Three planes are then transformed to luma and two
 // opponents (opponent_planes.h). Frames have the order (plane, row, col).
 
-/// Light below `least` is replaced by `least`. Precondition: 0 <= -least <= offset.
+/// Light below `min_light` is replaced by `min_light`. Precondition: 0 <= -min_light <= offset.
 struct RootScale {
     float offset;
-    float least = 0;
+    float min_light = 0;
 };
 
 void stabilise_variance(std::span<const float> light, int planes, RootScale scale,
                         std::span<float> stabilised);
 
-/// The inverse; the result is at least `least`.
+/// The inverse; the result is at least `min_light`.
 void restore_light(std::span<const float> stabilised, int planes, RootScale scale,
                    std::span<float> light);
 

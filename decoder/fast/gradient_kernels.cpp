@@ -33,9 +33,9 @@ void add_squares(Index cols, const float* HWY_RESTRICT dual, float* HWY_RESTRICT
 void to_factors(Index cols, const DualStep& dual_step, float* HWY_RESTRICT squares) {
     const float* HWY_RESTRICT step = dual_step.step;
     for (Index i = 0; i < cols; ++i) {
-        const float most = dual_step.weight * std::sqrt(dual_step.reference_step / step[i]);
+        const float max_norm = dual_step.weight * std::sqrt(dual_step.reference_step / step[i]);
         const float norm = std::sqrt(squares[i]);
-        squares[i] = norm > most ? most / norm : 1.0F;  // both may be 0
+        squares[i] = norm > max_norm ? max_norm / norm : 1.0F;  // both may be 0
     }
 }
 

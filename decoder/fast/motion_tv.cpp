@@ -161,7 +161,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
         tv.reference_step = options.step;
-        tv.after_iteration = [&] { return work.add_iteration(); };
+        tv.keep_going = [&] { return work.add_iteration(); };
         solver.minimise(motion, step, tv, x);
     };
     minimise({}, primal_steps(x, options), options.static_tv);

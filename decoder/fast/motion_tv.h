@@ -36,7 +36,7 @@ struct MotionTvOptions {
     float max_step_ratio = 2;  ///< links to pixels whose step size is larger by more are cut
 };
 
-/// Decodes one block. Samples are presumed for voxels that no sample determines
+/// Decodes one block. Presumed samples are added for voxels that no sample determines
 /// (presumed_samples.h). Static total variation follows, then rounds of variances, motion, and
 /// total variation along motion, each from the estimate of the previous round. The result may be
 /// slightly negative. Returns nothing if `progress` has stopped it.

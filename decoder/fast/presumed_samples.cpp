@@ -184,9 +184,9 @@ class SitePresumption {
         m_.variance[i] = noise + p.variance;
     }
 
-    void raise_sum(std::size_t i, float least) {
+    void raise_sum(std::size_t i, float bound) {
         bounds_.push_back({i, m_.sum[i]});
-        m_.sum[i] = std::max(m_.sum[i], least);
+        m_.sum[i] = std::max(m_.sum[i], bound);
     }
 
     Measurements& m_;

@@ -199,7 +199,7 @@ void TotalVariationSolver::minimise(std::span<const MotionField> motion,
     impl_->begin(motion, step, options, x);
     for (int i = 0; i < options.iterations; ++i) {
         impl_->iterate();
-        if (!options.after_iteration()) return;
+        if (!options.keep_going()) return;
     }
 }
 

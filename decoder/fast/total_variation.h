@@ -23,7 +23,7 @@ struct TotalVariationOptions {
     /// 0: all planes share one norm. Otherwise three planes have a norm for luma and a norm for the
     /// two opponents (opponent_planes.h), whose weight is larger by this factor.
     float chroma_weight = 0;
-    std::function<bool()> after_iteration = [] { return true; };  ///< false stops
+    std::function<bool()> keep_going = [] { return true; };  ///< after each iteration; false stops
 };
 
 /// Minimises, by the primal-dual method of Chambolle and Pock (2011) from the start x,

@@ -162,13 +162,13 @@ void fill_crossings(FrameShape shape, const std::vector<Crossing>& all, std::siz
 /// The plane with the most samples.
 std::size_t guide_plane(std::size_t pixels, std::span<const std::uint8_t> sampled) {
     std::size_t guide = 0;
-    std::ptrdiff_t most = 0;
+    std::ptrdiff_t max_count = 0;
     for (std::size_t plane = 0; plane * pixels < sampled.size(); ++plane) {
         const auto missing =
             std::ranges::count(sampled.subspan(plane * pixels, pixels), std::uint8_t{0});
         const auto count = static_cast<std::ptrdiff_t>(pixels) - missing;
-        if (count > most) guide = plane;
-        most = std::max(most, count);
+        if (count > max_count) guide = plane;
+        max_count = std::max(max_count, count);
     }
     return guide;
 }

@@ -11,8 +11,8 @@
 
 #include "core/light.h"
 #include "core/parallel.h"
+#include "decoder/motion/late_opencv.h"
 #include "decoder/motion/motion.h"
-#include "decoder/portz2013/late_opencv.h"
 
 namespace stipple {
 namespace {

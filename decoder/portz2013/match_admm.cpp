@@ -45,14 +45,14 @@ class NormalMatrix : public Eigen::EigenBase<NormalMatrix> {
     }
 
     /// Once false, always.
-    bool goes_on() const {
+    bool keep_going() const {
         going_ = going_ && progress_();
         return going_;
     }
     /// to += scale M x. Once told to stop, M is the identity: the solver ends soon, its result is
     /// not used.
     void add_image(const Eigen::VectorXd& x, double scale, Eigen::VectorXd& to) const {
-        if (!goes_on()) {
+        if (!keep_going()) {
             to += scale * x;
             return;
         }
@@ -108,7 +108,7 @@ void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
         problem.right_side(v, threshold, {d.data(), problem.voxels()});
         const Eigen::VectorXd solution =
             inverse.solveWithGuess(d.cast<double>(), light.cast<double>());
-        if (!m.goes_on()) return;
+        if (!m.keep_going()) return;
         light = solution.cast<float>();
         if (!after_iteration(i, problem.update_duals(x, threshold, v))) return;
     }

@@ -138,6 +138,16 @@ std::size_t MatchOperator::visit_match(const Match& match, std::size_t row,
     return row;
 }
 
+void MatchOperator::cover(const MatchList& list, std::size_t group, Part& part) {
+    const auto add = [&](int row) {
+        part.top = std::min(part.top, row);
+        part.bottom = std::max(part.bottom, row + list.size.rows);
+    };
+    add(list.groups[group].reference.row);
+    for (std::size_t m = list.begin_of(group); m < list.groups[group].end; ++m)
+        add(list.matches[m].row);
+}
+
 void MatchOperator::partition_groups() {
     std::size_t groups = 0, patches = 0;
     for (const MatchList& list : lists_) {
@@ -160,13 +170,7 @@ void MatchOperator::partition_groups() {
     std::size_t number = 0;
     for (const MatchList& list : lists_)
         for (std::size_t g = 0; g < list.groups.size(); ++g) {
-            const auto cover = [&](int row) {
-                part.top = std::min(part.top, row);
-                part.bottom = std::max(part.bottom, row + list.size.rows);
-            };
-            cover(list.groups[g].reference.row);
-            for (std::size_t m = list.begin_of(g); m < list.groups[g].end; ++m)
-                cover(list.matches[m].row);
+            cover(list, g, part);
             work += (list.groups[g].end - list.begin_of(g)) *
                     count(list.size.rows * list.size.cols * list.size.slots);
             ++number;

@@ -27,12 +27,11 @@ class MatchOperator {
     [[nodiscard]] std::size_t rows() const { return rows_; }
     [[nodiscard]] std::size_t voxels() const { return voxels_; }
 
-    /// values = K x - [b; 0]
-    void residuals(std::span<const float> x, std::span<float> values);
-    /// x = K^T values
-    void adjoint(std::span<const float> values, std::span<float> x);
     /// out = K^T K x
     void normal(std::span<const float> x, std::span<float> out);
+    /// The factors of `normal`, called by tests alone: values = K x - [b; 0] and x = K^T values.
+    void residuals(std::span<const float> x, std::span<float> values);
+    void adjoint(std::span<const float> values, std::span<float> x);
 
     // The steps of Algorithm 1 for z and u. Both are stored as v = r + u: z is the soft threshold
     // of v (one-sided for saturated samples), and u = v - z.
@@ -75,6 +74,8 @@ class MatchOperator {
     void accumulate(const Scatter& scatter, std::span<float> out);
     template <typename OnPart>
     void for_each_part(const OnPart& on_part);
+    /// Extends the rows of the frame in `part` by those of a group.
+    static void cover(const MatchList& list, std::size_t group, Part& part);
     void partition_groups();
 
     const ExposureTable& table_;

@@ -24,10 +24,10 @@ std::vector<int> positions(int last, int step) {
 /// The nearest candidates so far, nearest first; of equals the first that came.
 class Nearest {
   public:
-    Nearest(int most, float farthest)
-        : most_(static_cast<std::size_t>(most)), farthest_(farthest) {}
+    Nearest(int max_count, float farthest)
+        : max_count_(static_cast<std::size_t>(max_count)), farthest_(farthest) {}
     [[nodiscard]] float bound() const {
-        return list_.size() < most_ ? farthest_ : list_.back().distance;
+        return list_.size() < max_count_ ? farthest_ : list_.back().distance;
     }
     void offer(const Candidate& candidate) {
         if (!(candidate.distance < bound())) return;
@@ -35,12 +35,12 @@ class Nearest {
             list_.begin(), list_.end(), candidate,
             [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
         list_.insert(where, candidate);
-        if (list_.size() > most_) list_.pop_back();
+        if (list_.size() > max_count_) list_.pop_back();
     }
     [[nodiscard]] const std::vector<Candidate>& list() const { return list_; }
 
   private:
-    std::size_t most_;
+    std::size_t max_count_;
     float farthest_;
     std::vector<Candidate> list_;
 };
@@ -54,8 +54,8 @@ PatchMatch match_at(const PatchPosition& at, float weight) {
 class Searcher {
   public:
     Searcher(int slots, FrameShape shape, const MatchSearch& search, const PatchMeasure& measure,
-             const MatchCount& most)
-        : search_(search), measure_(measure), most_(most) {
+             const MatchCount& max_matches)
+        : search_(search), measure_(measure), max_matches_(max_matches) {
         search_.size = {.rows = std::min(search.size.rows, shape.rows),
                         .cols = std::min(search.size.cols, shape.cols),
                         .slots = std::min(search.size.slots, slots)};
@@ -77,11 +77,11 @@ class Searcher {
 
     [[nodiscard]] std::vector<PatchMatch> matches_of(const PatchPosition& reference) const {
         const float farthest = kFaintestMatch * 2 * search_.sigma * search_.sigma;
-        const int most = most_(search_.size, reference);
+        const int count = max_matches_(search_.size, reference);
         std::vector<PatchMatch> matches;
         if (search_.with_itself) matches.push_back(match_at(reference, search_.weight));
-        if (most <= 0) return matches;
-        Nearest nearest(most, farthest);
+        if (count <= 0) return matches;
+        Nearest nearest(count, farthest);
         const auto low = [](int at, int window) { return std::max(at - window, 0); };
         const auto high = [](int at, int window, int last) { return std::min(at + window, last); };
         PatchPosition at;
@@ -106,17 +106,17 @@ class Searcher {
 
     MatchSearch search_;
     const PatchMeasure& measure_;
-    const MatchCount& most_;
+    const MatchCount& max_matches_;
     PatchPosition last_;
 };
 
 }  // namespace
 
 MatchList find_matches(const VideoSize& video, const MatchSearch& search,
-                       const PatchMeasure& measure, const MatchCount& most,
+                       const PatchMeasure& measure, const MatchCount& max_matches,
                        const ProgressCallback& progress) {
     constexpr std::size_t kBatch = 512;  // reference patches between two questions
-    const Searcher searcher(video.slots, video.shape, search, measure, most);
+    const Searcher searcher(video.slots, video.shape, search, measure, max_matches);
     const std::vector<PatchPosition> references = searcher.references();
     MatchList result{.size = searcher.size(), .groups = {}, .matches = {}};
     for (std::size_t begin = 0; begin < references.size(); begin += kBatch) {

@@ -45,7 +45,7 @@ struct MatchSearch {
     int window_slots = 2;  ///< maximum distance in slots
     float sigma = 0.05F;   ///< of Eq. 3, flux: w = weight exp(-d / (2 sigma^2))
     float weight = 1;
-    bool with_itself = true;  ///< each patch matches itself, in addition to `most`
+    bool with_itself = true;  ///< each patch matches itself, in addition to `max_matches`
 };
 
 /// Largest distance of a match in units of 2 sigma^2: beyond it the weight is below 0.0004.
@@ -68,7 +68,7 @@ struct VideoSize {
 /// equally near patches the earlier, higher, further left one. The same for any number of threads.
 /// Incomplete if `progress` has stopped it.
 [[nodiscard]] MatchList find_matches(const VideoSize& video, const MatchSearch& search,
-                                     const PatchMeasure& measure, const MatchCount& most,
+                                     const PatchMeasure& measure, const MatchCount& max_matches,
                                      const ProgressCallback& progress);
 
 /// Mean square difference of two patches of a video over all planes; a value above `bound` means

@@ -164,7 +164,7 @@ void read_search(const KeyReader& read, MatchSearch& search) {
 void read_admm(const KeyReader& read, MatchAdmmOptions& admm) {
     read({"iterations", {0, 10000}, "", "iterations of ADMM"}, admm.iterations);
     read({"rho", {1e-4, 1e6}, "", "penalty of ADMM: the larger, the smaller the steps"}, admm.rho);
-    read({"cg_iterations", {1, 10000}, "", "most steps of conjugate gradients in each"},
+    read({"cg_iterations", {1, 10000}, "", "max steps of conjugate gradients in each"},
          admm.cg_iterations);
     read({"cg_tolerance", {0, 1}, "", "tolerance of the residual, relative to the right side"},
          admm.cg_tolerance);
@@ -178,7 +178,7 @@ void read_options(Config& config, Portz2013Options& options) {
          options.values_per_flux);
     const KeyReader first(config, "stage1.");
     read_search(first, options.stage1.search);
-    first({"max_matches", kMatches, "", "most matches of a reference patch"},
+    first({"max_matches", kMatches, "", "max matches of a reference patch"},
           options.stage1.max_matches);
     first({"gamma", kGamma, "", "weight of differences between matches"}, options.stage1.gamma);
     read_admm(first, options.stage1.admm);
@@ -186,7 +186,7 @@ void read_options(Config& config, Portz2013Options& options) {
     read_search(second, options.stage2.search);
     second({"search_weight", {0, 1e3}, "", "factor of the weights of matches by search"},
            options.stage2.search.weight);
-    second({"max_matches", kMatches, "", "most matches of a patch, of both kinds"},
+    second({"max_matches", kMatches, "", "max matches of a patch, of both kinds"},
            options.stage2.max_matches);
     second({"gamma", kGamma, "", "weight of differences between matches"}, options.stage2.gamma);
     FlowMatchOptions& flow = options.stage2.flow;

@@ -13,7 +13,7 @@ namespace stipple {
 namespace {
 
 constexpr std::int64_t kWindowSlots = 24;
-constexpr std::size_t kFewestPackets = 8;
+constexpr std::size_t kMinPackets = 8;
 constexpr int kWholeTile = 33;  ///< tiles up to this side are tried in all places
 constexpr int kFarthest = 16;   ///< of larger ones
 constexpr int kCoarsePixels = 4096;
@@ -138,7 +138,7 @@ ScheduleCheck check_schedule(StreamReader& reader) {
     const StreamHeader& header = reader.header();
     ScheduleCheck check;
     const std::vector<SamplePacket> packets = read_window(reader);
-    if (packets.size() < kFewestPackets || header.schedule.longest_span_slots() == 0) return check;
+    if (packets.size() < kMinPackets || header.schedule.longest_span_slots() == 0) return check;
     const ResidualMeter meter(header, packets);
     std::vector<Candidate> candidates = all_shifts(header.schedule);
     check.tried = candidates.size();

@@ -32,7 +32,7 @@ autodoc_typehints = "description"
 
 
 def fields_of_arguments(app, what, name, subject, options, lines):
-    """"name: text" at the begin of a line of a docstring describes an argument."""
+    """"name: text" at the beginning of a line of a docstring describes an argument."""
     fields, before = [], ""
     for line in lines:
         argument = re.match(r"(\w+(?:, \w+)*): (.*)", line)

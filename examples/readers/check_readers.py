@@ -1,17 +1,63 @@
 #!/usr/bin/python3
 """Compares the readers of this folder with the test files of the two formats.
 
-usage: check_readers.py MANIFEST      tests/golden/manifest.json; exit code 1 if a result is not the expected one"""
+usage: check_readers.py MANIFEST      tests/golden/manifest.json; exit code 1 for another result"""
 
 import hashlib
 import json
 import sys
 from pathlib import Path
 
-from read_recording import read_recording
-from read_stream import read_stream
+from read_recording import FIELDS, Recording, image
+from read_stream import Stream
 
-READERS = {".stipple": read_stream, ".strec": read_recording}
+# of the header of a stream
+NOT_SHOWN = ("n", "p", "s", "random", "calibrated", "reserved", "schedule_crc")
+CFA = (None, "rggb", "grbg", "gbrg", "bggr")
+
+
+def stream_result(content):
+    """What the reader finds, in the form of docs/stream_format.md, "Test files"."""
+    try:
+        stream = Stream(content)
+    except ValueError as error:
+        return {"strict_error": str(error), "error": str(error)}
+    faults = [place["offset"] for place in stream.damage]
+    if stream.tail_bytes:
+        faults.append(len(content) - stream.tail_bytes)
+    header = {key: value for key, value in stream.head.items() if key not in NOT_SHOWN}
+    header |= {"rounding": ("nearest", "floor")[header["rounding"]], "cfa": CFA[header["cfa"]]}
+    if header["cfa"] is None:
+        del header["cfa"]
+    keys = ("packets", "slots", "missing_slots", "tail_bytes", "damage")
+    found = {key: getattr(stream, key) for key in keys}
+    strict_error = f"byte {faults[0]}:" if faults else None
+    return {"strict_error": strict_error, "error": None, "header": header, **found}
+
+
+def recording_result(content):
+    """What the reader finds, in the form of docs/recording_format.md, "Test files"."""
+    try:
+        recording = Recording(content)
+    except ValueError as error:
+        return {"error": str(error)}
+    keys = ("session", "end", "missing_blocks", "tail_bytes", "damage")
+    return {"error": None, "frames": [frame_result(frame) for frame in recording.frames],
+            **{key: getattr(recording, key) for key in keys}}
+
+
+def frame_result(frame):
+    shown = {key: frame[key] for key in FIELDS if key != "payload_hash"}
+    shown = {key: None if value != value else value for key, value in shown.items()}  # NaN is null
+    return shown | {"samples": list(image(frame))}
+
+
+RESULTS = {".stipple": stream_result, ".strec": recording_result}
+
+
+def read(file, content):
+    """The result of these bytes of a file, as if it were read from JSON: tuples are lists."""
+    return json.loads(json.dumps(RESULTS[file.suffix](content)))
 
 
 def without_texts(result):
@@ -37,8 +83,10 @@ def outcome(result, is_stream):
     """`good`, `damaged` or `refused`, as in the manifest."""
     if result["error"] is not None:
         return "refused"
-    at_fault = result["strict_error"] if is_stream else (result["damage"] or result["tail_bytes"] or not result["end"])
-    return "damaged" if at_fault else "good"
+    if is_stream:
+        return "damaged" if result["strict_error"] else "good"
+    whole = not result["damage"] and not result["tail_bytes"] and result["end"]
+    return "good" if whole else "damaged"
 
 
 def faults(manifest):
@@ -50,7 +98,7 @@ def faults(manifest):
             yield f"{file}: another sha256"
         if hashlib.sha256(expected).hexdigest() != entry["expected_sha256"]:
             yield f"{expected_file}: another sha256"
-        result = READERS[file.suffix](content)
+        result = read(file, content)
         different = difference(result, json.loads(expected))
         if different:
             yield f"{file}: {different}"

@@ -1,150 +1,150 @@
-#!/usr/bin/python3
-"""A reader of sample streams, written from docs/stream_format.md alone, with Python's standard library.
+"""Reads sample streams as docs/stream_format.md defines them; (Words) are sections of that page.
+Of step 7 of (Reading) it checks the schedule CRC only. read_stream.py FILE prints the samples."""
+import re, struct, sys
+from itertools import accumulate, product
 
-usage: read_stream.py FILE      prints the stream as JSON (the page's section "Test files"); about a second per MB"""
+NAMES = """rows cols planes cfa bit_depth rounding slot_us black_level_dn gain_e_per_dn read_noise_e
+    full_well_e electrons_per_unit n p s random calibrated reserved schedule_crc""".split()
+CRC_TABLE = range(256)
+for _ in range(8): CRC_TABLE = [crc >> 1 ^ 0x82F63B78 * (crc & 1) for crc in CRC_TABLE]
 
-import json
-import struct
-import sys
-from pathlib import Path
+def crc32c(data, other=0):  # continued from the CRC `other`
+    register = other ^ 0xFFFFFFFF
+    for byte in data:
+        register = register >> 8 ^ CRC_TABLE[(register ^ byte) & 0xFF]
+    return register ^ 0xFFFFFFFF
 
-from crc32c import crc32c
-from stream_header import FormatError, read_header
-from stream_packets import index_fault, sample_fault, unpack
+def read_header(data):  # (Reading), steps 1 to 6, then the fields of (Header)
+    version, size = struct.unpack_from("<H2xI", data.ljust(16, b"\0"), 8)
+    crc = int.from_bytes(data[size - 4:size], "little")
+    for good, offset, fault in (
+            (data[:8] == b"\x89STPL\r\n\x1a"[:len(data)], 0, "not a sample stream"),
+            (len(data) >= 16, len(data), "the file ends within its header"),
+            (version in (1, 2), 8, f"version {version} is unknown"),
+            (97 <= size <= 336593068, 12, "wrong number of header bytes"),
+            (len(data) >= size, len(data), "the file ends within its header"),
+            (crc32c(data[:size - 4]) == crc, size - 4, "the header is damaged")):
+        if not good: raise ValueError(f"byte {offset}: {fault}")
+    head = dict(zip(NAMES, struct.unpack_from("<2H4B6d3I2BHI", data, 16)))
+    text, section, end = accumulate((92 + head["n"], head["p"], head["s"]))
+    head.update(schedule_name=data[92:text].decode(), provenance=data[text:section].decode())
+    head["schedule"] = read_schedule(data[section:end], head)
+    if head["calibrated"]:  # (Calibration section)
+        head["dark_e_per_slot"], *tile = struct.unpack_from("<d2H", data, end)
+        head["calibration_tile"] = tile + list(struct.iter_unpack("<2d", data[end + 12:size - 4]))
+    return head, version, size, crc
 
-PACKET, END = b"\xc5SPK", b"\xc5END"
+def read_schedule(section, head):  # (Schedule section)
+    def varint(n):
+        return bytes([n]) if n < 128 else bytes([n % 128 + 128]) + varint(n >> 7)
+    if head["random"]:
+        rows, cols, period = head["rows"], head["cols"], sum(section[9:])
+        tile = [random_exposures(section, pixel) for pixel in range(rows * cols)]
+    else:
+        rows, cols, period = struct.unpack_from("<3H", section)
+        varints = re.findall(rb"[\x80-\xff]*[\0-\x7f]", section[6:])
+        ints = iter([sum(byte % 128 << 7 * i for i, byte in enumerate(v)) for v in varints])
+        tile = [[(next(ints), next(ints)) for _ in range(next(ints))] for _ in range(rows * cols)]
+    explicit = (n for exposures in tile for n in (len(exposures), *sum(exposures, ())))
+    form = struct.pack("<3H", rows, cols, period) + b"".join(map(varint, explicit))
+    if crc32c(form) != head["schedule_crc"]: raise ValueError("byte 88: wrong schedule CRC")
+    return {"tile_rows": rows, "tile_cols": cols, "period_slots": period, "exposures": tile}
 
+def random_exposures(section, pixel):  # (Schedule section), kind 1
+    def draw(i, n):
+        c0, c1, c2, c3, (k0, k1) = pixel, i, 1, 1, struct.unpack_from("<2I", section)
+        for _ in range(10):  # Philox4x32-10
+            a, b = 0xD2511F53 * c0, 0xCD9E8D57 * c2
+            c0, c1, c2, c3 = b >> 32 ^ c1 ^ k0, b % 2**32, a >> 32 ^ c3 ^ k1, a % 2**32
+            k0, k1 = (k0 + 0x9E3779B9) % 2**32, (k1 + 0xBB67AE85) % 2**32
+        return c0 * n >> 32
+    order = list(section[9:])
+    for i in reversed(range(1, len(order))):
+        j = draw(i, i + 1)
+        order[i], order[j] = order[j], order[i]
+    slots = accumulate(order, initial=draw(0, sum(order)))
+    return sorted((slot % sum(order), 2**length - 1) for slot, length in zip(slots, order))
 
-class Stream:
-    """What a tolerant reader finds in the bytes of a file."""
-
+class Stream:  # what a tolerant reader finds, by the keys of (Test files)
     def __init__(self, data):
-        self.data = data
-        self.head, self.begin, crc, version = read_header(data)
-        self.seed, self.end_bytes = (crc, 20) if version == 2 else (0, 16)
-        self.checksum, self.vain_bytes, self.index_at = self.seed, 0, None
-        self.next, self.counted = (0, 0), 0  # slot and row that are due; slots below are counted if they miss rows
-        self.packets, self.damage = [], []
-        self.slots = self.missing_slots = self.tail_bytes = 0
+        self.data, self.packets, self.damage, self.index_at = data, [], [], None
+        self.slots = self.missing_slots = self.tail_bytes = self.counted = 0
+        self.head, version, at, crc = read_header(data)
+        self.crcs = self.seed = crc if version == 2 else 0  # packet checksum, first CRC
+        self.next = (0, 0)  # slot and row that shall come; slots below `counted` are counted
+        self.layouts = {b"\xc5SPK": struct.Struct("<4xBBHQHHIIII"),  # (Packet), (End marker)
+                        b"\xc5END": struct.Struct("<4xQII" if version == 2 else "<4xQI")}
+        while at < len(data): at = self.read(at)
 
-    def note(self, offset, skipped, cause):
-        self.damage.append({"offset": offset, "bytes": skipped, "cause": cause})
-
-    def start(self, at):
-        """What begins here: "packet", "end", "cut" (one of them, but the file ends within it) or ""."""
-        for sync, size, what in ((PACKET, 36, "packet"), (END, self.end_bytes, "end")):
-            if not sync.startswith(self.data[at:at + 4]):
-                continue
-            if len(self.data) - at < size:
-                return "cut"
-            crc, = struct.unpack_from("<I", self.data, at + size - 4)
-            too_long = what == "packet" and self.payload_bytes(at) > 2**29
-            return what if crc32c(self.data[at:at + size - 4], self.seed) == crc and not too_long else ""
-        return ""
-
-    def payload_bytes(self, at):
-        return struct.unpack_from("<I", self.data, at + 24)[0]
-
-    def find(self, at):
-        """The next whole start from here on; the length of the file if there is none."""
-        while (at := self.data.find(b"\xc5", at)) >= 0:
-            if self.start(at) in ("packet", "end"):
-                return at
-            at += 1
-        return len(self.data)
-
-    def search(self, at, cause):
-        found = self.find(at + 1)
-        self.note(at, found - at, cause)
-        return found
-
-    def read(self):
-        at = self.begin
-        while at < len(self.data):
-            if (what := self.start(at)) == "end":
-                return self.end_marker(at)
-            if what == "":
-                at = self.search(at, "no packet begins here")
-            elif what == "cut" or at + 36 + self.payload_bytes(at) > len(self.data):
-                if self.find(at + 1) == len(self.data):
-                    self.tail_bytes = len(self.data) - at
-                    return
-                at = self.search(at, "bytes of a packet are missing")
-            else:
-                at = self.packet(at)
-
-    def packet(self, at):
-        kind, flags, reserved, slot, row, rows, samples, size, crc = struct.unpack_from("<4xBBHQHHIII", self.data, at)
-        end = at + 36 + size
-        payload = self.data[at + 36:end]
-        if crc32c(payload) != crc:
-            self.vain_bytes += size
-            if self.vain_bytes > 2**32 + 16 * at:
-                raise FormatError(f"byte {at}: too many damaged packets overlap")
-            return self.search(at, "the payload is damaged")
-        self.checksum = crc32c(self.data[at + 32:at + 36], self.checksum)
-        if self.index_at is not None:
-            fault = "a packet after the index"
-        elif kind == 1:
-            early = (slot, row) < self.next
-            fault = sample_fault(self.head, (flags, reserved, slot, row, rows, samples), early, payload)
-        elif kind == 3:
-            fault = self.index_fault(at, (flags, reserved, row, rows), slot, samples, payload)
-        else:
-            fault = f"kind {kind}"
-        if fault:
-            self.note(at, end - at, fault)
-        elif kind == 3:
-            self.index_at, self.slots = at, slot
-            self.skip_to(at, slot, 0)
-        else:
-            self.skip_to(at, slot, row)
-            self.next = (slot, row + rows) if row + rows < self.head["rows"] else (slot + 1, 0)
-            self.slots = slot + 1
-            self.packets.append({"slot": slot, "first_row": row, "rows": rows, "flags": flags,
-                                 "dn": unpack(payload, samples, self.head["bit_depth"])})
+    def skip(self, at, end, cause):
+        self.damage.append({"offset": at, "bytes": end - at, "cause": cause})
         return end
 
-    def index_fault(self, at, fields, slots, count, payload):
-        intact = not self.damage and (slots, 0) == self.next
-        fault = index_fault(fields, slots, count, payload, early=(slots, 0) < self.next, limit=at if intact else 2**64)
-        for slot, offset in struct.iter_unpack("<QQ", payload) if intact and not fault else ():
-            if self.start(offset) != "packet" or struct.unpack_from("<B3xQH", self.data, offset + 4) != (1, slot, 0):
-                fault = "the index does not lead to a slot"
-        return fault
+    def start(self, at):  # 9 fields of a packet header, 1 or 2 of an end marker, () if cut, or None
+        for sync, layout in self.layouts.items():
+            if sync.startswith(self.data[at:at + 4]):
+                if at + layout.size > len(self.data): return ()
+                *fields, crc = layout.unpack_from(self.data, at)
+                good = crc == crc32c(self.data[at:at + layout.size - 4], self.seed)
+                return fields if good and (len(fields) < 9 or fields[7] <= 2**29) else None
 
-    def skip_to(self, at, slot, row):
-        if (slot, row) == self.next:
-            return
-        self.note(at, 0, "slots or rows are missing")
-        end = slot + (row > 0)
-        self.missing_slots += max(end - max(self.next[0], self.counted), 0)
-        self.counted, self.next = max(self.counted, end), (slot, row)
+    def read(self, at):  # (Reading): the steps at one position; returns the next position
+        data, fields = self.data, self.start(at)
+        if fields and len(fields) < 9: return self.end_marker(at, *fields)
+        end = at + 36 + fields[7] if fields else at  # fields 7, 8: bytes and CRC of the payload
+        cut = fields == () or end > len(data)
+        if fields and not cut and crc32c(data[at + 36:end]) == fields[8]:
+            good = self.take(at, data[at + 36:end], *fields)
+            return end if good else self.skip(at, end, "this packet breaks a rule")
+        found = next((i for i in range(at + 1, len(data)) if self.start(i)), len(data))
+        if not cut or found < len(data): return self.skip(at, found, "no whole packet begins here")
+        self.tail_bytes = found - at
+        return found
 
-    def end_marker(self, at):
-        end = at + self.end_bytes
-        index_at, checksum = struct.unpack_from("<QI", self.data, at + 4)  # in version 1 there is no checksum
-        if not self.damage and index_at != self.index_at:
-            self.note(at, self.end_bytes, "the end marker does not lead to the index")
-        elif not self.damage and self.end_bytes == 20 and checksum != self.checksum:
-            self.note(at, 0, "other packets than those that were recorded")
-        if end < len(self.data):
-            self.note(end, len(self.data) - end, "bytes after the end marker")
+    def due(self, slot, band):  # (Kind 1): row, column, plane, first slot and open slots of samples
+        tile_rows, tile_cols, period, tile = self.head["schedule"].values()
+        for row, col, plane in product(band, range(self.head["cols"]), range(self.head["planes"])):
+            for first, open_slots in tile[row % tile_rows * tile_cols + col % tile_cols]:
+                before = open_slots.bit_length() - 1
+                if slot >= before and slot % period == (first + before) % period:
+                    yield row, col, plane, slot - before, open_slots
 
+    def take(self, at, payload, kind, flags, reserved, slot, first_row, rows, samples, *_):
+        begin, end_row, depth = (slot, first_row), first_row + rows, self.head["bit_depth"]
+        if self.index_at or reserved or slot >= 2**53 or begin < self.next: return False
+        if kind == 1:  # (Rules of a packet), 2
+            due = 0 if flags & 2 else len(list(self.due(slot, range(first_row, end_row))))
+            bits = int.from_bytes(payload, "little")
+            if (flags > 3 or not first_row < end_row <= self.head["rows"] or samples != due
+                    or len(payload) != -(-due * depth // 8) or bits >> due * depth): return False
+            dn = [bits >> i * depth & 2**depth - 1 for i in range(samples)]
+            self.packets.append(dict(slot=slot, first_row=first_row, rows=rows, flags=flags, dn=dn))
+        elif kind == 3 and flags == end_row == 0 and len(payload) == 16 * samples:  # 3
+            entries = list(struct.iter_unpack("<2Q", payload))  # (Kind 3): slot, offset
+            whole = not self.damage and self.next == begin
+            following = [*entries[1:], (slot, at if whole else 2**64)]
+            good = all(a < c and b < d for (a, b), (c, d) in zip(entries, following))
+            leads = (([1, entry, 0], self.start(offset) or []) for entry, offset in entries)
+            good &= not whole or all(got[:1] + got[3:5] == wanted for wanted, got in leads)
+            if not good: return False
+            self.index_at = at
+        else: return False
+        if begin > self.next:
+            first, self.counted = max(self.next[0], self.counted), slot + (first_row > 0)
+            self.missing_slots += self.counted - first
+            self.skip(at, at, "rows before this packet are missing")
+        self.next = (slot + 1, 0) if end_row == self.head["rows"] else (slot, end_row)
+        self.slots, self.crcs = slot + (kind == 1), crc32c(self.data[at + 32:at + 36], self.crcs)
+        return True
 
-def read_stream(data):
-    """The stream in the layout of the page's section "Test files"."""
-    try:
-        stream = Stream(data)
-        stream.read()
-    except FormatError as error:
-        return {"strict_error": str(error), "error": str(error)}
-    tail = [{"offset": len(data) - stream.tail_bytes, "cause": "the file is cut"}] if stream.tail_bytes else []
-    first = [f"byte {place['offset']}: {place['cause']}" for place in stream.damage + tail][:1]
-    keys = ("packets", "slots", "missing_slots", "tail_bytes", "damage")
-    return {"strict_error": first[0] if first else None, "error": None, "header": stream.head,
-            **{key: getattr(stream, key) for key in keys}}
-
+    def end_marker(self, at, index_at, *checksum):  # (Damage)
+        end = at + self.layouts[b"\xc5END"].size
+        if not self.damage and index_at != self.index_at: self.skip(at, end, "no index there")
+        elif not self.damage and checksum not in ((), (self.crcs,)): self.skip(at, at, "exchanged")
+        return end if end == len(self.data) else self.skip(end, len(self.data), "bytes after it")
 
 if __name__ == "__main__":
-    print(json.dumps(read_stream(Path(sys.argv[1]).read_bytes())))
+    stream = Stream(open(sys.argv[1], "rb").read())
+    for slot, first_row, rows, _, dn in map(dict.values, stream.packets):
+        for place, value in zip(stream.due(slot, range(first_row, first_row + rows)), dn):
+            print(slot, *place, value)  # slot, row, column, plane, first slot, open slots, DN

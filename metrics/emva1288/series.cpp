@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/parsed_number.h"
 
 namespace stipple::emva1288 {
 namespace {
@@ -52,21 +52,18 @@ class Parser {
         throw InputError(fmt::format("{}:{}", where_, line_), problem);
     }
 
-    double number(std::istringstream& words, std::string_view what, double least, double most) {
+    double number(std::istringstream& words, std::string_view what, double min, double max) {
         std::string word;
         if (!(words >> word)) fail(fmt::format("{} is missing", what));
-        double value = 0;
-        const char* const end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(word.data(), end, value);
-        if (error != std::errc() || stop != end)
-            fail(fmt::format("{} \"{}\" is not a number", what, word));
-        if (!(value >= least && value <= most))
-            fail(fmt::format("{} {} is outside {}..{}", what, word, least, most));
-        return value;
+        const auto value = parsed_number<double>(word);
+        if (!value) fail(fmt::format("{} \"{}\" is not a number", what, word));
+        if (!(*value >= min && *value <= max))
+            fail(fmt::format("{} {} is outside {}..{}", what, word, min, max));
+        return *value;
     }
 
-    int integer(std::istringstream& words, std::string_view what, double most) {
-        const double value = number(words, what, 1, most);
+    int integer(std::istringstream& words, std::string_view what, double max) {
+        const double value = number(words, what, 1, max);
         if (value != std::floor(value)) fail(fmt::format("{} is not a whole number", what));
         return static_cast<int>(value);
     }

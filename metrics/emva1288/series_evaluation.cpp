@@ -30,10 +30,10 @@ void require_image_of(const Series& series, const SeriesImage& image, const std:
     if (image.rows != series.rows || image.cols != series.cols)
         throw InputError(where, fmt::format("is {} x {}, but the descriptor says {} x {}",
                                             image.cols, image.rows, series.cols, series.rows));
-    const int most = *std::ranges::max_element(image.dn);
-    if (most >> series.bits != 0)
+    const int max_dn = *std::ranges::max_element(image.dn);
+    if (max_dn >> series.bits != 0)
         throw InputError(where, fmt::format("holds the DN {}, but the descriptor says {} bits",
-                                            most, series.bits));
+                                            max_dn, series.bits));
 }
 
 Evaluation evaluate(const Series& series, const std::filesystem::path& folder,

@@ -11,12 +11,23 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
-from ._stipple import ComparedVideos, Frame, MaxMemory, Recording, Sensor, Stream, VideoQuality, __version__
+from ._stipple import (
+    ComparedVideos,
+    Frame,
+    MaxMemory,
+    PreviewFrame,
+    Recording,
+    Sensor,
+    Stream,
+    VideoQuality,
+    __version__,
+)
 
 __all__ = [
     "ComparedVideos",
     "Frame",
     "MaxMemory",
+    "PreviewFrame",
     "Recording",
     "Schedule",
     "Sensor",

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "core/error.h"
 #include "core/index.h"
+#include "core/parsed_number.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -90,12 +90,10 @@ class Parser {
     }
 
     [[nodiscard]] int number(std::string_view text, const FieldRule& rule) const {
-        int result = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result);
-        if (error != std::errc() || end != text.data() + text.size() || result < 1 ||
-            result > rule.max)
+        const auto result = parsed_number<int>(text);
+        if (!result || *result < 1 || *result > rule.max)
             fail(fmt::format("{} = {}: needs an integer from 1 to {}", rule.key, text, rule.max));
-        return result;
+        return *result;
     }
 
     void read_words(std::string_view line) {
@@ -111,10 +109,9 @@ class Parser {
     }
 
     void read_address(std::string_view text) {
-        const char* const end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data(), end, address_, 16);
-        if (error != std::errc() || stop != end)
-            fail(fmt::format("\"@{}\" is no hexadecimal address", text));
+        const auto address = parsed_number<std::size_t>(text, 16);
+        if (!address) fail(fmt::format("\"@{}\" is no hexadecimal address", text));
+        address_ = *address;
     }
 
     /// Takes memory once the figures are known and the first word has their width.

@@ -10,16 +10,6 @@
 namespace stipple {
 namespace {
 
-/// True if some exposure takes one store in even repetitions of the period and the other in odd.
-bool stores_alternate(const ExposureSchedule& schedule) {
-    if (!schedule.interleaved()) return false;
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (std::size_t i = 0; i < schedule.exposures(row, col).size(); ++i)
-                if (schedule.store(row, col, i, 0) != schedule.store(row, col, i, 1)) return true;
-    return false;
-}
-
 /// A tile pixel in one repetition of the schedule's period.
 struct PixelPeriod {
     int row;
@@ -113,6 +103,15 @@ class ExposureFinder {
 };
 
 }  // namespace
+
+bool stores_alternate(const ExposureSchedule& schedule) {
+    if (!schedule.interleaved()) return false;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 0; col < schedule.tile_cols(); ++col)
+            for (std::size_t i = 0; i < schedule.exposures(row, col).size(); ++i)
+                if (schedule.store(row, col, i, 0) != schedule.store(row, col, i, 1)) return true;
+    return false;
+}
 
 int program_bits_per_pixel(const ExposureSchedule& schedule) {
     if (schedule.interleaved()) return 3;

@@ -29,6 +29,10 @@ struct SequencerProgram {
     bool operator==(const SequencerProgram&) const = default;
 };
 
+/// True if some exposure takes one charge store in even repetitions of the period and the other in
+/// odd. Precondition: charge_stores() <= 2.
+[[nodiscard]] bool stores_alternate(const ExposureSchedule& schedule);
+
 /// `SequencerProgram::bits_per_pixel` of a schedule.
 [[nodiscard]] int program_bits_per_pixel(const ExposureSchedule& schedule);
 

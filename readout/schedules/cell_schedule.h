@@ -12,8 +12,8 @@ struct Cell {
     int rows = 1;
     int cols = 1;
     std::vector<int> exposure_slots;  ///< 1..64
-    std::vector<int> every_slots;     ///< from one begin of an exposure to the next
-    std::vector<int> first_slots;     ///< begin of the first one, 0 or more
+    std::vector<int> every_slots;     ///< from the beginning of an exposure to that of the next
+    std::vector<int> first_slots;     ///< beginning of the first one, 0 or more
 };
 
 /// The period is the least common multiple of all `every_slots`. \throws InputError naming the

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "readout/program/sequencer_program.h"
 #include "readout/schedules/tile_list.h"
 
 namespace stipple {
@@ -87,15 +88,6 @@ class CodeReader {
     std::size_t pixel_ = 0;
 };
 
-/// Whether an exposure has another store in the next period.
-bool stores_alternate(const ExposureSchedule& schedule) {
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (std::size_t i = 0; i < schedule.exposures(row, col).size(); ++i)
-                if (schedule.store(row, col, i, 0) != schedule.store(row, col, i, 1)) return true;
-    return false;
-}
-
 std::string code_of(const ExposureSchedule& schedule, int row, int col, int periods) {
     const auto period = static_cast<std::size_t>(schedule.period_slots());
     std::string code(period * static_cast<std::size_t>(periods), '.');
@@ -146,7 +138,7 @@ std::string code_text(const ExposureSchedule& schedule, const std::string& name)
         throw InputError(
             "exposure schedule",
             fmt::format("needs {} charge stores; a code names two", schedule.charge_stores()));
-    const int periods = schedule.charge_stores() == 2 && stores_alternate(schedule) ? 2 : 1;
+    const int periods = stores_alternate(schedule) ? 2 : 1;
     const int rows = schedule.tile_rows();
     const int cols = schedule.tile_cols();
     const auto slots =

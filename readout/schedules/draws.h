@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "core/philox.h"
 
@@ -39,5 +41,12 @@ class Draws {
     std::uint32_t plane_;
     std::uint64_t count_ = 0;
 };
+
+/// Fisher-Yates: all orders are equally likely.
+template <typename Value>
+void shuffle(std::vector<Value>& values, Draws& draws) {
+    for (std::size_t i = values.size(); i > 1; --i)
+        std::swap(values[i - 1], values[draws.below(i)]);
+}
 
 }  // namespace stipple

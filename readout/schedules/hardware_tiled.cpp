@@ -12,7 +12,7 @@
 namespace stipple {
 namespace {
 
-constexpr int kFewGroups = 12;  ///< the least side of a scattered tile
+constexpr int kFewGroups = 12;  ///< min side of a scattered tile
 
 void fail(const std::string& problem) {
     throw InputError("hardware_tiled", problem);
@@ -44,10 +44,10 @@ int whole_groups(const char* key, int pixels, int group, const char* group_key) 
 /// The least columns, in groups, of which every class of channels gets whole periods; where that
 /// is too wide, whole periods.
 int even_cols(int period, int classes) {
-    const int least = (kFewGroups + period - 1) / period;
-    for (int periods = least; periods * period <= 256; ++periods)
+    const int min_periods = (kFewGroups + period - 1) / period;
+    for (int periods = min_periods; periods * period <= 256; ++periods)
         if (periods % std::gcd(periods * period, classes) == 0) return periods * period;
-    return least * period;
+    return min_periods * period;
 }
 
 void check_size(const GroupGrid& grid, int rows, int cols, std::size_t lengths) {

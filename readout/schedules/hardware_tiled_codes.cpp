@@ -46,7 +46,7 @@ int overlap(int length, int shift, int other, int period) {
 }
 
 /// `overlap` of a code that begins in slot 0 and one that begins in slot `shift`.
-double likeness_of(const std::vector<int>& a, const std::vector<int>& b, int shift, int period) {
+double overlap_of(const std::vector<int>& a, const std::vector<int>& b, int shift, int period) {
     double sum = 0;
     int begin_a = 0;
     for (const int length_a : a) {
@@ -69,7 +69,7 @@ CodeSet::CodeSet(std::span<const int> exposure_slots, Draws& draws)
       period_(std::accumulate(exposure_slots.begin(), exposure_slots.end(), 0)) {
     choose_orders(exposure_slots, draws);
     list_due();
-    tabulate_likeness();
+    tabulate_overlaps();
 }
 
 void CodeSet::choose_orders(std::span<const int> exposure_slots, Draws& draws) {
@@ -89,13 +89,13 @@ void CodeSet::list_due() {
     }
 }
 
-void CodeSet::tabulate_likeness() {
-    likeness_.reserve(orders_.size() * orders_.size() * static_cast<std::size_t>(period_));
+void CodeSet::tabulate_overlaps() {
+    overlaps_.reserve(orders_.size() * orders_.size() * static_cast<std::size_t>(period_));
     for (const auto& a : orders_)
         for (const auto& b : orders_)
             for (int shift = 0; shift < period_; ++shift) {
-                const double overlap = likeness_of(a, b, shift, period_);
-                likeness_.push_back(static_cast<std::int32_t>(overlap * kUnit + 0.5));
+                const double overlap = overlap_of(a, b, shift, period_);
+                overlaps_.push_back(static_cast<std::int32_t>(overlap * kUnit + 0.5));
             }
 }
 

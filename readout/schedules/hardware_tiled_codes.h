@@ -64,7 +64,7 @@ class CodeSet {
     [[nodiscard]] std::int32_t overlap(GroupCode a, GroupCode b) const {
         const int shift = b.first_slot - a.first_slot;
         const std::size_t pair = a.order * orders_.size() + b.order;
-        return likeness_[pair * static_cast<std::size_t>(period_) +
+        return overlaps_[pair * static_cast<std::size_t>(period_) +
                          static_cast<std::size_t>(shift < 0 ? shift + period_ : shift)];
     }
 
@@ -74,14 +74,14 @@ class CodeSet {
   private:
     void choose_orders(std::span<const int> exposure_slots, Draws& draws);
     void list_due();
-    void tabulate_likeness();
+    void tabulate_overlaps();
 
     std::size_t lengths_;
     int period_;
     int best_orders_ = 1;
     std::vector<std::vector<int>> orders_;  ///< the lengths in each order
     std::vector<std::vector<int>> due_;
-    std::vector<std::int32_t> likeness_;  ///< by order, order, shift
+    std::vector<std::int32_t> overlaps_;  ///< by order, order, shift
 };
 
 }  // namespace stipple

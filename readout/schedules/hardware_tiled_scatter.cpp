@@ -20,10 +20,6 @@ GroupCode draw_code(const CodeSet& codes, Draws& draws) {
     return {static_cast<std::uint16_t>(order), static_cast<std::uint16_t>(slot)};
 }
 
-void shuffle(Codes& codes, Draws& draws) {
-    for (std::size_t i = codes.size(); i > 1; --i) std::swap(codes[i - 1], codes[draws.below(i)]);
-}
-
 /// How many of some codes are due in each slot.
 class DueCounts {
   public:

@@ -21,13 +21,6 @@ void check_tile(int rows, int cols) {
                                      kMaxTileSide));
 }
 
-/// Fisher-Yates.
-template <typename Value>
-void shuffle(Draws& draws, std::vector<Value>& values) {
-    for (std::size_t i = values.size(); i > 1; --i)
-        std::swap(values[i - 1], values[draws.below(i)]);
-}
-
 /// `open` of `slots` bits set, all choices equally likely.
 std::uint64_t draw_mask(Draws& draws, int slots, int open) {
     std::uint64_t mask = 0;
@@ -68,7 +61,7 @@ ExposureSchedule scattered_schedule(const Scatter& scatter, std::span<const int>
     TileList list(scatter.tile_rows, scatter.tile_cols, scatter.period_slots);
     Draws draws(seed, DrawPlane::kScattered);
     for (int pixel = 0; pixel < scatter.tile_rows * scatter.tile_cols; ++pixel) {
-        shuffle(draws, items);
+        shuffle(items, draws);
         const auto period = static_cast<std::size_t>(scatter.period_slots);
         std::uint32_t slot = scatter.wrap ? draws.below(period) : 0;
         for (const int length : items) {

@@ -124,10 +124,12 @@ NamedSchedule read_cell(Config& config, const Made& /*made*/) {
     cell.every_slots = read_per_pixel(
         config, {"every_slots", kPeriod, "slots", "distance of exposures; a list: of each pixel"},
         4, pixels);
-    cell.first_slots = read_per_pixel(
-        config,
-        {"first_slots", {0, kMaxPeriodSlots}, "slots", "begin of the first; a list: of each pixel"},
-        0, pixels);
+    cell.first_slots = read_per_pixel(config,
+                                      {"first_slots",
+                                       {0, kMaxPeriodSlots},
+                                       "slots",
+                                       "beginning of the first; a list: of each pixel"},
+                                      0, pixels);
     return {"cell", {}, at_key(config, "every_slots", [&] { return cell_schedule(cell); })};
 }
 
@@ -164,7 +166,7 @@ NamedSchedule read_flutter(Config& config, const Made& made) {
     read_tile_size(config, {1, kMaxTiledSide}, flutter.tile_rows, flutter.tile_cols);
     read({"code_slots", kExposure, "slots", "length of a code"}, flutter.code_slots);
     read(kOpenSlots, flutter.open_slots);
-    read({"codes", kPeriod, "", "codes in succession before they repeat"}, flutter.codes);
+    read({"codes", kPeriod, "", "number of codes in the period"}, flutter.codes);
     read({"complement", {}, "", "whether the second charge store takes the closed slots"},
          flutter.complement);
     check_exposures(config, "codes",

@@ -55,7 +55,7 @@ class SlotCounts {
     /// Falls as the counts become even.
     [[nodiscard]] std::int64_t sum_of_squares() const { return sum_of_squares_; }
     /// Its least value for so many exposures: no two counts differ by more than 1.
-    [[nodiscard]] std::int64_t least_sum_of_squares() const {
+    [[nodiscard]] std::int64_t min_sum_of_squares() const {
         const auto total = std::accumulate(begun_.begin(), begun_.end(), std::int64_t{0});
         const auto slots = static_cast<std::int64_t>(begun_.size());
         const auto each = total / slots;
@@ -93,9 +93,9 @@ struct Tile {
 /// Changes pixels at random, now a little, now altogether, and keeps what is not less even, until
 /// no two slots differ by more than one or `kMaxDrawn` exposures have been tried.
 void even_out(Tile& tile, SlotCounts& counts, std::span<const int> lengths, Draws& draws) {
-    const std::int64_t least = counts.least_sum_of_squares();
+    const std::int64_t min_sum = counts.min_sum_of_squares();
     std::vector<Exposure> other(tile.each);
-    for (std::size_t drawn = 0; drawn < kMaxDrawn && counts.sum_of_squares() > least;
+    for (std::size_t drawn = 0; drawn < kMaxDrawn && counts.sum_of_squares() > min_sum;
          drawn += tile.each) {
         const auto current = tile.pixel(draws.below(tile.pixels()));
         if (tile.each > 1 && draws.below(2) == 0) {

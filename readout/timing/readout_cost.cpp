@@ -67,10 +67,6 @@ ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
 
 }  // namespace
 
-std::string_view name_of(OverrunPolicy policy) {
-    return policy == OverrunPolicy::kDrop ? "drop" : "stretch";
-}
-
 std::string_view name_of(ReadoutLimit limit) {
     constexpr std::array<std::string_view, 4> kNames{"adc", "link", "row_overhead", "code_load"};
     return kNames.at(static_cast<std::size_t>(limit));

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/named_value.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/row_loads.h"
 #include "readout/timing/slot_readout.h"
@@ -18,8 +20,12 @@ enum class OverrunPolicy : std::uint8_t {
     kDrop      ///< rows that do not fit are reset without readout
 };
 
-/// As an option of the command line: "stretch", "drop".
-[[nodiscard]] std::string_view name_of(OverrunPolicy policy);
+inline constexpr auto kOverrunPolicies = std::to_array<NamedValue<OverrunPolicy>>(
+    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}});
+
+[[nodiscard]] constexpr std::string_view name_of(OverrunPolicy policy) {
+    return name_in(kOverrunPolicies, policy);
+}
 
 /// The part of a readout that takes most of its time.
 enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };

@@ -29,7 +29,7 @@ double seconds_of(const ReadoutCost& cost) {
     return static_cast<double>(cost.clocks()) / static_cast<double>(cost.timing().clock_hz);
 }
 
-double code_bits_per_s(const ReadoutCost& cost, double slots_hz) {
+double code_bits_per_second(const ReadoutCost& cost, double slots_hz) {
     return static_cast<double>(cost.shape().pixels()) * slots_hz;
 }
 

@@ -29,7 +29,7 @@ struct Utilisation {
 [[nodiscard]] double seconds_of(const ReadoutCost& cost);
 
 /// Rate of the exposure code, one bit per pixel and slot, in bits/s.
-[[nodiscard]] double code_bits_per_s(const ReadoutCost& cost, double slots_hz);
+[[nodiscard]] double code_bits_per_second(const ReadoutCost& cost, double slots_hz);
 
 /// Energy per sample of a full readout, and of a coded one in its steady period, in pJ.
 [[nodiscard]] double full_sample_pj(const ReadoutRate& rate, const ReadoutCost& cost);
@@ -49,7 +49,7 @@ void visit_cost_figures(const ReadoutCost& cost, double light_throughput, const 
     add("slot_clocks", cost.budget().clocks);
     add("clocks", cost.clocks());
     add("seconds", seconds);
-    add("sensor_slots_hz", slots_hz);
+    add("slots_hz", slots_hz);
     add("overrun_slots", cost.overruns());
     add("dropped_samples", totals.dropped_samples);
     add("readout_clocks", totals.readout_clocks);
@@ -64,7 +64,7 @@ void visit_cost_figures(const ReadoutCost& cost, double light_throughput, const 
     add("sample_energy_pj", totals.energy_pj / static_cast<double>(totals.samples));
     add("light_throughput", light_throughput);
     add("schedule_memory_bits", schedule_memory_bits(cost.schedule()));
-    add("code_load_bits_per_second", code_bits_per_s(cost, slots_hz));
+    add("code_load_bits_per_second", code_bits_per_second(cost, slots_hz));
 }
 
 /// Rates of the keys of `timing`: full and coded readout, and the slots that limit them.
@@ -87,7 +87,7 @@ void visit_rate_figures(const ReadoutRate& rate, const ReadoutCost& cost, const 
     add("full_settle_clocks", rate.full.settle);
     add("slowest_settle_clocks", rate.slowest.settle_clocks);
     add("balanced_speedup", rate.balanced_speedup);
-    add("balanced_row_clocks", rate.even.row);
+    add("balanced_row_clocks", rate.balanced.row);
     add("slowest_slot_clocks", rate.slowest.clocks);
     add("slowest_slot_time_s", seconds(rate.slowest.clocks));
     add("slowest_phase", rate.slowest_phase);
@@ -115,7 +115,7 @@ void visit_period_figures(const ReadoutRate& rate, const ReadoutCost& cost, cons
     add("slot_sample_energy_pj", coded_sample_pj(rate));
     add("schedule_memory_bits", schedule_memory_bits(cost.schedule()));
     add("code_load_clocks", cost.timing().code_load_clocks);
-    add("code_load_bits_per_second", code_bits_per_s(cost, rate.coded_hz));
+    add("code_load_bits_per_second", code_bits_per_second(cost, rate.coded_hz));
 }
 
 }  // namespace stipple

@@ -42,10 +42,10 @@ ReadoutRate rate_of(const ReadoutTiming& timing, const ExposureSchedule& schedul
         throw InputError("exposure schedule", "reads no pixel of the window");
     rate.mean_slot_clocks = clocks / period;
     const double samples_per_slot = static_cast<double>(rate.period.samples) / period;
-    rate.even =
+    rate.balanced =
         balanced_readout(timing, shape, samples_per_slot / static_cast<double>(shape.sites()));
     const double balanced_clocks =
-        std::max(rate.even.total, static_cast<double>(cost.timing().code_load_clocks));
+        std::max(rate.balanced.total, static_cast<double>(cost.timing().code_load_clocks));
     rate.full_hz = per_second(timing, static_cast<double>(rate.full.total));
     rate.coded_hz = per_second(timing, static_cast<double>(rate.slowest.clocks));
     rate.mean_coded_hz = per_second(timing, rate.mean_slot_clocks);

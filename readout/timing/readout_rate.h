@@ -13,8 +13,8 @@ namespace stipple {
 /// Rates of full and of coded readout of a window, each readout right after the previous one.
 struct ReadoutRate {
     UniformReadout full;
-    BalancedReadout even;  ///< the bound: balanced load
-    SlotCost slowest;      ///< slot of the steady period
+    BalancedReadout balanced;  ///< the upper bound: balanced load
+    SlotCost slowest;          ///< slot of the steady period
     std::int64_t slowest_phase = 0;
     double mean_slot_clocks = 0;
     ReadoutCounts period;         ///< of all slots of a steady period
@@ -22,7 +22,7 @@ struct ReadoutRate {
     double coded_hz = 0;          ///< slots per second, as the slowest slot allows
     double mean_coded_hz = 0;     ///< slots per second if each lasts as long as its readout
     double speedup = 0;           ///< coded_hz / full_hz
-    double balanced_speedup = 0;  ///< of `even`, limited by the code load too
+    double balanced_speedup = 0;  ///< of `balanced`, limited by the code load too
     double full_energy_pj = 0;
 };
 

@@ -71,7 +71,7 @@ struct ReadoutTiming {
     double link_bit_pj = 0;
     double code_bit_pj = 0;  ///< a bit of exposure code, one per pixel and slot
 
-    /// Differences from the chip that is sold, informative; empty: none.
+    /// Differences from the commercial chip, informative; empty: none.
     std::string hypothetical = {};
 
     [[nodiscard]] int adcs() const { return cols / columns_per_adc; }

@@ -12,10 +12,10 @@ namespace stipple {
 /// Times of the readout of a row, in clocks.
 struct RowTimes {
     RowLoad load;
-    std::int64_t select = 0;   ///< begin of the selection
-    std::int64_t convert = 0;  ///< begin of the conversion
+    std::int64_t select = 0;   ///< beginning of the selection
+    std::int64_t convert = 0;  ///< beginning of the conversion
     std::int64_t convert_end = 0;
-    std::int64_t transfer = 0;  ///< begin of the transfer
+    std::int64_t transfer = 0;  ///< beginning of the transfer
     std::int64_t transfer_end = 0;
     std::int64_t end_if_last = 0;  ///< end of the readout if this row is the last
 

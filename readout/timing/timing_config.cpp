@@ -82,7 +82,7 @@ std::optional<ReadoutTiming> read_timing(Config& config, int bits_per_sample) {
     read_conversion(read, timing);
     read_frame(read, timing);
     read_energy(read, timing);
-    read({"hypothetical", {}, "", "how the chip that is sold differs"}, timing.hypothetical);
+    read({"hypothetical", {}, "", "how the commercial chip differs"}, timing.hypothetical);
     if (timing == ReadoutTiming{}) return {};
     for (const auto& [key, missing] : {std::pair{"clock_hz", timing.clock_hz == 0},
                                        {"rows", timing.rows == 0},

@@ -22,11 +22,11 @@ class WaveformFile {
     /// \throws InputError as PendingOutput.
     WaveformFile(const std::string& file, bool force) : output_(file, force) {}
 
-    /// Writes the slots of `range`, of which the first begins at time 0, as long as `goes_on`
+    /// Writes the slots of `range`, of which the first begins at time 0, as long as `keep_going`
     /// returns true. `sensor` is the name of the scope in the file.
     /// \throws DeviceError.
     void write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
-               const std::function<bool()>& goes_on);
+               const std::function<bool()>& keep_going);
 
   private:
     PendingOutput output_;

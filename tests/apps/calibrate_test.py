@@ -12,7 +12,7 @@ SIZE = "32x24"
 SENSOR = ("--sensor", "t6", "--set", "sensor.device_id=4")
 
 
-def photographs(folder, groups):
+def write_series(folder, groups):
     """A descriptor of PNG images, for groups of (line, DN of the images)."""
     lines = ["v 4.0", "n 12 16 12"]
     number = 0
@@ -110,19 +110,19 @@ class CalibrateTest(ProgramTest):
             return [np.round(64 + signal + np.sqrt(4 + signal) * random.standard_normal(gain.shape))
                     for _ in range(count)]
 
-        photographs(self.folder, [("d 5000000", images(20, 0)), ("d 80000000", images(20, 0)),
-                                  ("b 5000000 100", images(2, 100)), ("b 5000000 2000", images(40, 2000))])
+        write_series(self.folder, [("d 5000000", images(20, 0)), ("d 80000000", images(20, 0)),
+                                   ("b 5000000 100", images(2, 100)), ("b 5000000 2000", images(40, 2000))])
         self.succeed("calibrate", "--series", "series.txt", "-o", "camera.stcal")
         # sqrt(2000 / 40) of 2000 DN: 0.35 %; five standard deviations of 192 pixels.
         error = self.gains("camera.stcal") / (gain / gain.mean()) - 1
         self.assertLess(np.sqrt(np.mean(error ** 2)), 0.0035 * 1.3)
-        photographs(self.folder, [("d 5000000", images(20, 0)), ("b 5000000 2000", images(40, 2000))])
+        write_series(self.folder, [("d 5000000", images(20, 0)), ("b 5000000 2000", images(40, 2000))])
         self.fails(INPUT, ["series.txt: ", "one exposure time only (5 ms)", "--no-dark-current"],
                    "calibrate", "--series", "series.txt", "-o", "none.stcal")
         self.succeed("calibrate", "--series", "series.txt", "-o", "camera.stcal", "--force",
                      "--no-dark-current")
         bright = [np.minimum(image, 4095) for image in images(40, 4500)]
-        photographs(self.folder, [("d 5000000", images(20, 0)), ("b 5000000 4500", bright)])
+        write_series(self.folder, [("d 5000000", images(20, 0)), ("b 5000000 4500", bright)])
         self.fails(INPUT, ["series.txt: saturates"], "calibrate", "--series", "series.txt", "-o", "none.stcal",
                    "--no-dark-current")
 

@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, USAGE, ProgramTest
 
-CAUSES = ("device", "transport", "host_underrun", "own_drop", "reconnect")
+CAUSES = ("device", "transport", "host_underrun", "queue_drop", "reconnect")
 
 
 def records_of(path):
@@ -45,7 +45,7 @@ class CaptureRecordTest(ProgramTest):
     def serve(self):
         """Starts a camera and waits until it is there."""
         camera = self.start_program("capture", "serve", "light.npy", "--repeat", "--format", "Mono16",
-                                    "--address", self.ip, "--fps", 100, stdout=subprocess.PIPE)
+                                    "--address", self.ip, "--frames-hz", 100, stdout=subprocess.PIPE)
         watchdog = threading.Timer(60, camera.kill)
         watchdog.start()
         self.addCleanup(self.end, camera)

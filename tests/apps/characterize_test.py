@@ -28,11 +28,9 @@ class CharacterizeTest(ProgramTest):
     def series_of_t6(self):
         """What a run on t6 leaves: the folder "series", and its figures. It runs once for all tests."""
         if CharacterizeTest.made is None:
-            folder = tempfile.TemporaryDirectory(prefix="stipple_")
-            self.addClassCleanup(folder.cleanup)
-            self.succeed("characterize", "--sensor", "t6", "-o", f"{folder.name}/series",
-                         "--json", f"{folder.name}/figures.json")
-            CharacterizeTest.made = Path(folder.name)
+            folder = Path(self.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
+            self.succeed("characterize", "--sensor", "t6", "-o", folder / "series", "--json", folder / "figures.json")
+            CharacterizeTest.made = folder
         shutil.copytree(self.made / "series", self.folder / "series")
         return json.loads((self.made / "figures.json").read_text())
 

@@ -78,6 +78,13 @@ class CineTest(CameraFilesTest):
         for levels in ((100, 100), (-5, 4000), (0, 5000)):  # of no use
             self.assert_light(MOSAIC / 4095, self.cine(levels=levels))
 
+    def test_another_black_level_than_that_of_the_sensor_is_said(self):
+        name = self.cine(levels=(100, 4000))
+        self.light(name, "--sensor", "grasshopper")
+        self.assertIn('its black level is 100 DN, that of sensor "grasshopper" 64 DN, both of 12 bits', self.said)
+        self.light(name, "--sensor", "grasshopper", "--set", "sensor.black_level_dn=100")
+        self.assertNotIn("black level", self.said)
+
     def test_ten_bits_are_companded_by_the_published_table(self):
         # Of 12 bits, black 64 and white 4064 (pycine).
         table = {64: 64, 96: 94, 160: 156, 256: 290, 384: 578, 512: 998, 768: 2267, 896: 3130, 1008: 4014, 1014: 4064}

@@ -2,10 +2,11 @@
 
 import csv
 import math
+import shutil
 import unittest
 
 import numpy as np
-from program import INPUT, OK, USAGE, ProgramTest
+from program import DEVICE, INPUT, OK, USAGE, ProgramTest
 
 DEFAULT = ["psnr_db", "psnr_gamma_db", "psnr_frame_mean_db", "pu21_psnr_db", "ssim"]
 
@@ -116,6 +117,28 @@ class CompareTest(ProgramTest):
         for part in ("<svg", "PU21-PSNR", "SSIM", "similarity"):
             self.assertIn(part, content)
         self.assertNotIn("PSNR frames", content)
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_the_chart_of_equal_frames_or_of_one_frame_is_a_picture_too(self):
+        self.write_array("one.npy", self.light[:1])
+        self.write_array("tiny.npy", self.light[:, :4, :4])
+        for number, (result, reference) in enumerate((("light.npy", "light.npy"), ("noisy.npy", "one.npy"),
+                                                      ("tiny.npy", "tiny.npy"))):
+            self.succeed("compare", result, reference, "--chart", f"{number}.svg", "-q")
+            self.assertIn("<svg", (self.folder / f"{number}.svg").read_text(encoding="utf-8"))
+
+    def test_without_gnuplot_all_but_the_chart_is_there(self):
+        done = self.run_program("compare", "noisy.npy", "light.npy", "--csv", "a.csv", "--chart", "a.png", "--difference",
+                                "d.npy", "--json", "a.json", env={"PATH": str(self.folder)})
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        self.assertIn("gnuplot", done.stderr)
+        self.assertIn("SSIM", done.stdout)
+        self.assertEqual(self.names(), ["a.csv", "a.json", "d.npy", "light.npy", "noisy.npy"])
+
+    def test_figures_of_the_whole_video_make_no_table(self):
+        for option, name in (("--csv", "frames.csv"), ("--chart", "frames.svg")):
+            self.fails(INPUT, [f"{option}: shows figures of each frame"], "compare", "noisy.npy", "light.npy", "--metric",
+                       "psnr-frames", option, name)
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ class Dng:
 
 
 def dng(values, bits=16, tags=None, order="<", below=False, exif=None, tile=None, packed=zlib.compress):
-    """The file of a image (row, col). `below`: after a preview; `exif`: tags of that directory; `tile`: its side."""
+    """The file of an image (row, col). `below`: after a preview; `exif`: tags of that directory; `tile`: its side."""
     tags = dict(tags or {})
     file = Dng(order)
     rows, cols = values.shape
@@ -152,7 +152,7 @@ class DngTest(CameraFilesTest):
         for length in (0, 7, 100, len(whole) // 2, len(whole) - 30):
             with self.subTest(length=length):
                 self.refuse(["damaged"], self.write("clip.dng", whole[:length]))
-        self.refuse(["announces a image of 480000000 bytes"], self.dng(
+        self.refuse(["announces an image of 480000000 bytes"], self.dng(
             MOSAIC[0], 16, {256: (LONG, [60000]), 257: (LONG, [4000])}))
         self.refuse(["outside 1..65535"], self.dng(MOSAIC[0], 16, {256: (LONG, [70000])}))
         self.refuse(["damaged"], self.dng(MOSAIC[0], 16, {259: (SHORT, [8])}, packed=lambda data: data))

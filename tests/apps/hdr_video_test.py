@@ -86,7 +86,16 @@ class HdrVideoTest(ProgramTest):
             self.assertAlmostEqual(figures["light_levels"]["max_cll"], brightest.max(), delta=0.1)
 
     def test_light_levels_in_the_stream_are_those_of_the_container(self):
-        self.write_video("a.mkv", "--video", "pq", "--peak-cd", 400)
+        for name in ("a.mkv", "a.mp4"):
+            self.write_video(name, "--video", "pq", "--peak-cd", 400)
+            # The stream alone, with the headers that the container has held.
+            self.tool("ffmpeg", "-v", "error", "-y", "-i", name, "-c", "copy", "-bsf:v", "hevc_mp4toannexb", "-f",
+                      "hevc", "a.hevc")
+            frames = json.loads(self.tool("ffprobe", "-v", "error", "-show_frames", "-of", "json", "a.hevc"))["frames"]
+            data = {entry["side_data_type"]: entry for entry in frames[0]["side_data_list"]}
+            self.assertEqual(data["Content light level metadata"]["max_content"], 400, name)
+            container = {entry["side_data_type"]: entry for entry in self.stream(name)["side_data_list"]}
+            self.assertEqual(data["Content light level metadata"], container["Content light level metadata"], name)
         frames = json.loads(self.tool("ffprobe", "-v", "error", "-show_frames", "-of", "json", "a.mkv"))["frames"]
         kinds = [entry["side_data_type"] for entry in frames[0]["side_data_list"]]
         self.assertIn("Mastering display metadata", kinds)

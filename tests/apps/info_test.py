@@ -11,7 +11,7 @@ from fits_test import fits
 from photron_test import photron_header
 from program import INPUT
 
-UNKNOWN = {"frames_per_s": None, "exposure_us": None, "black_level_dn": None, "white_level_dn": None, "curve": None}
+UNKNOWN = {"frames_hz": None, "exposure_us": None, "black_level_dn": None, "white_level_dn": None, "curve": None}
 
 
 class InfoTest(CameraFilesTest):
@@ -32,8 +32,8 @@ class InfoTest(CameraFilesTest):
         self.expect({"bits": 16, "sample_format": "uint16", "max_light": 1},
                     self.write_array("b.npy", np.full((2, 4, 5, 3), 65535), "uint16"))
         said = self.succeed("info", "b.npy")
-        for part in ("5 x 4 x 3 (width x height x planes), 2 of them", "rate         not told",
-                     "exposure     not told", "complete, all frames are read"):
+        for part in ("5 x 4 x 3 (width x height x planes), 2 of them", "rate         not declared",
+                     "exposure     not declared", "complete, all frames are read"):
             self.assertIn(part, said)
 
     def test_the_header_alone(self):
@@ -42,7 +42,7 @@ class InfoTest(CameraFilesTest):
         self.assertIn("7 announced", self.succeed("info", "a.npy", "--header"))
 
     def test_files_of_cameras(self):
-        camera = {"width": 8, "height": 6, "frames": 4, "frames_per_s": 5000, "exposure_us": 190}
+        camera = {"width": 8, "height": 6, "frames": 4, "frames_hz": 5000, "exposure_us": 190}
         self.write("a.cine", Cine(MOSAIC, filter=4, compression=2, levels=(64, 4000)).content())
         self.expect({"format": ".cine file", "bits": 12, "black_level_dn": 64, "white_level_dn": 4000, "cfa": "rggb",
                      "curve": "linear", **camera}, "a.cine")
@@ -75,15 +75,15 @@ class InfoTest(CameraFilesTest):
 
     def test_video(self):
         self.succeed("synth", "still", "-o", "a.mkv", "--frames", 3, "--size", "16x8")
-        self.expect({"format": "video", "frames": 3, "frames_per_s": 30, "bits": 8, "sample_format": "yuv420p",
+        self.expect({"format": "video", "frames": 3, "frames_hz": 30, "bits": 8, "sample_format": "yuv420p",
                      "gamma_coded": True}, "a.mkv")
         self.write("b.y4m", b"YUV4MPEG2 W8 H6 F25:1 Cmono\n" + 2 * (b"FRAME\n" + bytes(48)))
-        self.expect({"format": "video", "frames": 2, "frames_per_s": 25, "planes": 1}, "b.y4m")
+        self.expect({"format": "video", "frames": 2, "frames_hz": 25, "planes": 1}, "b.y4m")
 
     def test_frames_without_a_header(self):
         self.write("a.bin", lsb_packed(MOSAIC, 12))
         self.expect({"format": "frames without a header", "sample_format": "Mono12p", "bits": 12, "frames": 4,
-                     "black_level_dn": 64, "white_level_dn": 4095, "frames_per_s": 1000}, "a.bin", "--raw",
+                     "black_level_dn": 64, "white_level_dn": 4095, "frames_hz": 1000}, "a.bin", "--raw",
                     "8x6:mono12p:black=64:hz=1000")
         self.fails(INPUT, ["a.bin: is nothing that stipple reads", "--raw"], "info", "a.bin")
 

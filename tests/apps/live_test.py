@@ -110,7 +110,7 @@ class PreviewTest(LiveTest):
         self.assertGreaterEqual(preview["delay_ms"]["max"], preview["delay_ms"]["median"])
         self.assertEqual(self.names(), ["clip.stipple", "figures.json", "light.npy", "now.png"])
 
-    def test_what_is_too_bright_is_red(self):
+    def test_saturated_pixels_are_red(self):
         light = np.full((WINDOW, 24, 32), 0.2)
         light[:, :, :8] = 1
         self.write_array("light.npy", light)

@@ -71,7 +71,7 @@ class PhotronTest(CameraFilesTest):
         self.assertNotEqual(self.succeed("info", "clip.stipple"), before)
 
     def test_what_is_not_read(self):
-        for part, what in (("files of the format \"TIFF\"", {"format": "TIFF"}),
+        for part, what in (("declares the format \"TIFF\"", {"format": "TIFF"}),
                            ("colour (\"Color\")", {"colour": "Color"}),
                            ("10 bits per pixel", {"bits": 10}), ("\"Total Frame\" is \"0\"", {"frames": 0}),
                            ("\"Image Width\" is \"-8\"", {"width": -8}), ("is \"many\"", {"frames": "many"}),

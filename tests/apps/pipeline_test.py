@@ -194,7 +194,7 @@ class PipelineTest(ProgramTest):
 
     def test_compare_refuses_videos_of_different_shape(self):
         a = self.write_flat("a.npy", slots=4)
-        self.fails(1, ["b.npy", "8 x 9"], "compare", self.write_flat("b.npy", slots=4, cols=9), a)
+        self.fails(1, ["b.npy", "9 x 8"], "compare", self.write_flat("b.npy", slots=4, cols=9), a)
         self.fails(1, ["margin", "none of 4"], "compare", a, a, "--margin", 2)
 
     def test_footage_is_turned_into_light_as_asked(self):

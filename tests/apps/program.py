@@ -29,9 +29,7 @@ class ProgramTest(unittest.TestCase):
     """Each test works in an empty folder of its own, with paths relative to it."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stipple_")))
 
     def run_program(self, *arguments, **options):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,

@@ -139,7 +139,7 @@ class ProportionTest(ProgramTest):
     def test_the_limit_of_memory_can_be_told(self):
         self.write_stream(rows=64, cols=64)
         decode = ("decode", "clip.stipple", "-o", "x.npy")
-        self.refuses(["clip.stipple: needs 6 MiB", "than the 4 MiB that --max-memory says",
+        self.refuses(["clip.stipple: needs 7 MiB", "than the 4 MiB that --max-memory says",
                       "--max-memory 64M allows it"], *decode, "--max-memory", "4M")
         self.succeed(*decode, "--max-memory", "0.5G")
         for size in ("", "4", "G", "12Q", "1K", "-1G", "nanG", "1e30G"):
@@ -212,7 +212,7 @@ class ProportionTest(ProgramTest):
 
     def test_images_are_not_larger_than_their_files_can_hold(self):
         content = bytearray((self.folder / self.write_png("a.png", np.zeros((4, 4)))).read_bytes())
-        for side, part in ((20_000, "outside"), (16_000, "announces a image of 256000000 bytes")):
+        for side, part in ((20_000, "outside"), (16_000, "announces an image of 256000000 bytes")):
             struct.pack_into(">II", content, 16, side, side)
             struct.pack_into(">I", content, 29, zlib.crc32(content[12:29]))
             self.write("a.png", content)
@@ -224,7 +224,7 @@ class ProportionTest(ProgramTest):
         last = b"screenWindowWidth\0float\0"
         head = image[:image.index(last) + len(last) + 8 + 1]  # size, value, end of the header
         self.write("a.exr", head.replace(window, struct.pack("<iiii", 0, 0, 8191, 8191)) + b"\0" * 4096)
-        self.emulate_refuses("a.exr", "announces a image of")
+        self.emulate_refuses("a.exr", "announces an image of")
 
     def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
         side = 16_000
@@ -234,7 +234,7 @@ class ProportionTest(ProgramTest):
             content = b"II*\0" + struct.pack("<IH", 8, len(tags))
             content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
             self.write("a.tif", content + bytes(200 - len(content) + size))
-            self.emulate_refuses("a.tif", "announces a image of 256000000 bytes")
+            self.emulate_refuses("a.tif", "announces an image of 256000000 bytes")
 
     def test_well_packed_images_are_not_larger_than_small_files_may_be(self):
         side = 16_000

@@ -61,12 +61,12 @@ class RecordingTest(ProgramTest):
                 done = self.figures("capture", "record", "replay:light.npy", "-o", "clip.strec",
                                     "--set", f"camera.AcquisitionFrameRate={rate}", "--frames", frames,
                                     "--force")
-                self.assertAlmostEqual(done["frames_per_s"], rate, places=6)
+                self.assertAlmostEqual(done["frames_hz"], rate, places=6)
 
     def test_a_single_frame_has_no_rate(self):
         record = ("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST, "--frames", 1,
                   "--force")
-        self.assertIsNone(self.figures(*record)["frames_per_s"])
+        self.assertIsNone(self.figures(*record)["frames_hz"])
         self.assertIn("1 frame, 0.0 MB", self.succeed(*record))
         live = ("capture", "live", "replay:light.npy", "-o", "a.stipple", *FAST, "--frames", 1)
         figures = self.figures(*live)
@@ -95,7 +95,7 @@ class RecordingTest(ProgramTest):
         done = self.run_program(*emulate)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        for part in ("video.mp4: has 30 frames/s", "6.67 times as fast", "--set sensor.slot_us=33333"):
+        for part in ("video.mp4: has 30 frames/s", "6.67x as fast", "--set sensor.slot_us=33333"):
             self.assertIn(part, done.stderr)
         self.assertEqual(self.run_program(*emulate, "--set", "sensor.slot_us=33333").stderr, "")
 
@@ -196,7 +196,7 @@ class RecordingTest(ProgramTest):
         flipped[starts[3] - 1] ^= 0xFF  # the last sample of frame 2
         for content, code, parts in (
                 (flipped, INPUT, ["clip.strec: 1 frame missing or incomplete: 1 at slot 2",
-                                  "the recording is damaged\n  byte ", "made of what is left"]),
+                                  "the recording is damaged\n  byte ", "contains the undamaged part"]),
                 (whole[:starts[4] + 100], 0, ["clip.strec: was cut off before its end"])):
             clip.write_bytes(content)
             done = self.run_program("capture", "replay", "clip.strec", "-o", "again.npy", "-q", "--force",
@@ -240,7 +240,7 @@ class RecordingTest(ProgramTest):
         flipped = bytearray(whole)
         flipped[starts[3] - 1] ^= 0xFF  # the last sample of frame 2
         said = emulate(flipped)
-        self.assertIn("clip.strec: is damaged (1 of its blocks cannot be read), lacks 1 frame, missing", said)
+        self.assertIn("clip.strec: is damaged (1 of its blocks cannot be read), has 1 missing or incomplete frame", said)
         light = (self.dn / 65535).astype(np.float32)
         light[2] = light[1]  # the frame before stands in
         np.testing.assert_array_equal(self.array("a.npy"), light)

@@ -158,7 +158,7 @@ class RecordingInfoTest(ProgramTest):
                     "incomplete": 0, "missing_frames": 0, "gaps": [], "width": 8, "height": 6,
                     "format": "Mono16", "complete": True, "tail_bytes": 0, "damaged_places": 0}
         self.assertEqual({key: info[key] for key in expected}, expected)
-        self.assertAlmostEqual(info["frames_per_s"], 50)
+        self.assertAlmostEqual(info["frames_hz"], 50)
         said = self.succeed("info", "clip.strec")
         for part in ("8 x 6 (width x height) Mono16, 9 of them", "50 per second",
                      "setting      AcquisitionFrameRate = 50", "undamaged, complete"):

@@ -1,69 +1,28 @@
 """The page of `stipple report` in a browser: what is shown follows the slot, the exposure, the divider
 and the pixel; keys, dark mode, a narrow screen; no error, no network."""
 
-import shutil
 import unittest
 
 import numpy as np
-
-from program import ProgramTest
-
-try:
-    from selenium import webdriver
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.support.ui import Select, WebDriverWait
-    LACKING = next((f"{name} is not installed" for name in ("chromium", "chromedriver")
-                    if shutil.which(name) is None), None)
-except ImportError:
-    LACKING = "python3-selenium is not installed"
+from browser import LACKING, By, BrowserTest, Keys, Select, webdriver
 
 COLS, ROWS, SLOTS = 64, 48, 24
 
 
 @unittest.skipIf(LACKING, LACKING)
-class ReportPageTest(ProgramTest):
-    """One browser and one page for all tests; each opens the page again."""
-
-    @classmethod
-    def setUpClass(cls):
-        options = webdriver.ChromeOptions()
-        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu",
-                         "--window-size=1400,1000", "--force-device-scale-factor=1"):
-            options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        service = webdriver.chrome.service.Service(shutil.which("chromedriver"))
-        options.binary_location = shutil.which("chromium")
-        cls.browser = webdriver.Chrome(service=service, options=options)
-        cls.addClassCleanup(cls.browser.quit)
+class ReportPageTest(BrowserTest):
+    """Each test opens the page again."""
 
     def setUp(self):
         super().setUp()
         self.succeed("synth", "pan", "-o", "scene.npy", "--frames", SLOTS, "--size", f"{COLS}x{ROWS}")
         for schedule in ("random", "full4x"):
             self.succeed("emulate", "scene.npy", "-o", f"{schedule}.stipple", "--schedule", schedule)
-        self.addCleanup(self.expect_no_complaint)
-
-    def expect_no_complaint(self):
-        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [])
 
     def open_page(self, *arguments):
         self.succeed("report", *(arguments or ("random.stipple", "full4x.stipple", "--truth", "scene.npy",
                                                "--method", "naive")))
         self.open_file("report.html")
-
-    def open_file(self, name):
-        self.browser.get((self.folder / name).as_uri())
-        self.wait(lambda: self.script("return document.documentElement.dataset.ready === 'true'"))
-
-    def script(self, text, *arguments):
-        return self.browser.execute_script(text, *arguments)
-
-    def wait(self, condition):
-        WebDriverWait(self.browser, 20).until(lambda _: condition())
-
-    def element(self, name):
-        return self.browser.find_element(By.ID, name)
 
     def picture(self, side, slot):
         """Pixels of a picture as (row, col, colour), once it shows the slot."""

@@ -106,6 +106,25 @@ class ReportTest(ProgramTest):
             self.fails(INPUT, ["other.json", "characterize --json"], "report", "clip.stipple", "-o", "b.html",
                        "--characterization", "other.json")
 
+    def test_a_truth_that_ends_early_is_told(self):
+        self.write_scene(12, "16x16")
+        self.write_array("short.npy", self.array("scene.npy")[:5])
+        report = self.figures("report", "clip.stipple", "--truth", "short.npy", "--method", "naive")
+        self.assertEqual(report["notes"], ["The truth has 5 of 12 slots; quality is of these."])
+        self.assertEqual(data_of(self.page())["notes"], report["notes"])
+        self.assertEqual(len(report["videos"][1]["quality"]["frames"]["ssim"]), 5)
+
+    def test_a_large_until_takes_no_memory_for_slots_that_are_not_there(self):
+        self.write_scene(8, "64x64")
+        self.succeed("report", "clip.stipple", "--truth", "scene.npy", "--until", 100000, "--method", "naive")
+
+    def test_streams_of_the_same_name_keep_their_folders(self):
+        self.write_scene(8, "16x16")
+        (self.folder / "other").mkdir()
+        self.succeed("emulate", "scene.npy", "-o", "other/clip.stipple", "--schedule", "tiled")
+        report = self.figures("report", "clip.stipple", "other/clip.stipple", "--method", "naive")
+        self.assertEqual([video["name"] for video in report["videos"]], ["clip, naive", "other/clip, naive"])
+
     def test_the_demo_leaves_a_page(self):
         self.succeed("demo", "--frames", 8, "--size", "16x16", "-o", "shown")
         data = data_of(self.page("shown/report.html"))
@@ -121,6 +140,7 @@ class ReportTest(ProgramTest):
                 (["clip.stipple", "--crop", "8"], USAGE, ["--crop", "WxH"]),
                 (["clip.stipple", "--crop", "8x8+9+9"], INPUT, ["--crop", "16 x 16"]),
                 (["clip.stipple", "--max-size", "many"], USAGE, ["--max-size"]),
+                (["clip.stipple", "--luminance"], USAGE, ["--luminance", "--truth"]),
                 (["clip.stipple", "-o", "a.pdf"], USAGE, [".html"]),
                 (["clip.stipple", "--truth", "light.npy"], INPUT, ["light.npy", "16 x 16 x 3"]),
                 (["clip.stipple", "other.stipple"], INPUT, ["other.stipple", "8 x 8 x 1"]),

@@ -79,7 +79,7 @@ class ServeTest(ProgramTest):
         for quiet in ([], ["-q"]):
             ServeTest.count += 1
             address = own_address(ServeTest.count)
-            server = self.start_program("capture", "serve", self.scene(), "--address", address, "--fps",
+            server = self.start_program("capture", "serve", self.scene(), "--address", address, "--frames-hz",
                                         100, *quiet, stdout=subprocess.PIPE)
             self.addCleanup(self.stop, server)
             self.assertIn("READY", server.stdout.readline())
@@ -113,7 +113,7 @@ class ServeTest(ProgramTest):
         """What a server says while a client records so many frames."""
         ServeTest.count += 1
         address = own_address(ServeTest.count)
-        server = self.start_program("capture", "serve", source, "--address", address, "--fps", 200,
+        server = self.start_program("capture", "serve", source, "--address", address, "--frames-hz", 200,
                                     stdout=subprocess.PIPE)
         self.addCleanup(self.stop, server)
         self.assertIn("READY", server.stdout.readline())
@@ -141,7 +141,7 @@ class ServeTest(ProgramTest):
         self.assertEqual(self.write_register(address, destination, other), 0)
 
     def test_no_client_asks_for_more_frames_a_second_than_are_offered(self):
-        address = self.serve(self.scene(), "--fps", 50)
+        address = self.serve(self.scene(), "--frames-hz", 50)
         for rate, code in ((50, 0), (51, INPUT)):
             done = self.run_program("capture", "record", "gige:" + address, "-o", f"{rate}.strec", "--frames",
                                     2, "--set", f"camera.AcquisitionFrameRate={rate}")
@@ -194,6 +194,24 @@ class ServeTest(ProgramTest):
 
     def same_bytes(self, one, other):
         return (self.folder / one).read_bytes() == (self.folder / other).read_bytes()
+
+    def test_frames_lost_before_the_first_are_counted_and_ids_that_begin_elsewhere_are_not(self):
+        scene = self.scene()
+        for fault, missing in ((["--fault-begin-at", 4], 4), (["--fault-first-block", 500], 0),
+                               (["--fault-gap-at", 0, "--fault-gap", 400], 0)):
+            address = self.serve(scene, "--frames-hz", 50, *fault)
+            figures = json.loads(self.record(address, "clip.strec", "--frames", 3, "--force",
+                                             "--json", "-").stdout)
+            self.assertEqual(figures["missing_before_first"], missing, fault)
+            self.assertEqual(sum(figures["lost"].values()), missing, fault)
+            first = frames_of(self.folder / "clip.strec")[0][0]
+            self.assertEqual((first["id"], first["lost_before"]), (missing, missing), fault)
+
+    def test_slots_lost_before_the_first_are_dropped_packets(self):
+        address = self.serve(self.scene(), "--mode", "coded", "--fault-begin-at", 4)
+        done = self.record(address, "clip.stipple", "--coded", "--json", "-")
+        self.assertEqual(json.loads(done.stdout),
+                         {"slots": 24, "missing_slots": 4, "damaged_frames": 0})
 
     def test_a_coded_stream_arrives_as_emulate_writes_it(self):
         choice = [self.scene(), "--seed", 7, "--set", "sensor.bit_depth=10", "--schedule", "tiled"]
@@ -269,7 +287,7 @@ class ServeTest(ProgramTest):
     def test_a_recording_is_served_with_the_same_bytes_and_stamps(self):
         dn = np.random.default_rng(5).integers(0, 65536, (12, 40, 64)).astype(np.uint16)
         self.write_array("dn.npy", dn, np.uint16)
-        address = self.serve("dn.npy", "--format", "Mono16", "--fps", 100)
+        address = self.serve("dn.npy", "--format", "Mono16", "--frames-hz", 100)
         self.record(address, "one.strec", "--frames", 12)
         again = self.serve("one.strec")
         self.record(again, "two.strec", "--frames", 12)
@@ -287,7 +305,7 @@ class ServeTest(ProgramTest):
             once, twice = name + "_once.strec", name + "_twice.strec"
             dn = random.integers(0, 2**bits, (5, 12, 16)).astype(np.uint16)
             np.save(self.folder / "light.npy", (dn / (2**bits - 1)).astype(np.float32))
-            self.record(self.serve("light.npy", "--format", name, "--fps", 100), once,
+            self.record(self.serve("light.npy", "--format", name, "--frames-hz", 100), once,
                         "--frames", 5)
             self.record(self.serve(once), twice, "--frames", 5)
             if kind is None:  # one string of bits, each sample from its lowest
@@ -333,7 +351,7 @@ class ServeTest(ProgramTest):
         self.assertIn("SourceFrameCount = 24", values)
 
     def test_arv_camera_test_streams_without_loss(self):
-        address = self.serve(self.scene(), "--repeat", "--fps", 50)
+        address = self.serve(self.scene(), "--repeat", "--frames-hz", 50)
         report = self.tool("arv-camera-test-0.8", "-n", address, "--duration", 3, "-i", 1500)
         figures = dict(line.split("=") for line in report.splitlines() if "=" in line)
         figures = {name.strip(): value.strip() for name, value in figures.items()}

@@ -42,7 +42,7 @@ class TimingTest(ProgramTest):
 
     def test_a_chip_that_is_not_for_sale_is_called_hypothetical(self):
         text = self.succeed("timing", "--sensor", "lux1310", "--schedule", "hardware_tiled")
-        self.assertTrue(text.splitlines()[1].startswith("hypothetical the chip that is sold"))
+        self.assertTrue(text.splitlines()[1].startswith("hypothetical the commercial chip"))
         self.assertIn("reads whole windows", text)
         self.assertIn("settle for 79 clocks in full, 20 in the slowest slot", text)
         figures = self.figures("timing", "--sensor", "imx273", *SMALL)
@@ -120,7 +120,7 @@ class ReadoutOfARecordingTest(ProgramTest):
         self.assertEqual((readout["overrun_slots"], readout["dropped_samples"]), (0, 0))
         self.assertEqual(readout["transferred_samples"], figures["samples"])
         self.assertEqual(readout["link_bits"], figures["payload_bits"])
-        self.assertAlmostEqual(readout["sensor_slots_hz"], 2000)
+        self.assertAlmostEqual(readout["slots_hz"], 2000)
         self.assertAlmostEqual(readout["sample_energy_pj"] * figures["samples"],
                                readout["energy_uj"] * 1e6, places=3)
 

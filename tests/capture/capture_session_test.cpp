@@ -42,6 +42,52 @@ TEST(CaptureSessionTest, IdsThatNothingExplainsWereLeftOutByTheCamera) {
     EXPECT_EQ(lost(session, GapCause::kDevice), 3U);
 }
 
+/// A GigE Vision camera of 100 frames/s, whose first frame comes `ms` after it is opened.
+CaptureSession::Opener begins_with(std::uint64_t wire_id, std::int64_t ms,
+                                   const TransportCounts& counts = {}) {
+    return [=] {
+        CapturedFrame first = scripted_frame(wire_id);
+        first.record.host_monotonic_ns = ms * 1'000'000;
+        CameraDescription description;
+        description.features["AcquisitionFrameRate"] = "100";
+        auto camera = std::make_unique<ScriptedCamera>(
+            std::deque{arrives(first, counts), arrives(scripted_frame(wire_id + 1), counts)},
+            description);
+        camera->begin = {.first_wire_id = 1, .monotonic_ns = 0};
+        return camera;
+    };
+}
+
+TEST(CaptureSessionTest, FramesLostBeforeTheFirstAreMissingBeforeIt) {
+    CaptureSession session(begins_with(6, 51, {.socket_drops = 30}), {});
+    const FrameRecord first = next_record(session);
+    EXPECT_EQ(first.id, 5U);
+    EXPECT_EQ(first.lost_before, 5U);
+    EXPECT_EQ(first.cause, GapCause::kTransport);
+    EXPECT_EQ(first.epoch, 0U);
+    const FrameRecord second = next_record(session);
+    EXPECT_EQ(second.id, 6U);
+    EXPECT_EQ(second.lost_before, 0U);
+    EXPECT_EQ(lost(session, GapCause::kTransport), 5U);
+    EXPECT_EQ(session.totals().missing_before_first, 5U);
+}
+
+TEST(CaptureSessionTest, NothingIsLostByACameraWhoseIdsBeginElsewhere) {
+    for (const std::uint64_t id : {6U, 65000U}) {
+        CaptureSession session(begins_with(id, 20), {});
+        EXPECT_EQ(next_record(session).lost_before, 0U);
+        EXPECT_EQ(next_record(session).id, 1U);
+        EXPECT_EQ(session.totals().missing_before_first, 0U);
+    }
+}
+
+TEST(CaptureSessionTest, AFirstFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
+    CaptureSession session(begins_with(6, 51), {});
+    session.count_queue_drop(next_record(session));
+    EXPECT_EQ(next_record(session).lost_before, 6U);
+    EXPECT_EQ(session.totals().missing_before_first, 6U);
+}
+
 TEST(CaptureSessionTest, TheCauseOfAGapIsWhatTheTransportCountedMeanwhile) {
     struct Case {
         TransportCounts counts;
@@ -106,13 +152,13 @@ TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
             const CapturedFrame frame = wait_for<CapturedFrame>(session);
             EXPECT_EQ(frame.record.id, previous + 1 + frame.record.lost_before);
             EXPECT_EQ(frame.record.cause,
-                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kOwnDrop);
+                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kQueueDrop);
             EXPECT_EQ(frame.holes.empty(), one.policy == IncompletePolicy::kKeep ||
                                                frame.record.status == FrameStatus::kComplete);
             previous = frame.record.id;
         }
         EXPECT_EQ(previous, 3U);
-        EXPECT_EQ(lost(session, GapCause::kOwnDrop), one.dropped);
+        EXPECT_EQ(lost(session, GapCause::kQueueDrop), one.dropped);
         EXPECT_EQ(session.totals().frames, one.frames);
         EXPECT_EQ(session.totals().incomplete, one.frames - 2);
     }
@@ -135,12 +181,12 @@ TEST(CaptureSessionTest, ALatePacketOfAFrameThatWasAccountedForIsNoFrame) {
 TEST(CaptureSessionTest, AFrameThatTheQueueRefusedIsMissingBeforeTheNext) {
     CaptureSession session(plays({frames({1, 3, 4})}), {});
     static_cast<void>(next_record(session));
-    session.count_own_drop(next_record(session));
+    session.count_queue_drop(next_record(session));
     const FrameRecord record = next_record(session);
     EXPECT_EQ(record.id, 3U);
     EXPECT_EQ(record.lost_before, 2U);  // one of the camera, one of ours
     EXPECT_EQ(lost(session, GapCause::kDevice), 1U);
-    EXPECT_EQ(lost(session, GapCause::kOwnDrop), 1U);
+    EXPECT_EQ(lost(session, GapCause::kQueueDrop), 1U);
     EXPECT_EQ(session.totals().frames, 2U);
 }
 
@@ -164,6 +210,21 @@ TEST(CaptureSessionTest, ACameraThatFallsSilentIsOpenedAnew) {
     EXPECT_EQ(record.wire_id, 1U);
     EXPECT_EQ(next_record(session).epoch, 1U);
     EXPECT_EQ(session.totals().outages, 1U);
+}
+
+// The program is stopped, or the machine: frames that came meanwhile wait to be received.
+TEST(CaptureSessionTest, APauseOfTheProgramIsNoSilenceOfTheCamera) {
+    const auto pause = [] {
+        std::this_thread::sleep_for(100ms);
+        return Arrival(NoFrame{});
+    };
+    CaptureSession session(
+        plays({{arrives(scripted_frame(1)), {pause, {}}, arrives(scripted_frame(2))}}),
+        {.stall = 20ms});
+    static_cast<void>(next_record(session));
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(session.next(5ms)));
+    EXPECT_EQ(next_record(session).wire_id, 2U);
+    EXPECT_EQ(session.totals().outages, 0U);
 }
 
 TEST(CaptureSessionTest, FramesOfAnOutageAreEstimatedFromTheFramePeriod) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace stipple {
 namespace {
 
@@ -35,6 +37,32 @@ TEST(FrameRateTest, BeginsAnewAfterAnOutage) {
     EXPECT_FALSE(rate.hz());
     rate.add(frame(4, 60'040, 1));
     EXPECT_DOUBLE_EQ(rate.hz().value(), 50);
+}
+
+TEST(FrameRateTest, BeginsAnewWhereAClockOrANumberGoesBack) {
+    FrameRate rate;
+    rate.add(frame(10, 9'000));
+    rate.add(frame(11, 9'005));
+    rate.add(frame(12, 3));  // the clock of the camera was set to 0
+    EXPECT_FALSE(rate.hz());
+    rate.add(frame(13, 8));
+    EXPECT_DOUBLE_EQ(rate.hz().value(), 200);
+    rate.add(frame(2, 13));
+    EXPECT_FALSE(rate.hz());
+    EXPECT_EQ(rate.periods(), 0U);
+}
+
+TEST(FrameRateTest, StampsMayBeAnyNumbers) {
+    FrameRate rate;
+    FrameRecord first = frame(0, 0);
+    first.device_ns = std::numeric_limits<std::int64_t>::min();
+    FrameRecord second = frame(1, 0);
+    second.device_ns = std::numeric_limits<std::int64_t>::max();
+    rate.add(first);
+    rate.add(second);
+    EXPECT_DOUBLE_EQ(rate.seconds(), 18446744073.709551615);
+    rate.add(first);
+    EXPECT_FALSE(rate.hz());
 }
 
 TEST(FrameRateTest, GoesByArrivalWhereTheDeviceGivesNoStamp) {

@@ -7,8 +7,10 @@
 #include <set>
 #include <thread>
 
+#include "core/error.h"
 #include "core/memory_limit.h"
 #include "tests/capture/scripted_session.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
@@ -22,6 +24,7 @@ struct Script {
     std::set<const std::uint8_t*> places = {};  ///< of the payloads; the camera's, until the end
     FrameStatus status = FrameStatus::kComplete;
     bool repeats = false;  ///< each frame comes twice
+    std::size_t buffer_bytes = 0;
 };
 
 /// Sends frames as fast as they are taken, as far as its script allows.
@@ -31,6 +34,7 @@ class FastCamera : public Camera {
 
     [[nodiscard]] CameraDescription description() const override { return {}; }
     [[nodiscard]] FrameLayout layout() const override { return scripted_layout(); }
+    [[nodiscard]] std::size_t buffer_bytes() const override { return script_.buffer_bytes; }
     [[nodiscard]] std::uint64_t wire_id_period() const override { return 65535; }
     [[nodiscard]] TransportCounts counts() const override { return {}; }
     void start() override {}
@@ -94,7 +98,7 @@ TEST_F(LiveCameraTest, AConsumerThatStandsStillCostsFramesButNoMemory) {
     EXPECT_EQ(camera.peak(), kWaiting);
     EXPECT_EQ(camera.late_allocations(), 0U);
     const SessionTotals totals = camera.stop();
-    EXPECT_EQ(totals.lost[static_cast<std::size_t>(GapCause::kOwnDrop)], 150 - taken);
+    EXPECT_EQ(totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)], 150 - taken);
     // Each frame lies where the camera has put it, in one of the places of the pool.
     EXPECT_LE(script_.places.size(), kWaiting + 1 + CaptureSession::kOwnFrames);
     for (const std::uint8_t* const place : places) EXPECT_TRUE(script_.places.contains(place));
@@ -118,14 +122,30 @@ TEST_F(LiveCameraTest, MaxMemoryBoundsTheFramesThatWait) {
     camera.begin();
     send(50);
     EXPECT_EQ(camera.peak(), 8U);
+    ASSERT_EQ(camera.description().warnings.size(), 1U);
+    expect_parts(camera.description().warnings[0], {"8 frames may wait, not 64", "--max-memory"});
 }
 
-TEST_F(LiveCameraTest, OneFrameMayWaitInAnyCase) {
-    const MemoryLimit limit(1);
+// 24 bytes of buffers leave room for 9 frames of 8 bytes.
+TEST_F(LiveCameraTest, MaxMemoryBoundsBuffersAndFramesTogether) {
+    script_.buffer_bytes = 24;
+    const MemoryLimit limit(100);
     LiveCamera camera = open(64);
     camera.begin();
     send(50);
-    EXPECT_EQ(camera.peak(), 1U);
+    EXPECT_EQ(camera.peak(), 5U);
+}
+
+TEST_F(LiveCameraTest, NoRoomForAFrameIsAnErrorThatNamesBothParts) {
+    script_.buffer_bytes = 1'000'000;
+    const MemoryLimit limit(1'000'039);
+    expect_parts(message_of<InputError>([&] {
+                     const LiveCamera camera = open(64);
+                     return 0;
+                 }),
+                 {"buffers of the camera (1.0 MB, --buffers)", "5 frames", "--max-memory"});
+    const MemoryLimit more(1'000'040);
+    const LiveCamera camera = open(64);
 }
 
 TEST_F(LiveCameraTest, FramesThatTheSessionDropsGiveTheirMemoryBack) {
@@ -134,8 +154,8 @@ TEST_F(LiveCameraTest, FramesThatTheSessionDropsGiveTheirMemoryBack) {
         script_.status = repeats ? FrameStatus::kComplete : FrameStatus::kMissingPackets;
         script_.allowed = 0;
         CaptureSession session(opener(),
-                               {.incomplete = IncompletePolicy::kDrop, .stall = milliseconds(0)});
-        session.reserve(1);
+                               {.incomplete = IncompletePolicy::kDrop, .stall = milliseconds(0)},
+                               [](const Camera&) { return 1U; });
         script_.allowed = 100;
         const std::uint64_t asked = script_.asked;
         while (script_.asked == asked) {

@@ -17,7 +17,9 @@ class LiveEmulatorTest : public ::testing::Test {
     /// A camera that sends frames with these ids, each of light of its own, and is then gone.
     LiveEmulation emulate(const std::vector<std::uint64_t>& wire_ids,
                           LiveEmulatorOptions options = {}) {
-        auto steps = frames(wire_ids);
+        return emulate(frames(wire_ids), std::move(options));
+    }
+    LiveEmulation emulate(std::deque<ScriptedStep> steps, LiveEmulatorOptions options) {
         steps.push_back(is_lost("unplugged"));
         LiveCamera camera(plays({std::move(steps)}), {.session = {.reconnect = false},
                                                       .from_start = true,
@@ -73,6 +75,20 @@ TEST_F(LiveEmulatorTest, TheFrameBeforeStandsInForWhatIsMissing) {
     EXPECT_EQ(result.held_slots, 2U);
     EXPECT_EQ(result.latencies.count(), 4U);
     EXPECT_EQ(std::accumulate(result.totals.lost.begin(), result.totals.lost.end(), 0U), 2U);
+}
+
+// Slot 0 is the first whole frame: what is missing before it has no slot, but a count.
+TEST_F(LiveEmulatorTest, WhatIsMissingBeforeTheFirstSlotIsCountedApart) {
+    CapturedFrame half = scripted_frame(10);
+    half.record.status = FrameStatus::kMissingPackets;
+    half.holes = {{0, 4}};
+    const LiveEmulation result =
+        emulate({arrives(half), arrives(scripted_frame(13)), arrives(scripted_frame(15))}, {});
+    EXPECT_EQ(shown_, expected({13, 13, 15}));
+    EXPECT_EQ(result.totals.missing_before_first, 3U);
+    EXPECT_EQ(result.totals.incomplete, 0U);
+    EXPECT_EQ(result.held_slots, 1U);
+    EXPECT_EQ(std::accumulate(result.totals.lost.begin(), result.totals.lost.end(), 0U), 1U);
 }
 
 TEST_F(LiveEmulatorTest, ALimitEndsIt) {

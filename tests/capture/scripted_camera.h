@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -50,6 +51,7 @@ class ScriptedCamera : public Camera {
     [[nodiscard]] CameraDescription description() const override { return description_; }
     [[nodiscard]] FrameLayout layout() const override { return scripted_layout(); }
     [[nodiscard]] std::uint64_t wire_id_period() const override { return 65535; }
+    [[nodiscard]] std::optional<StreamStart> stream_start() const override { return begin; }
     [[nodiscard]] TransportCounts counts() const override { return counts_; }
     void start() override {}
     [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout) override {
@@ -65,6 +67,7 @@ class ScriptedCamera : public Camera {
     void stop() noexcept override {}
 
     std::function<void()> on_close;
+    std::optional<StreamStart> begin;
 
   private:
     std::deque<ScriptedStep> steps_;

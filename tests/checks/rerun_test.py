@@ -28,12 +28,11 @@ SKIPPED_CASE = '<testsuites><testcase name="A" status="run"><skipped message="wh
 
 class RunTestsTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        self.addCleanup(folder.cleanup)
-        self.root = Path(folder.name) / "project"
-        self.ran = Path(folder.name) / "ran"
-        self.environment = os.environ | {"XDG_CACHE_HOME": f"{folder.name}/cache", "RAN": str(self.ran),
-                                         "STIPPLE_FOOTAGE": f"{folder.name}/footage"}
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stipple_")))
+        self.root = folder / "project"
+        self.ran = folder / "ran"
+        self.environment = os.environ | {"XDG_CACHE_HOME": f"{folder}/cache", "RAN": str(self.ran),
+                                         "STIPPLE_FOOTAGE": f"{folder}/footage"}
         for name in ("run_tests", "passed.py", "test_results.py", "packages.txt"):
             (self.root / "scripts").mkdir(parents=True, exist_ok=True)
             shutil.copy(SCRIPTS / name, self.root / "scripts")

@@ -13,9 +13,11 @@ import includes
 import layout
 import links
 import listed
+import modules
 import packages
 import quoted_messages
 import sizes
+import tested
 import words
 from tree import Tree
 
@@ -109,6 +111,32 @@ class ChecksTest(unittest.TestCase):
         self.assertEqual(self.places(listed.check, files),
                          ["core/b.h", "core/plane.cpp", "tests/core/b_test.cpp",
                           "tests/core/c_test.py"])
+
+    def test_every_source_of_a_library_has_a_test(self):
+        files = {"core/a.h": "", "core/a.cpp": "", "core/b.h": "", "core/b.cpp": '#include "core/b.h"\n',
+                 "core/b_part.cpp": '#include "core/b.h"\n', "core/c.h": "", "core/c.cpp": "", "apps/d.cpp": "",
+                 "core/e.cpp": "", "tests/core/a_test.cpp": '#include "core/b.h"\n', "tests/apps/e_test.py": "",
+                 tested.LIST: "# SOURCE TEST\ncore/b.cpp tests/core/a_test.cpp\n"
+                              "core/b_part.cpp tests/core/a_test.cpp\ncore/e.cpp tests/apps/e_test.py\n"}
+        self.assertEqual(self.places(tested.check, files), ["core/c.cpp"])
+        wrong = ["core/c.cpp tests/core/a_test.cpp", "core/none.cpp tests/core/a_test.cpp", "core/e.cpp tests/none_test.py",
+                 "core/a.cpp tests/core/a_test.cpp", "core/b.cpp tests/core/a_test.cpp", "core/c.cpp tests/core/a.cpp"]
+        for line in wrong:
+            found = self.places(tested.check, files | {tested.LIST: files[tested.LIST] + line + "\n"})
+            self.assertIn(f"{tested.LIST}:5", found, line)
+
+    def test_all_lists_of_modules_are_equal(self):
+        every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "calibration", "readout",
+                 "capture")
+        page = "".join(f"| `{name}/` | x |\n" for name in (*every, "apps", "python", "tests")) + TABLE
+        files = {f"{name}/CMakeLists.txt": "" for name in (*every, "apps", "python", "tests")}
+        files |= {modules.BUILD: f"set(STIPPLE_MODULES {' '.join(every)})\n", modules.PAGE: page,
+                  modules.TIDY: f"HeaderFilterRegex: '/({'|'.join((*every, 'apps', 'python'))})/'\n"}
+        self.assertEqual(self.findings(modules.check, files), [])
+        for name, old, new in ((modules.BUILD, " core", " core new"), (modules.PAGE, "| `io/` | x |\n", ""),
+                               (modules.PAGE, "| decoder | stream, core |\n", ""), (modules.TIDY, "|scenes", "")):
+            self.assertIn(old, files[name])
+            self.assertNotEqual(self.findings(modules.check, files | {name: files[name].replace(old, new)}), [], name)
 
     def test_sizes_are_limited(self):
         body = "    f();\n"

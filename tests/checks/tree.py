@@ -1,12 +1,13 @@
 """The files of the project, and how a check reports what it finds in them."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
-LIBRARIES = ("core", "io", "stream", "sensor_model", "readout", "decoder", "calibration", "capture",
-             "metrics", "scenes")
+ROOT = Path(__file__).resolve().parents[2]
+LIBRARIES = tuple(re.search(r"set\(STIPPLE_MODULES ([^)]*)\)", (ROOT / "CMakeLists.txt").read_text()).group(1).split())
 MODULES = (*LIBRARIES, "apps", "python")
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
 
@@ -62,7 +63,7 @@ class Tree:
 def report(check):
     """Runs `check(tree)`, which yields "file:line: what is wrong, what to do". Prints them all;
     exits with 1 if there are any."""
-    root = sys.argv[1] if len(sys.argv) > 1 else Path(__file__).resolve().parents[2]
+    root = sys.argv[1] if len(sys.argv) > 1 else ROOT
     findings = list(check(Tree(root)))
     for finding in findings:
         print(finding)

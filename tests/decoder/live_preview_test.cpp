@@ -41,7 +41,7 @@ TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
                                             shown.release();
                                         },
                                     .tell = [](const std::string& what) { FAIL() << what; },
-                                    .goes_on = [] { return true; }});
+                                    .keep_going = [] { return true; }});
     add_all(preview);
     shown.acquire();
     preview.finish([] {});
@@ -56,7 +56,7 @@ TEST_F(LivePreviewTest, SlotsPassByWhileAFrameIsMade) {
     std::binary_semaphore all_added{0};
     LivePreview preview(decoder(), {.show = [&](const PreviewFrame&) { all_added.acquire(); },
                                     .tell = [](const std::string& what) { FAIL() << what; },
-                                    .goes_on = [] { return true; }});
+                                    .keep_going = [] { return true; }});
     add_all(preview);
     all_added.release();
     preview.finish([] {});
@@ -80,7 +80,7 @@ TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {
                                             EXPECT_EQ(what, "no space");
                                             ++told;
                                         },
-                                    .goes_on = [] { return true; }});
+                                    .keep_going = [] { return true; }});
     for (int made = 0; made < 2;) {
         add_all(preview);
         if (tried.try_acquire()) ++made;

@@ -62,14 +62,6 @@ class ReconstructTest : public testing::Test {
     TemporaryFolder folder_;
 };
 
-double mean_square(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += (static_cast<double>(a[i]) - static_cast<double>(b[i])) *
-               (static_cast<double>(a[i]) - static_cast<double>(b[i]));
-    return sum / static_cast<double>(a.size());
-}
-
 TEST(DecodeMethodTest, KnowsItsNames) {
     EXPECT_EQ(decode_method_from_name("naive"), DecodeMethod::kNaive);
     EXPECT_EQ(decode_method_from_name("fast"), DecodeMethod::kFast);

@@ -75,4 +75,13 @@ double dot(std::span<const float> a, std::span<const float> b) {
     return sum;
 }
 
+double mean_square(std::span<const float> a, std::span<const float> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+        sum += difference * difference;
+    }
+    return sum / static_cast<double>(a.size());
+}
+
 }  // namespace stipple

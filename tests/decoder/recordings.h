@@ -42,4 +42,7 @@ struct Recorded {
 
 [[nodiscard]] double dot(std::span<const float> a, std::span<const float> b);
 
+/// Of a - b.
+[[nodiscard]] double mean_square(std::span<const float> a, std::span<const float> b);
+
 }  // namespace stipple

@@ -16,9 +16,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 class ExamplesTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
         cls.run_command(os.environ["CMAKE"], "--install", os.environ["BUILD"], "--prefix", cls.folder / "first")
         cls.prefix = (cls.folder / "first").rename(cls.folder / "moved")
         cls.environment = os.environ | {"STIPPLE_CONFIG_DIR": str(cls.prefix / "share/stipple/config")}

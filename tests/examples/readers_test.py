@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import re
+import subprocess
 import sys
 import unittest
 import warnings
@@ -17,7 +18,7 @@ GOLDEN = PROJECT / "tests/golden"
 MANIFEST = GOLDEN / "manifest.json"
 sys.path.insert(0, str(PROJECT / "examples/readers"))
 
-from check_readers import READERS, difference, faults  # noqa: E402
+from check_readers import difference, faults, read  # noqa: E402
 
 
 def sha256(name):
@@ -57,13 +58,32 @@ class ReadersTest(unittest.TestCase):
                     continue
                 broken = bytearray(content)
                 broken[at] ^= 0x04
-                self.assertNotEqual(difference(READERS[file.suffix](bytes(broken)), expected), "", f"{file}: byte {at}")
+                self.assertNotEqual(difference(read(file, bytes(broken)), expected), "", f"{file}: byte {at}")
 
     def test_a_changed_sample_is_seen(self):
         expected = json.loads((GOLDEN / "stream/example.json").read_text())
         expected["packets"][0]["dn"][0] -= 1
-        found = READERS[".stipple"]((GOLDEN / "stream/example.stipple").read_bytes())
-        self.assertIn("packets", difference(found, expected))
+        file = GOLDEN / "stream/example.stipple"
+        self.assertIn("packets", difference(read(file, file.read_bytes()), expected))
+
+    def test_each_reader_stands_alone_and_prints(self):
+        """The samples of the page's example with their places; a frame a line, then the damage."""
+        def printed(name, file):
+            command = [sys.executable, "-I", "-B", PROJECT / "examples/readers" / name, GOLDEN / file]
+            return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+
+        self.assertEqual(printed("read_stream.py", "stream/example.stipple"), [
+            "0 0 0 0 0 1 1023", "0 1 0 0 0 1 1",
+            "1 0 0 0 1 1 512", "1 0 1 0 0 3 3", "1 1 0 0 1 1 4", "1 1 1 0 0 3 0"])
+        frames, damage = printed("read_recording.py", "recording/damaged_payload.strec")[:2], "1827 204 "
+        self.assertTrue(all(frame.startswith("id=") for frame in frames), frames)
+        self.assertIn(damage, "\n".join(printed("read_recording.py", "recording/damaged_payload.strec")))
+
+    def test_each_reader_is_one_short_file(self):
+        for name in ("read_stream.py", "read_recording.py"):
+            lines = (PROJECT / "examples/readers" / name).read_text().splitlines()
+            self.assertLessEqual(len(lines), 150)
+            self.assertLessEqual(max(map(len, lines)), 100)
 
     def test_the_image_of_the_page_has_the_samples(self):
         page = (PROJECT / "docs/recording_format.md").read_text()

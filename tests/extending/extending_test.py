@@ -17,9 +17,7 @@ PARTS = os.environ["STIPPLE_READS"].split(":")  # what the program is built of
 class ExtendingTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
         cls.copy = cls.folder / "stipple"
         for part in map(Path, PARTS):
             if ROOT not in part.parents or ROOT / "build" in part.parents:

@@ -1,20 +1,16 @@
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
 #include "stream/little_endian.h"
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/stream_pieces.h"
 
 namespace stipple {
 namespace {
 
 using View = std::span<const std::uint8_t>;
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 std::string hexadecimal(View bytes) {
     std::string digits;

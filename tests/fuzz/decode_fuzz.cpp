@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
 #include "stream/stream_reader.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/stream_pieces.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 namespace {
@@ -16,10 +16,6 @@ namespace {
 constexpr std::size_t kMaxSites = 1024;
 constexpr int kMaxPeriod = 32;
 constexpr std::int64_t kMaxSlots = 48;
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 DecodeOptions short_options(DecodeMethod method) {
     DecodeOptions options{.method = method};

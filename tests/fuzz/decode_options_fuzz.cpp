@@ -4,7 +4,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "decoder/decode_options.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 /// Input: a file of options, read by each method.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

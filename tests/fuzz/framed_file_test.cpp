@@ -6,10 +6,10 @@
 #include "core/input_file.h"
 #include "io/png_file.h"
 #include "stream/stream_reader.h"
-#include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/png_pieces.h"
 #include "tests/fuzz/recording_pieces.h"
 #include "tests/fuzz/stream_pieces.h"
+#include "tests/support/memory_file.h"
 #include "tests/support/source_tree.h"
 
 namespace stipple {

@@ -5,7 +5,7 @@
 
 #include "capture/aravis/aravis_device.h"
 #include "core/error.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 namespace {
 

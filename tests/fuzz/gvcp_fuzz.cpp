@@ -2,18 +2,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
 #include "capture/serve/gige_device.h"
 #include "capture/serve/gvcp_codec.h"
+#include "tests/fuzz/require.h"
 
 namespace stipple {
 namespace {
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 ServedImage image() {
     ServedImage image;
@@ -31,7 +27,7 @@ void check(const GigeDevice& device) {
     require(stream.offset_x <= 64 && stream.width <= 64 - stream.offset_x);
     require(stream.offset_y <= 48 && stream.height <= 48 - stream.offset_y);
     require(stream.packet_bytes >= 128 && stream.packet_bytes <= 65535);
-    require(stream.frames_per_s >= 0.009 && stream.frames_per_s <= 100000);
+    require(stream.frames_hz >= 0.009 && stream.frames_hz <= 100000);
     require(!stream.running || device.controller());
     require(!stream.frames || *stream.frames > 0);
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include "capture/serve/big_endian.h"
@@ -7,15 +6,12 @@
 #include "capture/serve/gvsp_codec.h"
 #include "capture/serve/served_block.h"
 #include "tests/fuzz/framed_file.h"
+#include "tests/fuzz/require.h"
 
 namespace stipple {
 namespace {
 
 using View = std::span<const std::uint8_t>;
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 /// A client that puts pieces together by their packet ids.
 struct Client {

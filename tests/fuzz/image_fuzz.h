@@ -6,11 +6,11 @@
 #include "io/dn_image.h"
 #include "io/footage_reader.h"
 #include "io/image_file.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 
-/// Reads a image as light and, if it can be one, as digital numbers. What passes has all its
+/// Reads an image as light and, if it can be one, as digital numbers. What passes has all its
 /// numbers.
 inline void read_image(std::span<const std::uint8_t> bytes, const char* extension) {
     const NamedMemoryFile file(bytes, extension);

@@ -1,21 +1,18 @@
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "capture/frame_unpack.h"
+#include "capture/payload_hash.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/require.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 namespace {
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 /// A frame that is delivered can be used without further checks.
 void check_frame(const CapturedFrame& frame) {

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/schedule_catalogue.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "stream/schedule_codec.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 /// Input: a schedule file of any kind. What is accepted can be put into a stream, and a decoder
 /// reads the same from it.

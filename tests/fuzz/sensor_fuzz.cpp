@@ -4,7 +4,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "sensor_model/sensor_config.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 /// Input: a sensor file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

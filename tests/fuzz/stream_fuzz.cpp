@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -10,15 +9,12 @@
 #include "stream/header_codec.h"
 #include "stream/little_endian.h"
 #include "stream/stream_reader.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/stream_pieces.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 namespace {
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 /// A packet that is delivered is one that a writer could have written.
 void check_packet(const StreamHeader& header, const SamplePacket& packet) {

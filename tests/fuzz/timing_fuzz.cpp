@@ -10,7 +10,7 @@
 #include "readout/timing/full_readout.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/slot_readout.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/support/memory_file.h"
 
 namespace stipple {
 namespace {

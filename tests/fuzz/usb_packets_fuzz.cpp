@@ -2,23 +2,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "capture/aravis/usb_packets.h"
 #include "capture/frame_holes.h"
 #include "stream/little_endian.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kMaxPacketBytes = 1024;
 constexpr std::array<std::uint8_t, 3> kMagic{'U', '3', 'V'};
-
-void require(bool property) {
-    if (!property) std::abort();
-}
 
 bool has_magic(std::span<const std::uint8_t> bytes) {
     return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());

@@ -7,6 +7,7 @@
 #include "io/footage_reader.h"
 #include "tests/io/npy_bytes.h"
 #include "tests/io/test_images.h"
+#include "tests/support/byte_edits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -57,7 +58,7 @@ TEST_F(FootageErrorsTest, NamesFilesOfUnknownKind) {
 
 TEST_F(FootageErrorsTest, NamesEmptyAndForeignFiles) {
     for (const char* name : {"a.png", "a.tiff", "a.exr", "a.npy", "a.mp4", "a.mkv", "a.avi"})
-        for (const char* content : {"", "hello, this is not a image"}) {
+        for (const char* content : {"", "hello, this is not an image"}) {
             write_text(folder_ / name, content);
             expect_parts(error_of(folder_ / name), {name});
         }
@@ -105,11 +106,9 @@ TEST_F(FootageErrorsTest, NamesTheTruncatedImageWhateverItsLength) {
 
 TEST_F(FootageErrorsTest, SaysWhereAPngIsDamaged) {
     write_flat(folder_ / "f.png", 4, 4, CV_8UC1, 100);
-    std::string png = read_text(folder_ / "f.png");
+    const std::string png = read_text(folder_ / "f.png");
     for (std::size_t i = 0; i < png.size(); ++i) {
-        std::string damaged = png;
-        damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
-        write_text(folder_ / "f.png", damaged);
+        write_text(folder_ / "f.png", flipped(png, i));
         expect_parts(error_of(folder_ / "f.png"), {i < 8 ? "is not a PNG" : "f.png: offset "});
     }
 }
@@ -123,9 +122,9 @@ TEST_F(FootageErrorsTest, NamesATiffWithSeveralPagesAmongImages) {
 TEST_F(FootageErrorsTest, NamesTheImageThatDiffersInSizeOrPlanes) {
     write_flat(folder_ / "f0.png", 4, 6, CV_8UC1, 1);
     write_flat(folder_ / "f1.png", 4, 5, CV_8UC1, 1);
-    expect_parts(error_of(folder_.path()), {"f1.png: is 4 x 5 x 1", "4 x 6 x 1"});
+    expect_parts(error_of(folder_.path()), {"f1.png: is 5 x 4 x 1", "6 x 4 x 1"});
     write_flat(folder_ / "f1.png", 4, 6, CV_8UC3, {1, 1, 1});
-    expect_parts(error_of(folder_.path()), {"f1.png: is 4 x 6 x 3", "4 x 6 x 1"});
+    expect_parts(error_of(folder_.path()), {"f1.png: is 6 x 4 x 3", "6 x 4 x 1"});
 }
 
 TEST_F(FootageErrorsTest, NamesFileFrameRowColumnAndPlaneOfBadLight) {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "decoder/portz2013/late_opencv.h"
+#include "decoder/motion/late_opencv.h"
 
 namespace stipple {
 namespace {

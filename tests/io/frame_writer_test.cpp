@@ -141,7 +141,7 @@ TEST(FrameWriterTest, RefusesAMissingFolderBadShapesAndBadRates) {
     EXPECT_THROW(FrameWriter(folder / "clip.npy", {0, 5, 1}), InputError);
     EXPECT_THROW(FrameWriter(folder / "clip.npy", {5, 5, 2}), InputError);
     for (const double rate : {0.0, -1.0, 1e9, std::nan("")})
-        EXPECT_THROW(FrameWriter(folder / "c.mp4", kShape, {.video = {.frames_per_second = rate}}),
+        EXPECT_THROW(FrameWriter(folder / "c.mp4", kShape, {.video = {.frames_hz = rate}}),
                      InputError);
     EXPECT_EQ(folder.names(), Names{});
 }

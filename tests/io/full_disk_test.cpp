@@ -1,50 +1,19 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstdint>
 
 #include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/image_file.h"
 #include "io/output_file.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/noise.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
 
 using Floats = std::vector<float>;
-
-/// While it lives no file of this process can grow beyond `bytes`: as on a full disk, a write
-/// stores what fits and then fails.
-class FileSizeLimit {
-  public:
-    explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &old_);
-        const rlimit limit{bytes, old_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &old_);
-        std::signal(SIGXFSZ, old_handler_);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
-  private:
-    rlimit old_{};
-    void (*old_handler_)(int);
-};
-
-/// A image that no codec makes small.
-Floats noise(FrameShape shape, std::uint32_t state) {
-    Floats frame(shape.sites());
-    for (float& value : frame) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 16777216.0F;
-    }
-    return frame;
-}
 
 TEST(FullDiskTest, EveryVideoFormatReportsItAndLeavesNothingBehind) {
     const FrameShape shape{64, 64, 3};
@@ -54,7 +23,8 @@ TEST(FullDiskTest, EveryVideoFormatReportsItAndLeavesNothingBehind) {
             const FileSizeLimit full_disk(limit);
             const auto message = message_of<DeviceError>([&] {
                 FrameWriter writer(folder / name, shape);
-                for (std::uint32_t seed = 0; seed < 20; ++seed) writer.write(noise(shape, seed));
+                for (std::uint32_t seed = 0; seed < 20; ++seed)
+                    writer.write(noise(shape.sites(), seed));  // no codec makes it small
                 writer.finish();
             });
             expect_parts(message, {(folder / name).string()});

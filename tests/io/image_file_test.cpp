@@ -67,7 +67,7 @@ TEST(ImageFileTest, RefusesAnotherPixelTypeOrFormat) {
     expect_parts(message_of<InputError>([&] { read_image(folder / "f.tiff", image); }),
                  {"f.tiff: holds samples of 64 bits (float); give 8- or 16-bit"});
     expect_parts(message_of<InputError>([&] { read_image(folder / "f.jpg", image); }),
-                 {"f.jpg: is not a image that can be read"});
+                 {"f.jpg: is not an image that can be read"});
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ TEST_F(TiffFileTest, NamesThePageThatDiffers) {
     const Layout page{.channels = 1, .photometric = PHOTOMETRIC_MINISBLACK};
     const Layout wide{.cols = 6, .channels = 1, .photometric = PHOTOMETRIC_MINISBLACK};
     write({page, wide});
-    expect_parts(problem(), {"f.tif: page 1: is 3 x 6 x 1", "3 x 5 x 1"});
+    expect_parts(problem(), {"f.tif: page 1: is 6 x 3 x 1", "5 x 3 x 1"});
     const Layout deep{.channels = 1, .bits = 32, .photometric = PHOTOMETRIC_MINISBLACK};
     write({page, page, deep});
     expect_parts(problem(), {"f.tif: page 2: holds samples of 32 bits (unsigned)"});

@@ -71,13 +71,12 @@ TEST_P(VideoFileTest, PadsOddAndNarrowSizes) {
 
 TEST_P(VideoFileTest, WritesTheFrameRate) {
     for (const double rate : {0.01, 12.5, 29.97, 240.0}) {
-        FrameWriter writer(file_, {32, 32, 1},
-                           {.video = {.frames_per_second = rate}, .force = true});
+        FrameWriter writer(file_, {32, 32, 1}, {.video = {.frames_hz = rate}, .force = true});
         for (int i = 0; i < 5; ++i) writer.write(Floats(32 * 32, 1.0F));
         writer.finish();
         cv::VideoCapture capture(file_.string(), cv::CAP_FFMPEG);
         EXPECT_NEAR(capture.get(cv::CAP_PROP_FPS), rate, 1e-5 * rate);
-        EXPECT_NEAR(FootageReader(file_).video_hz().value(), rate, 1e-5 * rate);
+        EXPECT_NEAR(FootageReader(file_).frames_hz().value(), rate, 1e-5 * rate);
         EXPECT_EQ(read_all(file_).size(), std::size_t{5 * 3 * 32 * 32});
     }
 }

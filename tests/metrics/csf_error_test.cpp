@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "tests/support/noise.h"
 
 namespace stipple {
 namespace {
@@ -67,24 +68,19 @@ TEST(CsfErrorTest, AGratingIsWeightedByItsFrequency) {
 }
 
 TEST(CsfErrorTest, FromFarAwayNoiseIsNotSeenAndFromNearItIsSeenInFull) {
-    std::uint32_t state = 1;
-    Floats noise(32 * 32);
+    Floats error = noise(32 * 32, 1);
     double mean = 0;
-    for (float& value : noise) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 16777216.0F;
-        mean += static_cast<double>(value) / 1024;
-    }
+    for (const float value : error) mean += static_cast<double>(value) / 1024;
     double mean_square = 0;
-    for (float& value : noise) {
+    for (float& value : error) {
         value -= static_cast<float>(mean);
         mean_square += static_cast<double>(value) * static_cast<double>(value) / 1024;
     }
     const FrameShape shape{32, 32, 1};
     // All frequencies, up to 0.5 / sqrt(0.5) / 0.7 cycles per pixel, are below 7.89 per degree.
-    EXPECT_NEAR(CsfError(shape, 5).mean_square(noise), mean_square, 1e-6);
+    EXPECT_NEAR(CsfError(shape, 5).mean_square(error), mean_square, 1e-6);
     // The lowest is 10000 / 32 cycles per degree.
-    EXPECT_LT(CsfError(shape, 10000).mean_square(noise), 1e-9 * mean_square);
+    EXPECT_LT(CsfError(shape, 10000).mean_square(error), 1e-9 * mean_square);
 }
 
 TEST(CsfErrorTest, RefusesADegreeWithoutPixels) {

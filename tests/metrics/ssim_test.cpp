@@ -6,20 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/support/noise.h"
+
 namespace stipple {
 namespace {
 
 using Floats = std::vector<float>;
-
-/// Values 0..1 that repeat for the same state.
-Floats noise(std::size_t count, std::uint32_t state) {
-    Floats values(count);
-    for (float& value : values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 16777216.0F;
-    }
-    return values;
-}
 
 /// The definition, window by window with a two-dimensional Gaussian.
 double slow_ssim(const Floats& x, const Floats& y, int rows, int cols) {

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "metrics/pu21.h"
 #include "metrics/ssim.h"
+#include "tests/support/noise.h"
 
 namespace stipple {
 namespace {
@@ -30,12 +31,10 @@ VideoQuality flat_quality(const Floats& result, const Floats& reference,
     return meter.quality();
 }
 
-Floats noise(std::size_t count, std::uint32_t state) {
-    Floats values(count);
-    for (float& value : values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8U) / 8388608.0F;  // 0..2
-    }
+/// Light from 0 to 2.
+Floats bright_noise(std::size_t count, std::uint32_t state) {
+    Floats values = noise(count, state);
+    for (float& value : values) value *= 2;
     return values;
 }
 
@@ -100,8 +99,16 @@ TEST(VideoQualityTest, AMarginThatLeavesNothingIsAnError) {
     EXPECT_THROW(flat_quality({}, {}), InputError);
 }
 
+TEST(VideoQualityTest, TheUsualMarginLeavesAFrame) {
+    for (int frames = 1; frames < 9; ++frames) {
+        const int left = frames - 2 * usual_margin(frames);
+        EXPECT_TRUE(left == 1 || left == 2) << frames;
+    }
+    for (const int frames : {9, 10, 1000}) EXPECT_EQ(usual_margin(frames), 4);
+}
+
 TEST(VideoQualityTest, IdenticalVideosAreInfinitelyGood) {
-    const Floats frame = noise(kShape.sites(), 1);
+    const Floats frame = bright_noise(kShape.sites(), 1);
     QualityMeter meter(kShape, {});
     meter.add(frame, frame);
     const auto quality = meter.quality();
@@ -117,8 +124,8 @@ TEST(VideoQualityTest, SsimIsTheMeanOverFramesAndPlanesAfterTheCurve) {
     QualityMeter meter(shape, {});
     double expected = 0;
     for (std::uint32_t t = 0; t < 2; ++t) {
-        const Floats result = noise(shape.sites(), 10 + t);
-        const Floats reference = noise(shape.sites(), 20 + t);
+        const Floats result = bright_noise(shape.sites(), 10 + t);
+        const Floats reference = bright_noise(shape.sites(), 20 + t);
         meter.add(result, reference);
         for (std::size_t plane = 0; plane < 3; ++plane) {
             Floats x;
@@ -152,6 +159,10 @@ TEST(VideoQualityTest, FrameQualitiesAreThoseOfTheFramesAlone) {
         EXPECT_EQ(frames[i].pu21_csf_psnr_db, alone.pu21_csf_psnr_db);
     }
     EXPECT_EQ(meter.quality().psnr_frame_mean_db, (frames[0].psnr_db + frames[1].psnr_db) / 2);
+    const auto last = flat_quality({0.0F}, {0.5F}, {.pu21_ssim = true});  // in the margin
+    EXPECT_EQ(meter.last_quality().psnr_db, last.psnr_db);
+    EXPECT_EQ(meter.last_quality().pu21_psnr_db, last.pu21_psnr_db);
+    EXPECT_EQ(meter.last_quality().pu21_ssim, last.pu21_ssim);
 }
 
 TEST(VideoQualityTest, Pu21SsimOfFlatFramesComparesTheirLuminances) {
@@ -180,7 +191,7 @@ TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
     const auto measure = [](int threads) {
         const ThreadLimit limit(threads);
         QualityMeter meter({40, 50, 3}, {.pu21_ssim = true, .pixels_per_degree = 60.0});
-        meter.add(noise(40 * 50 * 3, 1), noise(40 * 50 * 3, 2));
+        meter.add(bright_noise(40 * 50 * 3, 1), bright_noise(40 * 50 * 3, 2));
         return meter.quality();
     };
     const auto one = measure(1);
@@ -197,8 +208,12 @@ TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
     EXPECT_THROW(QualityMeter({}, {}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.margin = -1}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
-    EXPECT_THROW(QualityMeter(kShape, {.peak = 0}), InputError);
-    EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = 0}), InputError);
+    EXPECT_THROW(QualityMeter(kShape, {.max_value = 1e-50}), InputError);  // 0 as a float
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (const double value : {0.0, kInfinite}) {
+        EXPECT_THROW(QualityMeter(kShape, {.peak = value}), InputError);
+        EXPECT_THROW(QualityMeter(kShape, {.unit_cd_per_m2 = value}), InputError);
+    }
     EXPECT_THROW(QualityMeter(kShape, {.pixels_per_degree = 0.0}), InputError);
 }
 

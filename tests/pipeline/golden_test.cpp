@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cstdlib>
 #include <fstream>
 
 #include "tests/pipeline/clip.h"
 #include "tests/support/fnv1a.h"
+#include "tests/support/golden_file.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +43,7 @@ void expect_golden(const std::string& name, const std::filesystem::path& stream,
     const FluxVideo decoded = read_recording(stream, method);
     const std::string golden_file =
         (project_path("tests/golden/decoder") / (name + ".fnv1a")).string();
-    if (std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr)
+    if (updating_golden())
         std::ofstream(golden_file) << std::hex << hash_of(decoded.data()) << '\n';
     std::uint64_t golden = 0;
     std::ifstream(golden_file) >> std::hex >> golden;

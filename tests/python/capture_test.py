@@ -62,7 +62,7 @@ class RecordTest(CameraTest):
         told = self.figures("capture", "record", "replay:dn.npy", "-o", "program.strec", "--set",
                             "camera.AcquisitionFrameRate=0", "--set", "camera.PixelFormat=Mono16", "--buffers", 1024)
         self.assertEqual(list(recording.figures), list(told))
-        measured = {"file", "seconds", "frames_per_s"}
+        measured = {"file", "seconds", "frames_hz"}
         self.assertEqual({key: value for key, value in recording.figures.items() if key not in measured},
                          {key: value for key, value in told.items() if key not in measured})
         program = stipple.Recording.open(self.folder / "program.strec")
@@ -111,7 +111,7 @@ class RecordTest(CameraTest):
 
     def test_a_camera_is_recorded(self):
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
-        address = self.serve("light.npy", "--repeat", "--format", "Mono16", "--fps", 100)
+        address = self.serve("light.npy", "--repeat", "--format", "Mono16", "--frames-hz", 100)
         recording = stipple.capture.record(address, self.folder / "clip.strec", frames=10)
         frames = list(recording)
         self.assertEqual(len(frames), 10)
@@ -168,17 +168,19 @@ class RecordTest(CameraTest):
 
     def test_a_camera_that_is_gone_is_an_OSError_and_leaves_a_recording(self):
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
-        address = self.serve("light.npy", "--fps", 200)  # it ends
+        address = self.serve("light.npy", "--frames-hz", 200)  # it ends
         with self.assertRaisesRegex(OSError, f"{address}: camera lost: "):
             stipple.capture.record(address, self.folder / "clip.strec", reconnect=False, stall_ms=200)
         self.assertGreater(len(list(stipple.Recording.open(self.folder / "clip.strec"))), 0)
 
 
-class LiveTest(CameraTest):
+class LiveSourceTest(CameraTest):
     def live(self, *arguments, settings={}, **options):
         return stipple.capture.live(self.replay(), *arguments, settings=FAST | {"PixelFormat": "Mono16"} | settings,
                                     buffers=1024, queue=1024, **options)
 
+
+class LiveTest(LiveSourceTest):
     def test_the_stream_is_that_of_the_program(self):
         self.write_dn()
         told = self.figures("capture", "live", "replay:dn.npy", "-o", "program.stipple", "--set",
@@ -236,6 +238,112 @@ class LiveTest(CameraTest):
         (self.folder / "clip.stipple").touch()
         with self.assertRaises(FileExistsError):
             self.live(output=self.folder / "clip.stipple")
+
+
+class PreviewTest(LiveSourceTest):
+    """Frames are waited for as long as it takes: the preview has idle priority."""
+
+    LOOP = {"Loop": 1, "AcquisitionFrameRate": 200}
+
+    def live_until_shown(self, count, *arguments, **options):
+        shown = []
+        stream = self.live(*arguments, settings=self.LOOP, preview=shown.append,
+                           progress=lambda done, total: len(shown) < count, **options)
+        return stream, shown
+
+    def test_frames_are_the_light_of_a_still_scene(self):
+        dn = self.write_dn(slots=1)[0]
+        self.write_array("dn.npy", np.repeat(dn[None], 24, axis=0), np.uint16)
+        _, shown = self.live_until_shown(2, "ideal", "tiled")
+        for frame in shown:
+            # Half a DN of 1/4 electron, and half of the DN of the camera; light 1.0 is 1000 electrons.
+            np.testing.assert_allclose(frame.light, dn / 65535, atol=2e-4)
+            self.assertEqual((frame.light.dtype, frame.saturated.dtype), (np.float32, bool))
+        self.assertLess(shown[0].slot, shown[1].slot)
+
+    def test_figures_are_those_of_the_program(self):
+        self.write_dn()
+        told = self.figures("capture", "live", "replay:dn.npy", "-o", "program.stipple", "--set",
+                            "camera.AcquisitionFrameRate=0", "--buffers", 1024, "--queue", 1024, "--preview", "p.npy")
+        stream = self.live(preview=lambda frame: None)
+        self.assertEqual(["file", *stream.figures["preview"]], list(told["preview"]))
+        for key in ("width", "height", "slots"):
+            self.assertEqual(stream.figures["preview"][key], told["preview"][key])
+        self.assertNotIn("preview", self.live().figures)
+
+    def test_a_short_source_shows_its_first_frame(self):
+        self.write_dn(slots=16)
+        shown = []
+        stream = self.live(preview=shown.append)
+        self.assertGreater(len(shown), 0)
+        self.assertEqual(stream.figures["preview"]["made"], len(shown))
+
+    def test_colour_parts_of_the_frame_and_saturated_pixels(self):
+        dn = np.zeros((24, 20, 24, 3), np.uint16)
+        dn[:, 5, 6, 1] = 65535
+        self.write_array("dn.npy", dn, np.uint16)
+        shown = []
+        self.live(stipple.Sensor("paper", {"full_scale_e": 500}), "full1x", settings={"PixelFormat": "RGB8"},
+                  preview=shown.append, preview_size=(10, 12))
+        self.assertEqual(shown[0].light.shape, (10, 12, 3))
+        self.assertEqual(np.argwhere(shown[0].saturated).tolist(), [[0, 0]])  # the middle begins at (5, 6)
+        self.assertEqual(shown[0].light[..., 1].argmax(), 0)
+
+    def test_what_it_raises_and_ctrl_c_end_the_call_and_leave_a_stream(self):
+        self.write_dn()
+
+        def fail(frame):
+            raise ZeroDivisionError
+
+        path = self.folder / "clip.stipple"
+        for error, show in ((ZeroDivisionError, fail),
+                            (KeyboardInterrupt, lambda frame: os.kill(os.getpid(), signal.SIGINT))):
+            with self.subTest(error), self.assertRaises(error):
+                self.live(settings=self.LOOP, output=path, force=True, preview=show)
+            self.assertGreaterEqual(stipple.Stream.open(path).slots(), 12)
+            self.assertTrue(stipple.Stream.open(path).counts()["complete"])
+
+    def test_refuses_what_is_no_preview(self):
+        self.write_dn()
+        with self.assertRaisesRegex(TypeError, "preview: give a function"):
+            self.live(preview=5)
+        for message, arguments in {'preview_method: "best" is none of naive, fast': {"preview_method": "best"},
+                                   r"preview_size: \(4, 8\) is outside 8..65535": {"preview_size": (4, 8)}}.items():
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                self.live(preview=print, **arguments)
+
+
+class SearchTest(CameraTest):
+    def test_a_served_camera_is_found_and_described(self):
+        self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
+        address = self.serve("light.npy", "--repeat", "--format", "Mono16")
+        told = self.figures("capture", "features", address)["features"]
+        found = stipple.capture.features(address)
+        self.assertEqual([feature.name for feature in found], [feature["name"] for feature in told])
+        for feature, wanted in zip(found, told):
+            if feature.name == "Width":
+                self.assertEqual(feature._asdict() | {"choices": []}, wanted)
+        self.assertEqual([f.value for f in stipple.capture.features(address, "pixelf*")], ["Mono16"])
+        with self.assertRaisesRegex(ValueError, '"nothing": matches none of the'):
+            stipple.capture.features(address, "nothing")
+
+    def test_the_list_is_that_of_the_program(self):
+        self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
+        address = self.serve("light.npy", "--repeat")
+        told = self.figures("capture", "list")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            found = stipple.capture.list()
+        self.assertEqual([str(warning.message) for warning in caught], told["problems"])
+        mine = [camera._asdict() for camera in found if camera.address == address]  # others may come and go
+        self.assertEqual(mine, [camera for camera in told["cameras"] if camera["address"] == address])
+        self.assertEqual(len(mine), 1)
+
+    def test_what_has_no_features_is_named(self):
+        for address, message in (("replay:a.npy", "replay:a.npy: has no features"),
+                                 ("none:1", "is no address of a camera")):
+            with self.assertRaisesRegex(ValueError, message):
+                stipple.capture.features(address)
 
 
 class FramesTest(CameraTest):

@@ -67,7 +67,7 @@ class CompareTest(ProgramTest):
 
     def test_refuses_videos_that_do_not_match(self):
         for message, arguments in {
-                "has frames of 16 x 20 x 1": (self.a[..., 0], self.b)}.items():
+                "has frames of 20 x 16 x 1": (self.a[..., 0], self.b)}.items():
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 stipple.compare(*arguments)
         for message, options in {"ends after 6 frames, before until=7": {"until": 7},

@@ -150,7 +150,8 @@ class EmulateTest(ProgramTest):
                 "was made for 480 x 640 pixels": dict(video=light(), schedule=stipple.Schedule()),
                 "is none of stretch, drop": dict(video=light(), overrun="bend"),
                 "is none of linear, gamma22, srgb": dict(video=light(), transfer="log"),
-                "max_value: -1 is not above 0": dict(video=light(), max_value=-1)}.items():
+                "max_value: -1 is not above 0": dict(video=light(), max_value=-1),
+                "max_value: 1e-50 is not above 0": dict(video=light(), max_value=1e-50)}.items():
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 stipple.emulate(**arguments)
 

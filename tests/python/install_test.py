@@ -16,9 +16,7 @@ PARTS = ("CMakeLists.txt", "README.md", "config", "pyproject.toml", "python/stip
 class InstallTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
         source = cls.folder / "source"  # pip leaves files where it builds
         for part in PARTS:
             path, target = project_path(part), source / part

@@ -28,6 +28,11 @@ figures = [stipple.characterize(sensor, progress=print), stipple.characterize_im
 settings = {"PixelFormat": "Mono12", "ExposureTime": 2000}
 recording = stipple.capture.record("replay:a.npy", Path("a.strec"), settings=settings, seconds=1.5)
 live = stipple.capture.live("replay:a.npy", sensor, schedule, frames=5, progress=lambda done, frames: done < 4)
+def show(frame: stipple.PreviewFrame) -> None:
+    print(frame.slot, frame.light.mean(), frame.saturated.any())
+live = stipple.capture.live("replay:a.npy", preview=show, preview_method="fast", preview_size=(48, 64))
+addresses = [camera.address for camera in stipple.capture.list()]
+units = {feature.name: feature.unit for feature in stipple.capture.features("gige:127.0.0.1", "exposure")}
 with stipple.capture.frames("replay:a.npy") as frames:
     dn = [frame.dn.mean() for frame in frames]
 '''
@@ -36,9 +41,7 @@ with stipple.capture.frames("replay:a.npy") as frames:
 class TypingTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.cache = folder.name
+        cls.cache = cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_"))
 
     def mypy(self, *arguments):
         return subprocess.run(["mypy", "--strict", "--python-executable", sys.executable, "--cache-dir", self.cache,

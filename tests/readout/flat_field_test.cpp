@@ -36,7 +36,7 @@ TEST(FlatFieldTest, MeanOfAnImageIsItsLight) {
     params.bit_depth = 12;
     FlatField field(params, 1);
     for (const double photons : {100.0, 400.0, 1500.0}) {
-        const auto& dn = field.photograph(photons);
+        const auto& dn = field.capture(photons);
         ASSERT_EQ(dn.size(), FlatField::kShape.pixels());
         const double electrons = mean_of(dn) * params.gain_e_per_dn();
         EXPECT_NEAR(electrons, photons, 5 * std::sqrt((photons + 100) / 76800)) << photons;
@@ -45,10 +45,10 @@ TEST(FlatFieldTest, MeanOfAnImageIsItsLight) {
 
 TEST(FlatFieldTest, SeedDecidesTheImages) {
     FlatField a(SensorParams{}, 1), b(SensorParams{}, 1), c(SensorParams{}, 2);
-    const auto first = a.photograph(500);
-    EXPECT_EQ(b.photograph(500), first);
-    EXPECT_NE(c.photograph(500), first);
-    EXPECT_NE(a.photograph(500), first);  // another slot
+    const auto first = a.capture(500);
+    EXPECT_EQ(b.capture(500), first);
+    EXPECT_NE(c.capture(500), first);
+    EXPECT_NE(a.capture(500), first);  // another slot
 }
 
 TEST(FlatFieldTest, UnequalPixelsAreRefused) {

@@ -17,9 +17,7 @@ from dead_links import dead_links  # noqa: E402
 class SiteTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stipple_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.html = Path(folder.name) / "site/html"
+        cls.html = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_"))) / "site/html"
         done = subprocess.run([PROJECT / "scripts/site", "--quick", "--build", os.environ["STIPPLE_BUILD"], "--output",
                                cls.html.parent], capture_output=True, text=True, timeout=280)
         if "missing" in done.stderr and "install-deps site" in done.stderr:

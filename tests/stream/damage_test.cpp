@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/byte_edits.h"
 
 namespace stipple {
 namespace {
@@ -71,8 +72,7 @@ TEST(DamageTest, APrefixOfTheHeaderIsRefused) {
 TEST(DamageTest, ADamagedByteOfTheHeaderIsFatal) {
     const SmallStream s;
     for (std::size_t at = 0; at < s.stream.begins.front(); ++at) {
-        std::string bytes = s.stream.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+        const std::string bytes = flipped(s.stream.bytes, at);
         expect_parts(message_of<InputError>([&] { return read_bytes(bytes); }), {": byte "});
     }
 }
@@ -80,10 +80,8 @@ TEST(DamageTest, ADamagedByteOfTheHeaderIsFatal) {
 TEST(DamageTest, ADamagedByteCostsItsOwnPacketAndIsReported) {
     const SmallStream s;
     for (std::size_t at = s.stream.begins.front(); at < s.stream.bytes.size(); ++at)
-        for (const int flip : {0x01, 0x80, 0xFF}) {
-            std::string bytes = s.stream.bytes;
-            bytes[at] = static_cast<char>(bytes[at] ^ flip);
-            const auto [packets, report] = read_bytes(bytes);
+        for (const int mask : {0x01, 0x80, 0xFF}) {
+            const auto [packets, report] = read_bytes(flipped(s.stream.bytes, at, mask));
             Packets expected = s.packets;
             for (std::size_t i = 0; i < s.packets.size(); ++i)
                 if (s.stream.begins[i] == s.begin_of(at))
@@ -99,8 +97,7 @@ TEST(DamageTest, ADamagedByteCostsItsOwnPacketAndIsReported) {
 TEST(DamageTest, AStrictReaderNamesTheDamagedPacket) {
     const SmallStream s;
     for (std::size_t at = s.stream.begins.front(); at < s.stream.bytes.size(); ++at) {
-        std::string bytes = s.stream.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x40);
+        const std::string bytes = flipped(s.stream.bytes, at, 0x40);
         expect_parts(message_of<InputError>([&] { return read_bytes(bytes, ReadPolicy::kStrict); }),
                      {": byte " + to_string(s.begin_of(at)) + ": "});
     }
@@ -112,8 +109,7 @@ TEST(DamageTest, BytesThatAreMissingCostThePacketsTheyBelongTo) {
     for (std::size_t at = s.stream.begins.front(); at < index; at += 3)
         for (const std::size_t length : {1U, 20U, 36U, 100U}) {
             const std::size_t end = std::min(at + length, index);
-            std::string bytes = s.stream.bytes;
-            bytes.erase(at, end - at);
+            const std::string bytes = without(s.stream.bytes, at, end);
             Packets expected;
             for (std::size_t i = 0; i < s.packets.size(); ++i)
                 if (s.stream.begins[i + 1] <= at || s.stream.begins[i] >= end)
@@ -164,16 +160,14 @@ TEST(DamageTest, NoMutationBringsAWrongSample) {
 TEST(DamageTest, TheReportSaysWhatIsMissing) {
     const SmallStream s;
     const auto& begins = s.stream.begins;
-    const auto without = [&](std::size_t first, std::size_t end) {
-        std::string bytes = s.stream.bytes;
-        bytes.erase(begins[first], begins[end] - begins[first]);
-        return causes(read_bytes(bytes).report);
+    const auto missing = [&](std::size_t first, std::size_t end) {
+        return causes(read_bytes(without(s.stream.bytes, begins[first], begins[end])).report);
     };
-    EXPECT_EQ(without(1, 2), "rows 2..3 of slot 0 are missing\n");
-    EXPECT_EQ(without(2, 4), "slot 1 is missing\n");
-    EXPECT_EQ(without(2, 6), "slots 1..2 are missing\n");
-    EXPECT_EQ(without(1, 5), "slot 0 from row 2 to slot 2 row 1 is missing\n");
-    EXPECT_EQ(without(6, 8), "slot 3 is missing\n");
+    EXPECT_EQ(missing(1, 2), "rows 2..3 of slot 0 are missing\n");
+    EXPECT_EQ(missing(2, 4), "slot 1 is missing\n");
+    EXPECT_EQ(missing(2, 6), "slots 1..2 are missing\n");
+    EXPECT_EQ(missing(1, 5), "slot 0 from row 2 to slot 2 row 1 is missing\n");
+    EXPECT_EQ(missing(6, 8), "slot 3 is missing\n");
 }
 
 TEST(DamageTest, APacketThatComesTwiceOrTooLateIsReported) {

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "stream/slot_index.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/byte_edits.h"
 
 namespace stipple {
 namespace {
@@ -95,45 +97,39 @@ std::vector<GoldenCase> damages() {
     const StreamHeader header = varied_header({4, 4, 1});
     const StreamBytes whole = bytes_of(header, random_packets(header, 3, 4));
     const auto& begins = whole.begins;
-    const auto flipped = [&](std::size_t at) {
-        std::string bytes = whole.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        return bytes;
-    };
-    const auto without = [&](std::size_t begin, std::size_t end) {
-        std::string bytes = whole.bytes;
-        return bytes.erase(begin, end - begin);
-    };
     std::string twice = whole.bytes;
     twice.insert(begins[2], whole.bytes.substr(begins[1], begins[2] - begins[1]));
     return {{"interrupted", whole.bytes.substr(0, begins[3])},
             {"cut_in_packet", whole.bytes.substr(0, begins[3] - 1)},
             {"cut_in_header", whole.bytes.substr(0, begins[0] - 1)},
-            {"damaged_header", flipped(40)},
-            {"damaged_packet_header", flipped(begins[1] + 8)},
-            {"damaged_payload", flipped(begins[1] + kPacketHeaderBytes)},
-            {"damaged_index", flipped(begins[3] + kPacketHeaderBytes)},
-            {"damaged_end_marker", flipped(begins[4])},
-            {"missing_packet", without(begins[1], begins[2])},
-            {"missing_bytes", without(begins[1] + 10, begins[1] + 20)},
-            {"missing_end_of_last_packet", without(begins[3] - 3, begins[3])},
+            {"damaged_header", flipped(whole.bytes, 40)},
+            {"damaged_packet_header", flipped(whole.bytes, begins[1] + 8)},
+            {"damaged_payload", flipped(whole.bytes, begins[1] + kPacketHeaderBytes)},
+            {"damaged_index", flipped(whole.bytes, begins[3] + kPacketHeaderBytes)},
+            {"damaged_end_marker", flipped(whole.bytes, begins[4])},
+            {"missing_packet", without(whole.bytes, begins[1], begins[2])},
+            {"missing_bytes", without(whole.bytes, begins[1] + 10, begins[1] + 20)},
+            {"missing_end_of_last_packet", without(whole.bytes, begins[3] - 3, begins[3])},
             {"packet_twice", twice},
             {"torn", torn()},
             {"samples_exchanged", samples_exchanged()},
             {"bytes_after_end", whole.bytes + "more"}};
 }
 
-/// What is left of a stream of three bands a slot if the writer or the file ends within a slot.
-std::vector<GoldenCase> ends_within_a_slot() {
+/// What is left of a stream of three bands a slot if bands are missing, or the writer or the file
+/// ends within a slot.
+std::vector<GoldenCase> parts_of_slots() {
     const StreamHeader header = varied_header({5, 4, 1});
     auto packets = random_packets(header, 3, 2);
     const StreamBytes whole = bytes_of(header, packets);
     packets.pop_back();
-    std::string without_last = whole.bytes;
-    without_last.erase(whole.begins[8], whole.begins[9] - whole.begins[8]);
-    return {{"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
-            {"partial_last_slot_with_index", without_last},
-            {"stopped_within_slot", bytes_of(header, packets).bytes}};
+    std::string two_gaps = without(whole.bytes, whole.begins[2], whole.begins[8]);
+    two_gaps.erase(whole.begins[0], whole.begins[1] - whole.begins[0]);
+    return {
+        {"partial_last_slot", whole.bytes.substr(0, whole.begins[8])},
+        {"partial_last_slot_with_index", without(whole.bytes, whole.begins[8], whole.begins[9])},
+        {"two_gaps_in_a_slot", two_gaps},
+        {"stopped_within_slot", bytes_of(header, packets).bytes}};
 }
 
 PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
@@ -141,25 +137,31 @@ PacketHeader packet_header_at(const std::string& bytes, std::size_t at) {
     return decode_packet_header(as_numbers(copy));
 }
 
-void flip(std::string& bytes, std::size_t at) {
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+/// Good CRCs for packet `i` of `whole`, which was changed in `bytes`.
+std::string sealed(std::string bytes, const StreamBytes& whole, std::size_t i) {
+    const std::size_t size = whole.begins[i + 1] - whole.begins[i];
+    const std::string packet = bytes.substr(whole.begins[i], size);
+    return bytes.replace(
+        whole.begins[i], size,
+        framed(packet_header_at(packet, 0), packet.substr(kPacketHeaderBytes), whole.seed()));
 }
 
-/// An index that leads to another place than a slot, and an end marker that leads elsewhere.
+/// An index that leads to another place than a slot, one whose offsets do not rise (which counts
+/// after damage too), and an end marker that leads elsewhere.
 std::vector<GoldenCase> wrong_offsets(const StreamBytes& whole) {
     const auto [index, marker] = std::pair{whole.begins[3], whole.begins[4]};
-    std::string entry = whole.bytes;
-    flip(entry, index + kPacketHeaderBytes + 8);
-    entry.replace(
-        index, marker - index,
-        framed(packet_header_at(entry, index),
-               entry.substr(index + kPacketHeaderBytes, marker - index - kPacketHeaderBytes),
-               whole.seed()));
+    const std::size_t first_offset = index + kPacketHeaderBytes + 8;
+    std::string order = whole.bytes;
+    std::swap_ranges(&order[first_offset], &order[first_offset + 8],
+                     &order[first_offset + kIndexEntryBytes]);
+    order = flipped(sealed(order, whole, 3), whole.begins[0] + kPacketHeaderBytes);
     std::string offset = whole.bytes;
     const auto numbers = as_numbers(offset);
     store(&numbers[marker + 4], std::uint64_t{whole.begins[2]});
     store(&numbers[marker + 16], crc32c(numbers.subspan(marker, 16), whole.seed()));
-    return {{"wrong_index_entry", entry}, {"wrong_end_marker", offset}};
+    return {{"wrong_index_entry", sealed(flipped(whole.bytes, first_offset), whole, 3)},
+            {"index_out_of_order_after_damage", order},
+            {"wrong_end_marker", offset}};
 }
 
 /// Rules of docs/stream_format.md that the cases above leave out.
@@ -177,14 +179,15 @@ std::vector<GoldenCase> rules() {
                      framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
     std::string after_index = whole.bytes;
     after_index.insert(begins[4], packet(2));
-    std::string no_start = whole.bytes.substr(0, begins[3] + 10);
-    flip(no_start, begins[2] + kPacketHeaderBytes);
+    const std::string no_start =
+        flipped(whole.bytes.substr(0, begins[3] + 10), begins[2] + kPacketHeaderBytes);
     std::vector<GoldenCase> cases{
         {"reserved_not_zero", reserved},
+        {"unused_bits_not_zero", sealed(flipped(whole.bytes, begins[2] - 1), whole, 1)},
         {"packet_after_index", after_index},
         {"no_start_after_damage", no_start},
         {"cut_in_end_marker", whole.bytes.substr(0, whole.bytes.size() - 1)}};
-    for (auto& more : {wrong_offsets(whole), ends_within_a_slot()})
+    for (auto& more : {wrong_offsets(whole), parts_of_slots()})
         cases.insert(cases.end(), more.begin(), more.end());
     return cases;
 }

@@ -3,13 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace stipple {
+#include "tests/support/golden_file.h"
 
-/// A file of tests/golden/stream.
-struct GoldenCase {
-    std::string name;
-    std::string bytes;
-};
+namespace stipple {
 
 /// The stream of the example in docs/stream_format.md.
 [[nodiscard]] std::string example_stream();

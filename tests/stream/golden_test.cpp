@@ -2,12 +2,12 @@
 // change of the format: STIPPLE_UPDATE_GOLDEN=1 build/release/stream_test --gtest_filter='Golden*'
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "tests/stream/golden_cases.h"
 #include "tests/stream/stream_bytes.h"
+#include "tests/support/golden_file.h"
 #include "tests/support/source_tree.h"
 
 namespace stipple {
@@ -18,10 +18,6 @@ using Json = nlohmann::ordered_json;
 const std::filesystem::path kFolder = project_path("tests/golden/stream");
 /// As this library wrote and read them when it knew version 1 only.
 const std::filesystem::path kFolder1 = project_path("tests/golden/stream_version_1");
-
-bool updating() {
-    return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;
-}
 
 Json to_json(const ExposureSchedule& schedule) {
     Json pixels = Json::array();
@@ -108,37 +104,15 @@ Json description(const std::string& bytes) {
     return text;
 }
 
-/// A line per field, and per element of a list.
-std::string pretty(const Json& text) {
-    std::string lines = "{";
-    for (const auto& [key, value] : text.items()) {
-        lines += (lines.size() > 1 ? ",\n" : "\n") + Json(key).dump() + ": ";
-        if (!value.is_array() || value.empty()) {
-            lines += value.dump();
-            continue;
-        }
-        for (std::size_t i = 0; i < value.size(); ++i)
-            lines += (i == 0 ? "[\n  " : ",\n  ") + value[i].dump();
-        lines += "]";
-    }
-    return lines + "\n}\n";
-}
-
 TEST(GoldenTest, EachFileIsWrittenAsEver) {
-    for (const auto& [name, bytes] : golden_cases()) {
-        const auto file = kFolder / (name + ".stipple");
-        if (updating()) write_text(file, bytes);
-        EXPECT_TRUE(read_text(file) == bytes) << file;
-    }
+    for (const auto& [name, bytes] : golden_cases())
+        expect_golden_bytes(kFolder / (name + ".stipple"), bytes);
 }
 
 TEST(GoldenTest, EachFileReadsAsItsDescriptionSays) {
-    for (const auto& [name, bytes] : golden_cases()) {
-        const std::string text = pretty(description(read_text(kFolder / (name + ".stipple"))));
-        const auto file = kFolder / (name + ".json");
-        if (updating()) write_text(file, text);
-        EXPECT_EQ(read_text(file), text) << file;
-    }
+    for (const auto& [name, bytes] : golden_cases())
+        expect_golden_text(kFolder / (name + ".json"),
+                           golden_text(description(read_text(kFolder / (name + ".stipple")))));
 }
 
 TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
@@ -147,7 +121,8 @@ TEST(GoldenTest, FilesOfVersion1AreReadAsEver) {
         if (entry.path().extension() != ".stipple") continue;
         auto json = entry.path();
         json.replace_extension(".json");
-        EXPECT_EQ(read_text(json), pretty(description(read_text(entry.path())))) << entry.path();
+        EXPECT_EQ(read_text(json), golden_text(description(read_text(entry.path()))))
+            << entry.path();
         ++files;
     }
     EXPECT_EQ(files, 24);

@@ -1,35 +1,13 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "core/error.h"
 #include "io/pending_output.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
-
-/// As on a full disk: a file of this process that grows beyond `bytes` fails to.
-class FullDisk {
-  public:
-    explicit FullDisk(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &old_);
-        const rlimit limit{bytes, old_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FullDisk() {
-        setrlimit(RLIMIT_FSIZE, &old_);
-        std::signal(SIGXFSZ, old_handler_);
-    }
-    FullDisk(const FullDisk&) = delete;
-    FullDisk& operator=(const FullDisk&) = delete;
-
-  private:
-    rlimit old_{};
-    void (*old_handler_)(int);
-};
 
 void record(const std::filesystem::path& file, const StreamHeader& header) {
     PendingOutput output(file, false);
@@ -51,7 +29,7 @@ TEST(OutputTest, AFullDiskIsReportedUnderTheFinalNameAndLeavesNothing) {
     record(folder / "whole.stipple", varied_header());
     const auto bytes = std::filesystem::file_size(folder / "whole.stipple");
     for (rlim_t limit = 0; limit < bytes; limit += 50) {
-        const FullDisk full_disk(limit);
+        const FileSizeLimit full_disk(limit);
         const auto message =
             message_of<DeviceError>([&] { record(folder / "clip.stipple", varied_header()); });
         expect_parts(message, {(folder / "clip.stipple").string() + ": cannot be written: "});

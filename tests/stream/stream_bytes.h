@@ -10,8 +10,8 @@
 #include "stream/header_codec.h"
 #include "stream/little_endian.h"
 #include "stream/packet_codec.h"
-#include "tests/stream/memory_file.h"
 #include "tests/stream/stream_files.h"
+#include "tests/support/memory_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {

@@ -5,7 +5,7 @@
 const kCameraFigures = [
   ['gain_dn_per_e', 'system gain K', 1, 'DN/e'], ['quantum_efficiency', 'quantum efficiency', 100, '%'],
   ['dark_noise_e', 'dark noise', 1, 'e'], ['saturation_e', 'saturation capacity', 1, 'e'],
-  ['dsnu_e', 'DSNU', 1, 'e'], ['prnu', 'PRNU', 100, '%'], ['snr_max', 'largest SNR', 1, ''],
+  ['dsnu_e', 'DSNU', 1, 'e'], ['prnu', 'PRNU', 100, '%'], ['snr_max', 'largest SNR', 1, ': 1'],
   ['sensitivity_threshold_p', 'sensitivity threshold', 1, 'photons'], ['dynamic_range', 'dynamic range', 1, ': 1'],
   ['linearity_error', 'linearity error', 100, '%']];
 
@@ -26,8 +26,8 @@ function cameraChart() {
       line('saturation', {x: full, y: 0}, {x: full, y: points[saturation][2]}, styleColour('quiet'),
            {borderDash: [5, 4], borderWidth: 1.5})]},
     options: chartOptions(
-      {x: axis('mean less dark, DN', {type: 'linear', beginAtZero: true}),
-       y: axis('variance less dark, DN²', {min: 0})},
+      {x: axis('mean − dark mean, DN', {type: 'linear', beginAtZero: true}),
+       y: axis('variance − dark variance, DN²', {min: 0})},
       {interaction: {mode: 'nearest', intersect: true}}),
   };
 }

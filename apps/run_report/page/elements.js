@@ -2,6 +2,8 @@
 
 // Elements of the page. Texts of files become text nodes, never markup.
 
+const kOtherColours = 5; // series-2 to series-6 of the style
+
 function element(id) {
   return document.getElementById(id);
 }
@@ -61,10 +63,21 @@ function styleColour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
+/** The place of a video among those that are neither the truth nor featured; -1 of these. */
+function placeOfVideo(video) {
+  const others = data.videos.map((_, i) => i).filter((i) => i !== data.truth && i !== data.featured);
+  return others.indexOf(video);
+}
+
 /** The colour of a video in all charts. */
 function videoColour(video) {
   if (video === data.truth) return styleColour('truth');
   if (video === data.featured) return styleColour('series-1');
-  const others = data.videos.map((_, i) => i).filter((i) => i !== data.truth && i !== data.featured);
-  return styleColour(`series-${2 + (others.indexOf(video) % 5)}`);
+  return styleColour(`series-${2 + (placeOfVideo(video) % kOtherColours)}`);
+}
+
+/** The dashes of its line: where colours repeat, lines differ. */
+function videoDash(video) {
+  const turn = Math.floor(Math.max(placeOfVideo(video), 0) / kOtherColours);
+  return [[], [6, 3], [2, 3]][turn % 3];
 }

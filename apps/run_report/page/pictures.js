@@ -47,7 +47,7 @@ async function sampleImage(runIndex, slot, stops) {
   const run = data.runs[runIndex];
   const image = new ImageData(area.cols, area.rows);
   const kinds = await plane(`r${runIndex}k-${slot}`);
-  const dn = await plane(`r${runIndex}d-${slot}`);
+  const dn = await dnPlane(runIndex, slot);
   const planes = dnPlanes(run);
   const gain = 2 ** stops;
   for (let i = 0, next = 0; i < pixelCount; ++i) {

@@ -62,16 +62,23 @@ const sampleBars = {
   },
 };
 
+/** Light has the unit of the footage; the sensor says how many electrons that is. */
+function lightTitle() {
+  const calibration = data.runs[state.run]?.stream.calibration;
+  return calibration ? `light (1.0: ${shown(calibration.electrons_per_unit)} e per slot)` : 'light';
+}
+
 function pixelChart(lines) {
   const highest = Math.max(1e-3, ...shownSamples.map((s) => s.light + s.deviation),
                            ...lines.flatMap((line) => line.points.map(([, y]) => y)));
-  const lightAxis = () => (state.log ? axis('light', {type: 'logarithmic', min: highest / 3000})
-                                     : axis('light', {type: 'linear', beginAtZero: true, suggestedMax: highest * 1.05}));
+  const lightAxis = () => axis(lightTitle(), state.log ? {type: 'logarithmic', min: highest / 3000}
+                                                       : {type: 'linear', beginAtZero: true, suggestedMax: highest * 1.05});
   return () => ({
     type: 'line',
     data: {datasets: [
       ...lines.map(({video, points}) => slotLine(
-        data.videos[video].name, points, videoColour(video), {borderWidth: video === data.truth ? 2.5 : 1.75})),
+        data.videos[video].name, points, videoColour(video),
+        {borderDash: videoDash(video), borderWidth: video === data.truth ? 2.5 : 1.75})),
       ...(shownSamples.length ? [slotLine('samples ± 1 σ', [], styleColour('sample'))] : [])]},
     options: chartOptions({x: slotAxis(), y: lightAxis()}, {showSlot: true}),
     plugins: [sampleBars],
@@ -84,7 +91,7 @@ function fillPixelTable(samples, lines) {
     const open = truth.points.filter(([slot]) => openRuns(sample).some(([first, end]) => slot >= first && slot < end));
     return shown(open.reduce((sum, [, light]) => sum + light, 0) / open.length);
   };
-  const head = ['slots', 'open', 'DN', 'light', '± 1 σ', ...(truth ? ['truth'] : [])];
+  const head = ['slots', 'open slots', 'DN', 'light', '± 1 σ', ...(truth ? ['truth'] : [])];
   fillTable(element('pixel-table'), [head, ...samples.map((sample) => [
     sample.first === sample.slot ? `${sample.slot}` : `${sample.first} to ${sample.slot}`,
     `${sample.exposure.light_slots}`, `${sample.dn}${sample.saturated ? ', saturated' : ''}`,
@@ -97,6 +104,19 @@ function videosOfRun() {
   return data.videos.map((_, i) => i).filter((i) => [null, state.run].includes(data.videos[i].run));
 }
 
+/** The colour that the chosen pixel of a mosaic measures; -1 without a mosaic. */
+function ownColour() {
+  const run = data.runs[state.run];
+  return run?.filter ? kColours.findIndex((_, colour) => dnIndex(run, state.pixel, colour) === 0) : -1;
+}
+
+/** Another pixel of a mosaic is shown in its own colour, of which it has samples. */
+function followFilter() {
+  if (!state.pixel || ownColour() < 0) return;
+  choose({colour: ownColour()});
+  element('plane').value = state.colour;
+}
+
 async function showPixel() {
   if (!state.pixel) return;
   const request = ++pixelRequest;
@@ -107,8 +127,8 @@ async function showPixel() {
   const samples = data.runs.length ? await samplesOverTime(state.run, state.pixel, state.colour) : [];
   if (request !== pixelRequest) return; // another pixel was chosen meanwhile
   shownSamples = samples;
-  element('pixel-name').textContent =
-    `row ${row + area.first_row}, column ${col + area.first_col}: ${counted(samples.length, 'sample')}`;
+  element('pixel-name').textContent = `row ${row + area.first_row}, column ${col + area.first_col}` +
+    `${ownColour() < 0 ? '' : `, ${kColours[ownColour()]} filter`}: ${counted(samples.length, 'sample')}`;
   fillPixelTable(samples, lines);
   showChart('pixel-chart', pixelChart(lines));
 }
@@ -126,5 +146,6 @@ function setUpPixel() {
   element('log-light').addEventListener('change', (event) => choose({log: event.target.checked}));
   choose({colour: area.planes === 3 ? 1 : 0});
   choosePixel(Math.floor(area.rows / 2), Math.floor(area.cols / 3)); // beside the divider
+  whenever(['pixel', 'run'], followFilter);
   whenever(['pixel', 'colour', 'run', 'log'], showPixel);
 }

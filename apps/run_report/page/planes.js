@@ -18,23 +18,22 @@ async function inflated(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Adds up the differences; the lowest bit of each is its sign. */
-function valuesOf(bytes) {
+/** Adds up the differences from the value `step` before; the lowest bit of each is its sign. */
+function valuesOf(bytes, step) {
   const count = bytes.length / 2;
   const values = new Uint16Array(count);
-  let value = 0;
   for (let i = 0; i < count; ++i) {
     const folded = bytes[i] | (bytes[count + i] << 8);
-    value += folded & 1 ? -((folded + 1) >> 1) : folded >> 1;
-    values[i] = value;
+    const difference = folded & 1 ? -((folded + 1) >> 1) : folded >> 1;
+    values[i] = (i < step ? 0 : values[i - step]) + difference;
   }
   return values;
 }
 
-async function unpacked(id) {
+async function unpacked(id, step) {
   const text = document.getElementById(id)?.textContent;
-  if (text?.startsWith('=')) return plane(text.slice(1)); // equals that one
-  return text ? valuesOf(await inflated(bytesOfBase64(text))) : null;
+  if (text?.startsWith('=')) return plane(text.slice(1), step); // equals that one
+  return text ? valuesOf(await inflated(bytesOfBase64(text)), step) : null;
 }
 
 /** Each new plane may push out the one that was not used for longest. */
@@ -45,9 +44,9 @@ function forgetOldest() {
   oldest.then((values) => { cachedBytes -= values ? values.byteLength : 0; });
 }
 
-/** The plane with this id, or null if the page has none. */
-function plane(id) {
-  const known = planeCache.get(id) ?? unpacked(id).then((values) => {
+/** The plane with this id, or null if the page has none. The values of `step` colours take turns in it. */
+function plane(id, step = 1) {
+  const known = planeCache.get(id) ?? unpacked(id, step).then((values) => {
     cachedBytes += values ? values.byteLength : 0;
     forgetOldest();
     return values;

@@ -15,7 +15,8 @@ function qualityChart() {
   return {
     type: 'line',
     data: {datasets: comparedVideos().map((video) => slotLine(
-      video.name, video.quality.frames[metric].map((y, slot) => [slot, y]), videoColour(video.index)))},
+      video.name, video.quality.frames[metric].map((y, slot) => [slot, y]), videoColour(video.index),
+      {borderDash: videoDash(video.index)}))},
     options: chartOptions({x: slotAxis(), y: axis(title)}, {showSlot: true}),
   };
 }
@@ -38,8 +39,8 @@ function setUpQuality() {
   element('quality').hidden = false;
   const {margin, max_value: most, peak, cd_per_unit: unit} = data.quality_options;
   element('quality-hint').textContent =
-    `Against the truth, whole frames${most === null ? '' : `, light clipped to ${shown(most)}`}; the table without ` +
-    `the first and last ${counted(margin, 'frame')}. Peak ${shown(peak)}, light 1.0 is ${shown(unit)} cd/m².`;
+    `Against the truth, whole frames${most === null ? '' : `, light clipped to ${shown(most)}`}` +
+    `${margin ? `; the table without the first and last ${counted(margin, 'frame')}` : ''}. Peak ${shown(peak)}, light 1.0 is ${shown(unit)} cd/m².`;
   element('metric').addEventListener('change', () => showChart('quality-chart', qualityChart));
   showChart('quality-chart', qualityChart);
   fillQualityTable();

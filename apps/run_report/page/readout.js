@@ -25,7 +25,7 @@ function loadChart() {
                {type: 'line', borderDash: [6, 4], stepped: false}),
       {label: 'samples', data: points, backgroundColor: styleColour('series-1'), barPercentage: 1,
        categoryPercentage: 0.9}]},
-    options: chartOptions({x: slotAxis(), y: axis('Mbit/s of a slot', {beginAtZero: true, suggestedMax: 1.05 * highest})}, {showSlot: true}),
+    options: chartOptions({x: slotAxis(), y: axis('data rate of a slot, Mbit/s', {beginAtZero: true, suggestedMax: 1.05 * highest})}, {showSlot: true}),
   };
 }
 
@@ -55,6 +55,8 @@ function loadText(run) {
   if (missing) text.push(`${counted(missing, 'slot')} with fewer samples than the schedule makes.`);
   const overruns = loads.overrun.filter(Boolean).length;
   if (overruns) text.push(`The readout of ${counted(overruns, 'slot')} took longer than the slot.`);
+  const dropped = loads.dropped.filter(Boolean).length;
+  if (dropped) text.push(`Rows that did not fit into their slot were dropped in ${counted(dropped, 'slot')}.`);
   text.push(loads.clocks ? `Slowest step of the slots: ${[...new Set(loads.clocks.limit)].join(', ').replace('_', ' ')}.`
                          : 'The sensor has no clocks ([timing]), so the time of the readout is not known.');
   return text.join(' ');

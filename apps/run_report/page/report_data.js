@@ -56,6 +56,11 @@ function dnPlanes(run) {
   return run.filter ? 1 : area.planes;
 }
 
+/** The DN that are read at the end of a slot, pixel by pixel; null if there are none. */
+function dnPlane(runIndex, slot) {
+  return plane(`r${runIndex}d-${slot}`, dnPlanes(data.runs[runIndex]));
+}
+
 /** Which of the DN of a pixel measures this colour; -1 if none does. */
 function dnIndex(run, pixel, colour) {
   if (!run.filter) return colour;
@@ -71,7 +76,7 @@ async function sampleAt(runIndex, slot, pixel, colour) {
   const kinds = index < 0 ? null : await plane(`r${runIndex}k-${slot}`);
   const at = pixel.row * area.cols + pixel.col;
   if (!kinds || kinds[at] === 0) return null;
-  const dn = await plane(`r${runIndex}d-${slot}`);
+  const dn = await dnPlane(runIndex, slot);
   let before = 0;
   for (let i = 0; i < at; ++i) before += kinds[i] > 0;
   const exposure = run.samples.exposures[kinds[at] - 1];

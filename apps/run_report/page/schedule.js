@@ -14,6 +14,11 @@ function lightSlots(runs) {
   return runs.reduce((sum, [, slots]) => sum + slots, 0);
 }
 
+/** Charge stores of a pixel that the schedule takes. */
+function storeCount(run) {
+  return run.stream.schedule.interleaved ? 2 : 1;
+}
+
 /** Lengths of the exposures of a run, each with a colour. */
 function lengthColours(run) {
   const lengths = [...new Set(run.lanes.flatMap((lane) => lane.exposures.map((e) => lightSlots(e[3]))))];
@@ -34,7 +39,7 @@ function drawExposure(group, [first, store, span, runs], lane) {
     if (first + open >= slots) continue;
     const x = xOf(first + open);
     group.append(drawn('rect', {x: x + 0.5, y, width: Math.max(right(first + open + length) - x - 1, 1), height, rx: 2,
-                                fill: colours.get(lightSlots(runs)) ?? kLengthColours[4]}));
+                                class: 'box', fill: colours.get(lightSlots(runs)) ?? kLengthColours[4]}));
   }
   if (first + span <= slots)
     group.append(drawn('circle', {class: 'read', cx: xOf(first + span), cy: y + height / 2, r: 3}));
@@ -50,13 +55,24 @@ function drawLane(name, exposures, lane, className) {
   return group;
 }
 
+/** The charge store of each exposure: in their order, each takes the first that is free. */
+function storesOf(samples, stores) {
+  const ends = new Array(stores).fill(0);
+  return samples.map(({first, exposure}) => {
+    const store = Math.max(ends.findIndex((end) => end <= first), 0);
+    ends[store] = first + exposure.span_slots;
+    return store;
+  });
+}
+
 /** The exposures of the chosen pixel that were read, in the form of the other lanes. */
 async function chosenLane() {
   if (!state.pixel || data.videos.length === 0) return [];
   const run = data.runs[scheduleRun];
   const colour = [0, 1, 2].find((c) => dnIndex(run, state.pixel, c) >= 0);
-  const samples = await samplesOverTime(scheduleRun, state.pixel, colour);
-  return samples.map((s) => [s.first, 0, s.exposure.span_slots, s.exposure.open]);
+  const samples = (await samplesOverTime(scheduleRun, state.pixel, colour)).sort((a, b) => a.first - b.first);
+  const stores = storesOf(samples, storeCount(run));
+  return samples.map((s, i) => [s.first, stores[i], s.exposure.span_slots, s.exposure.open]);
 }
 
 function ruler(slots, xOf, y) {
@@ -79,7 +95,7 @@ async function showSchedule() {
   const lanes = run.lanes.map((lane) => [`${lane.row}, ${lane.col}`, lane.exposures, '']);
   if (chosen.length)
     lanes.push([`${state.pixel.row + area.first_row}, ${state.pixel.col + area.first_col}`, chosen, 'chosen']);
-  const stores = run.stream.schedule.interleaved ? 2 : 1;
+  const stores = storeCount(run);
   const colours = lengthColours(run);
   const height = lanes.length * kLaneHeight + 22;
   const svg = drawn('svg', {viewBox: `0 0 ${width} ${height}`, height, role: 'img',
@@ -117,7 +133,8 @@ function showScheduleText() {
     `Schedule ${schedule.name}: tile of ${schedule.tile_cols} × ${schedule.tile_rows} pixels, period ` +
     `${counted(schedule.period_slots, 'slot')}, ${shown(schedule.samples_per_pixel_slot)} samples per pixel and slot, ` +
     `${shown(100 * schedule.light_throughput)} % of the light. A lane is a pixel (row, column), a box an exposure, a ` +
-    'dot its readout. The last lane is the chosen pixel.';
+    `dot its readout${storeCount(data.runs[scheduleRun]) > 1 ? ', its upper and lower half a charge store' : ''}. ` +
+    'The last lane is the chosen pixel.';
 }
 
 function setUpSchedule() {

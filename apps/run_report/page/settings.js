@@ -10,7 +10,7 @@ function factsOf() {
   if (run) {
     const {schedule, slot_us: slot} = run.stream;
     facts.push(['Slot', `${shown(slot / 1000)} ms`], ['Schedule', schedule.name],
-               ['Light values per sample', shown(1 / schedule.samples_per_pixel_slot, 3)]);
+               ['Compression ratio', `${shown(1 / schedule.samples_per_pixel_slot, 3)} : 1`]);
   }
   const featured = data.videos[data.featured];
   if (featured?.quality?.psnr_db) facts.push([`PSNR, ${featured.name}`, `${featured.quality.psnr_db.toFixed(1)} dB`]);

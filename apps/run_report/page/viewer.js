@@ -2,6 +2,9 @@
 
 // Two pictures with a divider between them, and the choice of slot, exposure and pixel.
 
+const kDarkMean = 0.06; // light
+const kBrightMean = 1;
+const kShownMean = 0.25;
 const views = allViews();
 const drawing = {a: 0, b: 0}; // numbers of the latest drawings: a slower, older one is dropped
 
@@ -27,8 +30,8 @@ function showNames() {
 function showScale() {
   const range = shown(kErrorRange / 2 ** state.stops, 2);
   element('scale').hidden = viewOf('a').kind !== 'error' && viewOf('b').kind !== 'error';
-  element('scale-low').textContent = `−${range} too dark`;
-  element('scale-high').textContent = `too bright +${range}`;
+  element('scale-low').textContent = `−${range} light, too dark`;
+  element('scale-high').textContent = `too bright, +${range} light`;
 }
 
 function showDivider() {
@@ -99,6 +102,14 @@ function togglePlay() {
   button.textContent = playing ? '❚❚' : '▶';
 }
 
+/** Exposure at which the mean light of a picture is shown as a grey: 0, unless it is very dark or bright. */
+async function firstStops() {
+  const codes = await picture(data.featured, pictureSlot(state.slot));
+  if (!codes) return;
+  const mean = codes.reduce((sum, code) => sum + lightOfCode[code], 0) / codes.length;
+  if (state.stops === 0 && mean > 0 && (mean < kDarkMean || mean > kBrightMean)) chooseStops(Math.round(Math.log2(kShownMean / mean)));
+}
+
 /** The featured video beside the truth or, without one, beside another video. */
 function firstChoice() {
   const {featured, truth} = data;
@@ -125,4 +136,5 @@ function setUpViewer() {
   whenever(['slot'], showSlot);
   whenever(['stops'], showStops);
   whenever(['pixel'], showCrosshair);
+  firstStops();
 }

@@ -40,10 +40,19 @@ TEST(PlaneCodeTest, AnotherReaderUnpacksThePlane) {
     for (const std::size_t count : {1U, 2U, 3U, 1000U}) {
         std::vector<std::uint16_t> values(count);
         for (std::uint16_t& value : values) value = static_cast<std::uint16_t>(random());
-        EXPECT_EQ(unpacked_plane(packed_plane(values)), values);
+        for (const std::size_t step : {1U, 3U})
+            EXPECT_EQ(unpacked_plane(packed_plane(values, step), step), values);
     }
     const std::vector<std::uint16_t> extremes{65535, 0, 65535, 32768, 0, 32767, 1};
     EXPECT_EQ(unpacked_plane(packed_plane(extremes)), extremes);
+}
+
+TEST(PlaneCodeTest, ColoursThatTakeTurnsAreSmallIfEachIsSmooth) {
+    std::mt19937 random(1);
+    std::vector<std::uint16_t> values{0, 20000, 40000};
+    while (values.size() < 9999)  // each colour rises by 0 or 1
+        values.push_back(static_cast<std::uint16_t>(values[values.size() - 3] + random() % 2));
+    EXPECT_LT(packed_plane(values, 3).size(), packed_plane(values).size() / 2);
 }
 
 TEST(PlaneCodeTest, ASmoothPlaneIsSmall) {

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-std::vector<std::uint16_t> unpacked_plane(const std::string& text) {
+std::vector<std::uint16_t> unpacked_plane(const std::string& text, std::size_t step) {
     std::vector<unsigned char> packed(text.size());
     const int length =
         EVP_DecodeBlock(packed.data(), reinterpret_cast<const unsigned char*>(text.data()),
@@ -20,11 +20,11 @@ std::vector<std::uint16_t> unpacked_plane(const std::string& text) {
     if (uncompress(bytes.data(), &count, packed.data(), static_cast<uLong>(length)) != Z_OK)
         throw std::runtime_error("no zlib data");
     std::vector<std::uint16_t> values(count / 2);
-    int value = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const int folded = bytes[i] + 256 * bytes[values.size() + i];
-        value += folded % 2 == 0 ? folded / 2 : -(folded + 1) / 2;
-        values[i] = static_cast<std::uint16_t>(value);
+        const int difference = folded % 2 == 0 ? folded / 2 : -(folded + 1) / 2;
+        const int before = i < step ? 0 : values[i - step];
+        values[i] = static_cast<std::uint16_t>(before + difference);
     }
     return values;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -30,7 +31,8 @@ inline void record_clip(const std::filesystem::path& file, const SensorChoice& c
     recorder.finish();
 }
 
-/// The values that packed_plane has packed: of zlib's and OpenSSL's readers, and a sum.
-[[nodiscard]] std::vector<std::uint16_t> unpacked_plane(const std::string& text);
+/// The values that packed_plane has packed: of zlib's and OpenSSL's readers, and sums.
+[[nodiscard]] std::vector<std::uint16_t> unpacked_plane(const std::string& text,
+                                                        std::size_t step = 1);
 
 }  // namespace stipple

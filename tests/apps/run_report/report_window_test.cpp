@@ -29,6 +29,12 @@ TEST(ReportWindowTest, WithoutAWishTheMiddleIsShown) {
               (PixelArea{.first_row = 260, .first_col = 680, .rows = 480, .cols = 640}));
 }
 
+TEST(ReportWindowTest, TheMiddleIsNoLargerThanTheFrame) {
+    EXPECT_EQ(middle_area(kFrame, 2, 3),
+              (PixelArea{.first_row = 1, .first_col = 1, .rows = 2, .cols = 3}));
+    EXPECT_EQ(middle_area(kFrame, 9, 2), (PixelArea{.first_col = 2, .rows = 4, .cols = 2}));
+}
+
 TEST(ReportWindowTest, AnAreaOutsideTheFrameIsRefused) {
     for (const char* text : {"7x4", "6x5", "6x4+1+0", "6x4+0+1", "1x1+2147483647+0"})
         EXPECT_THROW((void)report_area(kFrame, parse_area(text)), InputError) << text;

@@ -31,9 +31,10 @@ struct Samples {
         for (SamplePacket packet; reader.next(packet); packets.push_back(packet))
             samples.add(packet);
         samples.finish();
+        const auto colours = static_cast<std::size_t>(reader.header().shape.planes);
         json = samples.json();
         for (const PackedPlane& plane : samples.planes())
-            planes[plane.id] = unpacked_plane(plane.text);
+            planes[plane.id] = unpacked_plane(plane.text, plane.id.starts_with('d') ? colours : 1);
         const FrameShape decoded = decoded_shape(reader.header());
         measured = collect_measurements(
             reader.header(), packets,

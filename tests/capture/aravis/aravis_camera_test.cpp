@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <map>
 #include <thread>
 
 #include "capture/aravis/aravis_device.h"
@@ -12,6 +11,7 @@
 #include "capture/open_camera.h"
 #include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"
+#include "tests/capture/aravis/genicam_file.h"
 #include "tests/capture/fake_frame.h"
 #include "tests/capture/pooled_frames.h"
 #include "tests/support/private_network.h"
@@ -329,23 +329,15 @@ TEST_F(AravisCameraTest, FeaturesAreListedOnceHoweverTheirCategoriesNameEachOthe
         const std::string link = "<pFeature>" + feature + "</pFeature>";
         return "<Category Name=\"" + name + "\">" + link + link + "</Category>\n";
     };
-    const auto file = std::filesystem::path(testing::TempDir()) /
-                      ("genicam_" + std::to_string(getpid()) + ".xml");
-    std::ofstream xml(file);
-    xml << "<?xml version=\"1.0\"?>\n<RegisterDescription ModelName=\"Loop\" VendorName=\"Test\" "
-           "StandardNameSpace=\"None\" SchemaMajorVersion=\"1\" SchemaMinorVersion=\"0\" "
-           "SchemaSubMinorVersion=\"0\" MajorVersion=\"1\" MinorVersion=\"0\" "
-           "SubMinorVersion=\"0\" xmlns=\"http://www.genicam.org/GenApi/Version_1_0\">\n"
-        << "<Category Name=\"Root\"><pFeature>Root</pFeature><pFeature>C0</pFeature></Category>\n";
+    std::string nodes =
+        "<Category Name=\"Root\"><pFeature>Root</pFeature><pFeature>C0</pFeature></Category>\n";
     for (int i = 0; i < 40; ++i)  // 2^40 ways from the first to the last
-        xml << category("C" + std::to_string(i), "C" + std::to_string(i + 1));
-    xml << category("C40", "Width") << "<Integer Name=\"Width\"><Value>64</Value></Integer>\n"
-        << "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
-    xml.close();
-    const FakeCameraProcess camera({"genicam=" + file.string()});
+        nodes += category("C" + std::to_string(i), "C" + std::to_string(i + 1));
+    nodes += category("C40", "Width") + "<Integer Name=\"Width\"><Value>64</Value></Integer>\n";
+    const GenicamFile file(nodes);
+    const FakeCameraProcess camera({"genicam=" + file.path().string()});
     const AravisDevice device("gige:127.0.0.1");
     EXPECT_EQ(device.features(), (std::map<std::string, std::string>{{"Width", "64"}}));
-    std::filesystem::remove(file);
 }
 
 TEST_F(AravisCameraTest, WhereNoCameraAnswersTheMessageSaysWhatToCheck) {

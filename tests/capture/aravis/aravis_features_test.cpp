@@ -1,30 +1,21 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
+#include <string>
+#include <vector>
 
 #include "capture/aravis/aravis_camera.h"
 #include "tests/capture/aravis/fake_camera_process.h"
+#include "tests/capture/aravis/genicam_file.h"
 #include "tests/support/private_network.h"
 
 namespace stipple {
 namespace {
 
-/// A file with features below Root as the description of a camera.
-std::filesystem::path description_of(const std::vector<std::string>& names,
-                                     const std::string& features) {
-    auto file = std::filesystem::path(testing::TempDir()) /
-                ("genicam_" + std::to_string(getpid()) + ".xml");
-    std::ofstream xml(file);
-    xml << "<?xml version=\"1.0\"?>\n<RegisterDescription ModelName=\"Ranges\" VendorName=\"Test\" "
-           "StandardNameSpace=\"None\" SchemaMajorVersion=\"1\" SchemaMinorVersion=\"0\" "
-           "SchemaSubMinorVersion=\"0\" MajorVersion=\"1\" MinorVersion=\"0\" "
-           "SubMinorVersion=\"0\" xmlns=\"http://www.genicam.org/GenApi/Version_1_0\">\n"
-           "<Category Name=\"Root\">";
-    for (const std::string& name : names) xml << "<pFeature>" << name << "</pFeature>";
-    xml << "</Category>\n" << features << "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
-    return file;
+/// Features below Root.
+std::string described(const std::vector<std::string>& names, const std::string& features) {
+    std::string root = "<Category Name=\"Root\">";
+    for (const std::string& name : names) root += "<pFeature>" + name + "</pFeature>";
+    return root + "</Category>\n" + features;
 }
 
 /// Against Aravis' own fake camera, over UDP.
@@ -36,7 +27,7 @@ class AravisFeaturesTest : public testing::Test {
 };
 
 TEST_F(AravisFeaturesTest, FeaturesAreDescribedWithUnitRangeChoicesAndAccess) {
-    const auto file = description_of(
+    const GenicamFile file(described(
         {"Gain", "Time", "Mode", "On", "Fixed", "Hidden"},
         "<Integer Name=\"Gain\"><ToolTip>of the amplifier</ToolTip><Value>4</Value><Min>2</Min>"
         "<Max>10</Max><Inc>2</Inc><Unit>dB</Unit></Integer>\n"
@@ -48,10 +39,9 @@ TEST_F(AravisFeaturesTest, FeaturesAreDescribedWithUnitRangeChoicesAndAccess) {
         "<Integer Name=\"Fixed\"><pIsLocked>One</pIsLocked><Value>7</Value></Integer>\n"
         "<Integer Name=\"Hidden\"><pIsAvailable>Zero</pIsAvailable><Value>7</Value></Integer>\n"
         "<Integer Name=\"One\"><Value>1</Value></Integer>\n"
-        "<Integer Name=\"Zero\"><Value>0</Value></Integer>\n");
-    const FakeCameraProcess camera({"genicam=" + file.string()});
+        "<Integer Name=\"Zero\"><Value>0</Value></Integer>\n"));
+    const FakeCameraProcess camera({"genicam=" + file.path().string()});
     const auto features = aravis_features("gige:127.0.0.1");
-    std::filesystem::remove(file);
     ASSERT_EQ(features.size(), 6U);
     EXPECT_EQ(features[0].name, "Gain");
     EXPECT_EQ(features[0].category, "Root");
@@ -84,15 +74,14 @@ TEST_F(AravisFeaturesTest, LimitsThatNameEachOtherAreTold) {
         return "<IntSwissKnife Name=\"" + name + "\"><pVariable Name=\"X\">" + variable +
                "</pVariable><Formula>64-X</Formula></IntSwissKnife>\n";
     };
-    const auto file = description_of(
+    const GenicamFile file(described(
         {"A", "B", "Own"},
         "<Integer Name=\"A\"><Value>3</Value><pMax>AMax</pMax></Integer>\n" + knife("AMax", "B") +
             "<Integer Name=\"B\"><Value>5</Value><pMax>BMax</pMax></Integer>\n" +
             knife("BMax", "A") +
-            "<Integer Name=\"Own\"><Value>9</Value><pMin>Own</pMin><pMax>Own</pMax></Integer>\n");
-    const FakeCameraProcess camera({"genicam=" + file.string()});
+            "<Integer Name=\"Own\"><Value>9</Value><pMin>Own</pMin><pMax>Own</pMax></Integer>\n"));
+    const FakeCameraProcess camera({"genicam=" + file.path().string()});
     const auto features = aravis_features("gige:127.0.0.1");
-    std::filesystem::remove(file);
     ASSERT_EQ(features.size(), 3U);
     EXPECT_EQ(features[0].maximum, "59");
     EXPECT_EQ(features[1].maximum, "61");

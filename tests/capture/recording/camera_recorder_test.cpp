@@ -1,14 +1,13 @@
 #include "capture/recording/camera_recorder.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <numeric>
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
 #include "tests/capture/scripted_session.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -24,13 +23,13 @@ std::deque<ScriptedStep> scripted(const std::vector<CapturedFrame>& frames) {
 class CameraRecorderTest : public ::testing::Test {
   protected:
     CameraRecording record(std::deque<ScriptedStep> steps, CameraRecorderOptions options,
-                           const CameraRecorder::GoesOn& goes_on) {
+                           const CameraRecorder::ProgressCallback& progress) {
         options.session.reconnect = false;
         CameraRecorder recorder(plays({std::move(steps)}, test_session().camera), {{"Gain", "2"}},
                                 file_, std::move(options));
         EXPECT_EQ(recorder.description().model, test_session().camera.model);
         EXPECT_EQ(recorder.file(), file_);
-        return recorder.record(goes_on);
+        return recorder.record(progress);
     }
 
     TemporaryFolder folder_;
@@ -48,8 +47,8 @@ TEST_F(CameraRecorderTest, TheFileHoldsAsManyFramesAsTheLimit) {
     EXPECT_FALSE(recording.failure);
     EXPECT_FALSE(recording.lost);
     EXPECT_EQ(recording.end.frames, 5U);
-    ASSERT_TRUE(recording.frames_per_s);
-    EXPECT_NEAR(*recording.frames_per_s, 200, 1e-9);  // test_frame: 5 ms apart
+    ASSERT_TRUE(recording.frames_hz);
+    EXPECT_NEAR(*recording.frames_hz, 200, 1e-9);  // test_frame: 5 ms apart
     RecordingReader reader(file_);
     EXPECT_EQ(reader.session().settings, (CameraSettings{{"Gain", "2"}}));
     const auto read = read_frames(reader);
@@ -97,16 +96,12 @@ TEST_F(CameraRecorderTest, WithoutAFrameThereIsNoFile) {
 }
 
 TEST_F(CameraRecorderTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old{};
-    getrlimit(RLIMIT_FSIZE, &old);
     std::vector<CapturedFrame> sent;
     for (std::uint64_t i = 0; i < 20; ++i) sent.push_back(test_frame(i, "Mono8", 200, 100));
-    const rlimit limit{100'000, old.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    const CameraRecording recording = record(scripted(sent), {}, always);
-    setrlimit(RLIMIT_FSIZE, &old);
-    std::signal(SIGXFSZ, old_handler);
+    const CameraRecording recording = [&] {
+        const FileSizeLimit full_disk(100'000);
+        return record(scripted(sent), {}, always);
+    }();
     EXPECT_THROW(std::rethrow_exception(recording.failure), DeviceError);
     EXPECT_TRUE(recording.kept);
     EXPECT_EQ(recording.end.frames, 4U);  // of 20 192 bytes

@@ -2,13 +2,13 @@
 // intended change: STIPPLE_UPDATE_GOLDEN=1 build/release/capture_test --gtest_filter='GoldenRec*'
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "capture/frame_unpack.h"
 #include "core/error.h"
 #include "tests/capture/recording/golden_recordings.h"
 #include "tests/capture/recording/recordings.h"
+#include "tests/support/golden_file.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,10 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::filesystem::path kFolder = project_path("tests/golden/recording");
-
-bool updating() {
-    return std::getenv("STIPPLE_UPDATE_GOLDEN") != nullptr;
-}
 
 Json or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
@@ -96,37 +92,15 @@ Json description(const std::filesystem::path& file) {
     return text;
 }
 
-/// A line per field, and per element of a list.
-std::string pretty(const Json& text) {
-    std::string lines = "{";
-    for (const auto& [key, value] : text.items()) {
-        lines += (lines.size() > 1 ? ",\n" : "\n") + Json(key).dump() + ": ";
-        if (!value.is_array() || value.empty()) {
-            lines += value.dump();
-            continue;
-        }
-        for (std::size_t i = 0; i < value.size(); ++i)
-            lines += (i == 0 ? "[\n  " : ",\n  ") + value[i].dump();
-        lines += "]";
-    }
-    return lines + "\n}\n";
-}
-
 TEST(GoldenRecordingTest, EachFileIsWrittenAsEver) {
-    for (const auto& [name, bytes] : golden_recordings()) {
-        const auto file = kFolder / (name + ".strec");
-        if (updating()) write_text(file, bytes);
-        EXPECT_TRUE(read_text(file) == bytes) << file;
-    }
+    for (const auto& [name, bytes] : golden_recordings())
+        expect_golden_bytes(kFolder / (name + ".strec"), bytes);
 }
 
 TEST(GoldenRecordingTest, EachFileReadsAsItsDescriptionSays) {
-    for (const auto& recording : golden_recordings()) {
-        const std::string text = pretty(description(kFolder / (recording.name + ".strec")));
-        const auto file = kFolder / (recording.name + ".json");
-        if (updating()) write_text(file, text);
-        EXPECT_EQ(read_text(file), text) << file;
-    }
+    for (const auto& [name, bytes] : golden_recordings())
+        expect_golden_text(kFolder / (name + ".json"),
+                           golden_text(description(kFolder / (name + ".strec"))));
 }
 
 TEST(GoldenRecordingTest, NoFileIsLeftOver) {

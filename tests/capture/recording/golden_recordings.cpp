@@ -5,6 +5,7 @@
 
 #include "stream/crc32c.h"
 #include "tests/capture/recording/recordings.h"
+#include "tests/support/byte_edits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -36,7 +37,7 @@ RecordingBytes bytes_of(const std::vector<CapturedFrame>& frames) {
 }
 
 /// Two frames of a format. The width leaves the last group or byte of a row incomplete.
-GoldenRecording of_format(const char* name, const char* format, int width = 7) {
+GoldenCase of_format(const char* name, const char* format, int width = 7) {
     return {name,
             bytes_of({test_frame(0, format, width, 3), test_frame(1, format, width, 3)}).bytes};
 }
@@ -69,7 +70,7 @@ std::string losses() {
     return bytes_of(frames).bytes;
 }
 
-std::vector<GoldenRecording> features() {
+std::vector<GoldenCase> features() {
     return {of_format("mono8", "Mono8"),
             of_format("mono12", "Mono12"),
             of_format("mono16_big_endian", "Mono16BE"),
@@ -97,19 +98,10 @@ std::string block_of(std::uint32_t kind, std::uint32_t number, const std::string
 }
 
 /// Three small frames with something done to them.
-std::vector<GoldenRecording> damages() {
+std::vector<GoldenCase> damages() {
     const RecordingBytes whole = bytes_of(
         {test_frame(0, "Mono8", 6, 2), test_frame(1, "Mono8", 6, 2), test_frame(2, "Mono8", 6, 2)});
     const auto& begins = whole.begins;
-    const auto flipped = [&](std::size_t at) {
-        std::string bytes = whole.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        return bytes;
-    };
-    const auto without = [&](std::size_t begin, std::size_t end) {
-        std::string bytes = whole.bytes;
-        return bytes.erase(begin, end - begin);
-    };
     const auto with = [&](std::size_t at, const std::string& more) {
         std::string bytes = whole.bytes;
         return bytes.insert(at, more);
@@ -120,16 +112,16 @@ std::vector<GoldenRecording> damages() {
             {"cut_in_block_header", whole.bytes.substr(0, begins[3] + 10)},
             {"cut_in_session", whole.bytes.substr(0, begins[1] - 1)},
             {"cut_in_magic", whole.bytes.substr(0, 10)},
-            {"other_version", flipped(8)},
-            {"reserved_in_magic", flipped(12)},
-            {"damaged_session", flipped(begins[0] + 100)},
-            {"damaged_block_header", flipped(begins[2] + 8)},
-            {"damaged_record", flipped(record + 24)},
-            {"damaged_payload", flipped(record + kFrameRecordBytes)},
-            {"damaged_end", flipped(begins[4] + kBlockHeaderBytes)},
-            {"missing_frame", without(begins[2], begins[3])},
-            {"missing_bytes", without(record + 100, record + 160)},
-            {"missing_end_of_last_block", without(begins[3] + 50, begins[4] + 10)},
+            {"other_version", flipped(whole.bytes, 8)},
+            {"reserved_in_magic", flipped(whole.bytes, 12)},
+            {"damaged_session", flipped(whole.bytes, begins[0] + 100)},
+            {"damaged_block_header", flipped(whole.bytes, begins[2] + 8)},
+            {"damaged_record", flipped(whole.bytes, record + 24)},
+            {"damaged_payload", flipped(whole.bytes, record + kFrameRecordBytes)},
+            {"damaged_end", flipped(whole.bytes, begins[4] + kBlockHeaderBytes)},
+            {"missing_frame", without(whole.bytes, begins[2], begins[3])},
+            {"missing_bytes", without(whole.bytes, record + 100, record + 160)},
+            {"missing_end_of_last_block", without(whole.bytes, begins[3] + 50, begins[4] + 10)},
             {"frame_twice", with(begins[3], whole.block(2))},
             {"frame_after_end", with(whole.bytes.size(), whole.block(3))},
             {"unknown_kind", whole.bytes.substr(0, begins[2]) + block_of(9, 2, "new") +
@@ -140,9 +132,9 @@ std::vector<GoldenRecording> damages() {
 
 }  // namespace
 
-std::vector<GoldenRecording> golden_recordings() {
-    std::vector<GoldenRecording> cases = features();
-    for (GoldenRecording& damage : damages()) cases.push_back(std::move(damage));
+std::vector<GoldenCase> golden_recordings() {
+    std::vector<GoldenCase> cases = features();
+    for (GoldenCase& damage : damages()) cases.push_back(std::move(damage));
     return cases;
 }
 

@@ -3,15 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/golden_file.h"
+
 namespace stipple {
 
-/// A file of tests/golden/recording.
-struct GoldenRecording {
-    std::string name;
-    std::string bytes;
-};
-
 /// One small recording per packing and feature of the format, and one per kind of damage.
-[[nodiscard]] std::vector<GoldenRecording> golden_recordings();
+[[nodiscard]] std::vector<GoldenCase> golden_recordings();
 
 }  // namespace stipple

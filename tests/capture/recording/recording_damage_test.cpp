@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
+#include "tests/support/byte_edits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -75,9 +76,7 @@ TEST(RecordingDamageTest, EveryPrefixHoldsItsWholeFrames) {
 TEST(RecordingDamageTest, ABadByteCostsOneFrameAtMostAndIsReported) {
     const Sample sample;
     for (std::size_t at = kRecordingMagic.size(); at < sample.bytes.size(); at += 11) {
-        std::string bytes = sample.bytes;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        auto reader = sample.reader(bytes);
+        auto reader = sample.reader(flipped(sample.bytes, at));
         const auto ids = sample.ids(reader);
         const bool in_a_frame = at >= sample.starts.front() && at < sample.starts.back();
         EXPECT_EQ(ids.size(), in_a_frame ? 5U : 6U) << at;
@@ -87,9 +86,8 @@ TEST(RecordingDamageTest, ABadByteCostsOneFrameAtMostAndIsReported) {
 
 TEST(RecordingDamageTest, BytesThatAreMissingCostTheFramesThatTheyHit) {
     const Sample sample;
-    std::string bytes = sample.bytes;
-    bytes.erase(sample.starts[2] + 100, 60);
-    auto reader = sample.reader(bytes);
+    auto reader =
+        sample.reader(without(sample.bytes, sample.starts[2] + 100, sample.starts[2] + 160));
     EXPECT_EQ(sample.ids(reader), (std::vector<std::uint64_t>{0, 1, 3, 4, 5}));
     EXPECT_EQ(reader.report().missing_blocks, 1U);
     EXPECT_TRUE(reader.end());
@@ -97,9 +95,7 @@ TEST(RecordingDamageTest, BytesThatAreMissingCostTheFramesThatTheyHit) {
 
 TEST(RecordingDamageTest, AFrameThatIsCutOutWholeIsMissed) {
     const Sample sample;
-    std::string bytes = sample.bytes;
-    bytes.erase(sample.starts[2], sample.starts[4] - sample.starts[2]);
-    auto reader = sample.reader(bytes);
+    auto reader = sample.reader(without(sample.bytes, sample.starts[2], sample.starts[4]));
     EXPECT_EQ(sample.ids(reader), (std::vector<std::uint64_t>{0, 1, 4, 5}));
     EXPECT_EQ(reader.report().missing_blocks, 2U);
     ASSERT_EQ(reader.report().damage.size(), 1U);

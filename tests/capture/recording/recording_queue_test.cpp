@@ -2,16 +2,15 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 #include <thread>
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -21,9 +20,13 @@ TEST(RecordingQueueTest, WhatFitsIsWrittenInOrder) {
     const TemporaryFolder folder;
     const auto frames = test_frames(50);
     RecordingWriter writer(folder / "a", test_session());
-    RecordingQueue queue(writer, std::size_t{1} << 20U);
+    std::size_t given_back = 0;  // the queue's thread, until it is drained
+    RecordingQueue queue(
+        writer, {.bytes = std::size_t{1} << 20U},
+        [&](std::vector<std::uint8_t>&& payload) { given_back += payload.empty() ? 0U : 1U; });
     for (CapturedFrame frame : frames) EXPECT_TRUE(queue.push(std::move(frame)));
     queue.drain();
+    EXPECT_EQ(given_back, frames.size());
     writer.finish({});
     RecordingReader reader(folder / "a");
     EXPECT_TRUE(same(read_frames(reader), frames));
@@ -65,7 +68,7 @@ struct CountingCamera {
     bool push_next(RecordingQueue& queue) {
         CapturedFrame frame = test_frame(next++, "Mono8", 200, 100);
         frame.record.lost_before = lost;
-        if (lost > 0) frame.record.cause = GapCause::kOwnDrop;
+        if (lost > 0) frame.record.cause = GapCause::kQueueDrop;
         const bool taken = queue.push(std::move(frame));
         lost = taken ? 0 : lost + 1;
         return taken;
@@ -79,7 +82,7 @@ TEST(RecordingQueueTest, ADiskThatStandsStillCostsFramesThatAreCounted) {
     const StandingDisk disk(folder / "pipe");
     RecordingWriter writer(folder / "pipe", test_session());
     // A pipe takes 64 KiB; frames of 20 000 bytes; four of them wait.
-    RecordingQueue queue(writer, 80000);
+    RecordingQueue queue(writer, {.bytes = 80000});
     CountingCamera camera;
     std::uint64_t dropped = 0;
     for (int i = 0; i < 40; ++i) dropped += camera.push_next(queue) ? 0U : 1U;
@@ -110,15 +113,11 @@ TEST(RecordingQueueTest, ADiskThatStandsStillCostsFramesThatAreCounted) {
 
 TEST(RecordingQueueTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
     const TemporaryFolder folder;
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old{};
-    getrlimit(RLIMIT_FSIZE, &old);
     std::string message;
     {
         RecordingWriter writer(folder / "a", test_session(), "clip.strec");
-        RecordingQueue queue(writer, std::size_t{1} << 24U);
-        const rlimit limit{100'000, old.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
+        RecordingQueue queue(writer, {.bytes = std::size_t{1} << 24U});
+        const FileSizeLimit full_disk(100'000);
         for (std::uint64_t i = 0; i < 20; ++i) queue.push(test_frame(i, "Mono8", 200, 100));
         message = message_of<DeviceError>([&] {
             queue.drain();
@@ -129,8 +128,6 @@ TEST(RecordingQueueTest, AFullDiskEndsTheRecordingWithItsLastWholeFrame) {
         EXPECT_EQ(writer.totals().frames + queue.dropped(), 21U);
         writer.finish({.reason = "disk full"});  // 4 frames of 20 192 bytes leave room for it
     }
-    setrlimit(RLIMIT_FSIZE, &old);
-    std::signal(SIGXFSZ, old_handler);
     expect_parts(message, {"clip.strec", "File too large"});
     RecordingReader reader(folder / "a");
     EXPECT_EQ(read_frames(reader).size(), 4U);

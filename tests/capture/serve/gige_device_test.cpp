@@ -20,7 +20,7 @@ ServedImage image_of(std::string coded = {}) {
     image.width = 64;
     image.height = 48;
     image.formats = {pixel_format_named("Mono8"), pixel_format_named("Mono16")};
-    image.frames_per_s = 200;
+    image.frames_hz = 200;
     image.frames = 100;
     image.coded_header = std::move(coded);
     image.croppable = image.coded_header.empty();
@@ -195,7 +195,7 @@ TEST_F(GigeDeviceTest, FrameRatesOutsideTheLimitsAreRefused) {
     EXPECT_EQ(rate(200.0F), 0);
     for (const float wrong : {0.0F, -5.0F, 200.1F, 1e9F, std::bit_cast<float>(0x7FC00000U)})
         EXPECT_EQ(rate(wrong), 0x8002) << wrong;
-    EXPECT_EQ(device_.stream().frames_per_s, 200);
+    EXPECT_EQ(device_.stream().frames_hz, 200);
 }
 
 TEST_F(GigeDeviceTest, PacketsAreAtMost100MillisecondsApart) {

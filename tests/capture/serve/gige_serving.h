@@ -26,7 +26,7 @@ class NoiseFrames final : public FrameSource {
         for (const auto& name : formats)
             if (const PixelFormat* format = pixel_format_named(name))
                 image_.formats.push_back(format);
-        image_.frames_per_s = 200;
+        image_.frames_hz = 200;
         image_.frames = frames;
     }
 

@@ -62,7 +62,7 @@ TEST_F(RecordingFramesTest, BytesStampsAndRateAreThoseOfTheRecording) {
     const auto file = write(recorded);
     EXPECT_TRUE(is_recording(file));
     RecordingFrames source(file);
-    EXPECT_NEAR(source.image().frames_per_s, 200, 1e-9);
+    EXPECT_NEAR(source.image().frames_hz, 200, 1e-9);
     for (int round = 0; round < 2; ++round) {  // each start is from the first frame on
         const auto served = all_of(source);
         ASSERT_EQ(served.size(), 6U);

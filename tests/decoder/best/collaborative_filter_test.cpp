@@ -14,15 +14,6 @@ namespace {
 
 constexpr FrameShape kShape{.rows = 150, .cols = 30, .planes = 1};  // three bands of rows
 
-double mean_square(const FluxVideo& a, const FluxVideo& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.voxels(); ++i) {
-        const auto d = static_cast<double>(a.data()[i] - b.data()[i]);
-        sum += d * d;
-    }
-    return sum / static_cast<double>(a.voxels());
-}
-
 FluxVideo stripes(int slots, FrameShape shape) {
     FluxVideo video(slots, shape);
     for (std::size_t i = 0; i < video.voxels(); ++i) video.data()[i] = i % 10 < 5 ? 0.5F : 1.5F;
@@ -54,8 +45,10 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
     FluxVideo filtered(6, kShape);
     filter_groups(seen, video, groups, kSigma, filtered);
     // Stripes have some ten coefficients of 576 that are not 0, and every voxel is in many groups.
-    expect_quality("filtered", gain_db(mean_square(filtered, video), mean_square(seen, video)),
-                   16.73);
+    expect_quality(
+        "filtered",
+        gain_db(mean_square(filtered.data(), video.data()), mean_square(seen.data(), video.data())),
+        16.73);
 }
 
 TEST(CollaborativeFilterTest, TheSameBitsForAnyNumberOfThreads) {

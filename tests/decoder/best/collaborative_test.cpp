@@ -36,12 +36,7 @@ ExposureSchedule schedule(FrameShape shape) {
 }
 
 double psnr_db(const FluxVideo& x, const FluxVideo& truth) {
-    double sum = 0;
-    for (std::size_t i = 0; i < x.voxels(); ++i) {
-        const auto d = static_cast<double>(x.data()[i] - truth.data()[i]);
-        sum += d * d;
-    }
-    return -10 * std::log10(sum / static_cast<double>(x.voxels()));
+    return -10 * std::log10(mean_square(x.data(), truth.data()));
 }
 
 class CollaborativeTest : public testing::TestWithParam<int> {

@@ -22,10 +22,10 @@ TEST(StabilisedLightTest, OnePlaneIsTwiceTheSquareRoot) {
 TEST(StabilisedLightTest, LightDownToTheLeastIsKept) {
     const std::vector<float> light = {-0.005F, -0.02F};
     std::vector<float> v(2);
-    stabilise_variance(light, 1, {.offset = 0.01F, .least = -0.008F}, v);
+    stabilise_variance(light, 1, {.offset = 0.01F, .min_light = -0.008F}, v);
     EXPECT_FLOAT_EQ(v[0], 2 * std::sqrt(0.005F));
     std::vector<float> back(2);
-    restore_light(v, 1, {.offset = 0.01F, .least = -0.008F}, back);
+    restore_light(v, 1, {.offset = 0.01F, .min_light = -0.008F}, back);
     EXPECT_NEAR(back[0], light[0], 1e-7F);
     EXPECT_NEAR(back[1], -0.008F, 1e-7F);
 }

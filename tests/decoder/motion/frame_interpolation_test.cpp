@@ -36,12 +36,7 @@ FluxVideo moving_texture(int slots, float rows, float cols, int step = 1) {
 }
 
 double rms(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
-        sum += d * d;
-    }
-    return std::sqrt(sum / static_cast<double>(a.size()));
+    return std::sqrt(mean_square(a, b));
 }
 
 TEST(FrameInterpolationTest, GivesTheFramesThemselvesAtTheirCentres) {

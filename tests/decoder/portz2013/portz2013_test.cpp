@@ -41,15 +41,6 @@ FluxVideo square(int slots, FrameShape shape) {
     return video;
 }
 
-double mean_square(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
-        sum += difference * difference;
-    }
-    return sum / static_cast<double>(a.size());
-}
-
 /// Mean square error in the middle of a clip: its ends have no samples.
 double middle_error(const FluxVideo& x, const FluxVideo& video) {
     double sum = 0;

@@ -19,7 +19,7 @@ std::int64_t frame_clocks(const ReadoutTiming& timing, int cols, int rows) {
     return full_readout(timing, {rows, cols, 1}).total;
 }
 
-double frames_per_second(const ReadoutTiming& timing, int cols, int rows) {
+double frames_hz(const ReadoutTiming& timing, int cols, int rows) {
     return 1 / seconds(timing, frame_clocks(timing, cols, rows));
 }
 
@@ -33,7 +33,7 @@ struct PublishedRate {
 
 void expect_rates(const ReadoutTiming& timing, std::initializer_list<PublishedRate> rates) {
     for (const PublishedRate& rate : rates)
-        EXPECT_NEAR(frames_per_second(timing, rate.cols, rate.rows), rate.hz, rate.last_digit)
+        EXPECT_NEAR(frames_hz(timing, rate.cols, rate.rows), rate.hz, rate.last_digit)
             << rate.cols << " x " << rate.rows;
 }
 
@@ -91,11 +91,11 @@ TEST(PublishedTimingTest, Imx273IsWithinTwoMicrosecondsInAllCells) {
 
 TEST(PublishedTimingTest, CamerasOfFullRowsAreNoFasterWithFewerColumns) {
     const auto sp5000 = sensor_timing("sp5000");
-    EXPECT_NEAR(frames_per_second(sp5000, 2560, 1500), 437.86, 0.01);
+    EXPECT_NEAR(frames_hz(sp5000, 2560, 1500), 437.86, 0.01);
     const auto imx296 = sensor_timing("imx296");
-    EXPECT_NEAR(frames_per_second(imx296, 1440, 1088), 60.38, 0.01);
+    EXPECT_NEAR(frames_hz(imx296, 1440, 1088), 60.38, 0.01);
     for (const int rows : {1, 100, 1088})
-        EXPECT_NEAR(frames_per_second(imx296, 720, rows), 67500.0 / (rows + 30), 1e-6);
+        EXPECT_NEAR(frames_hz(imx296, 720, rows), 67500.0 / (rows + 30), 1e-6);
     const auto cmv4000 = sensor_timing("cmv4000");
     for (const int cols : {2048, 512, 8}) {
         const auto readout = full_readout(cmv4000, {2048, cols, 1});

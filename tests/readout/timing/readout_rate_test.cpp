@@ -37,7 +37,7 @@ TEST(ReadoutRateTest, RandomCodesOnLux1310TakeTheDocumentedTime) {
     const auto timing = sensor_timing("lux1310");
     const FrameShape shape{256, 1280, 1};
     const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
-    EXPECT_NEAR(rate.even.row, 80 * 4.0 / 15 + 2, 1e-9);
+    EXPECT_NEAR(rate.balanced.row, 80 * 4.0 / 15 + 2, 1e-9);
     EXPECT_NEAR(rate.speedup, 82 / 31.0, 0.1);
     EXPECT_GT(rate.balanced_speedup, 3.3);
     EXPECT_LT(rate.speedup, rate.balanced_speedup);

@@ -1,4 +1,4 @@
-#include "decoder/portz2013/late_opencv.h"
+#include "decoder/motion/late_opencv.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

@@ -26,7 +26,7 @@ struct Outcome {
 /// Full scale of a sample is 2.0 of light in one slot; the priors may overshoot.
 constexpr float kBrightest = 2.6F;
 
-class BadRecordingsTest : public testing::TestWithParam<NamedDecodeMethod> {
+class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
   protected:
     /// What fails does so in the first iterations.
     static DecodeOptions options() {
@@ -79,7 +79,7 @@ ExposureSchedule paper(FrameShape shape) {
 
 constexpr FrameShape kShape{17, 24, 1};
 
-TEST_P(BadRecordingsTest, ASensorOfOneRowOrColumnIsDecoded) {
+TEST_P(BadStreamsTest, ASensorOfOneRowOrColumnIsDecoded) {
     for (const FrameShape shape : {FrameShape{1, 1, 1},
                                    {1, 40, 1},
                                    {40, 1, 1},
@@ -92,19 +92,19 @@ TEST_P(BadRecordingsTest, ASensorOfOneRowOrColumnIsDecoded) {
         expect_decoded(record(random_video(20, shape, 1), paper(shape)));
 }
 
-TEST_P(BadRecordingsTest, AFewSlotsAreDecoded) {
+TEST_P(BadStreamsTest, AFewSlotsAreDecoded) {
     for (const int slots : {1, 2, 3, 4, 7})
         for (const ExposureSchedule& schedule : {paper(kShape), full_schedule(1, 1)})
             expect_decoded(record(random_video(slots, kShape, 1), schedule));
 }
 
-TEST_P(BadRecordingsTest, PixelsThatAreNeverReadAreDecoded) {
+TEST_P(BadStreamsTest, PixelsThatAreNeverReadAreDecoded) {
     const FluxVideo video = random_video(20, kShape, 1);
     expect_decoded(record(video, {1, 2, 3, {0, 1, 1}, {{0, 1}}}));  // each other column
     expect_decoded(record(video, {1, 1, 3, {0, 0}, {}}), 0);
 }
 
-TEST_P(BadRecordingsTest, WithoutSamplesFramesAreBlack) {
+TEST_P(BadStreamsTest, WithoutSamplesFramesAreBlack) {
     Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     for (SamplePacket& packet : recorded.packets) {
         packet.flags = SamplePacket::kDropped;
@@ -115,7 +115,7 @@ TEST_P(BadRecordingsTest, WithoutSamplesFramesAreBlack) {
 
 // Full scale is 2.0 of light in a sample: the light is known to be that or more, in exposures of
 // one slot at least.
-TEST_P(BadRecordingsTest, SaturatedFramesAreBright) {
+TEST_P(BadStreamsTest, SaturatedFramesAreBright) {
     const Recorded recorded = record(flat(20, kShape, 50), paper(kShape));
     const Outcome outcome = decoded(recorded);
     expect_light(outcome, recorded);
@@ -124,12 +124,12 @@ TEST_P(BadRecordingsTest, SaturatedFramesAreBright) {
     EXPECT_GE(sum, 1.8 * static_cast<double>(outcome.light.size()));  // ends of clips say less
 }
 
-TEST_P(BadRecordingsTest, DarkFramesStayDark) {
+TEST_P(BadStreamsTest, DarkFramesStayDark) {
     const Recorded recorded = record(flat(20, kShape, 0), paper(kShape));
     expect_decoded(recorded, 0.04F);  // four standard deviations of the read noise
 }
 
-TEST_P(BadRecordingsTest, NoiseIsDecoded) {
+TEST_P(BadStreamsTest, NoiseIsDecoded) {
     Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     std::mt19937 random(1);
     for (SamplePacket& packet : recorded.packets)
@@ -137,7 +137,7 @@ TEST_P(BadRecordingsTest, NoiseIsDecoded) {
     expect_decoded(recorded);
 }
 
-TEST_P(BadRecordingsTest, AScheduleThatTheSamplesContradictCostsSlots) {
+TEST_P(BadStreamsTest, AScheduleThatTheSamplesContradictCostsSlots) {
     const Recorded recorded = record(random_video(20, kShape, 1), paper(kShape));
     const Outcome outcome =
         decoded(recorded, random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 2));
@@ -146,14 +146,14 @@ TEST_P(BadRecordingsTest, AScheduleThatTheSamplesContradictCostsSlots) {
     EXPECT_GE(outcome.report.undue_packets, 15U);
 }
 
-TEST_P(BadRecordingsTest, AWrongScheduleThatFitsTheCountsIsDecoded) {
+TEST_P(BadStreamsTest, AWrongScheduleThatFitsTheCountsIsDecoded) {
     const ExposureSchedule schedule = tiled_schedule(8, 8, kPaperExposureSlots, 1);
     const Recorded recorded = record(random_video(20, kShape, 1), schedule);
     expect_light(decoded(recorded, shifted_schedule(schedule, {0, 3, 5})), recorded);
 }
 
 // The limits of the stream format, where squares leave the range of a float.
-TEST_P(BadRecordingsTest, CalibrationsAtTheLimitsGiveFiniteLight) {
+TEST_P(BadStreamsTest, CalibrationsAtTheLimitsGiveFiniteLight) {
     const Recorded honest = record(random_video(10, {16, 16, 1}, 1), paper({16, 16, 1}));
     for (const double gain : {1e-12, 1e12})
         for (const double noise : {0.0, 1e12})
@@ -195,7 +195,7 @@ TEST(FastTest, WeightsMayBeZero) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, BadRecordingsTest,
+INSTANTIATE_TEST_SUITE_P(Methods, BadStreamsTest,
                          testing::ValuesIn(decode_methods().begin(), decode_methods().end()),
                          [](const auto& method) { return std::string(method.param.name); });
 

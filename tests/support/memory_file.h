@@ -11,24 +11,26 @@
 
 namespace stipple {
 
-/// A file in memory that is read through a path.
+/// A file in memory that is read through a path: thousands of them cost no disk.
 class MemoryFile {
   public:
-    explicit MemoryFile(const std::string& content) : descriptor_(memfd_create("fuzz", 0)) {
-        if (write(descriptor_, content.data(), content.size()) < 0) descriptor_ = -1;
+    explicit MemoryFile(std::string_view bytes) : descriptor_(memfd_create("stipple", 0)) {
+        good_ = write(descriptor_, bytes.data(), bytes.size()) == std::ssize(bytes);
     }
     explicit MemoryFile(std::span<const std::uint8_t> bytes)
-        : MemoryFile(std::string(bytes.begin(), bytes.end())) {}
+        : MemoryFile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) {}
     ~MemoryFile() { close(descriptor_); }
     MemoryFile(const MemoryFile&) = delete;
     MemoryFile& operator=(const MemoryFile&) = delete;
 
-    [[nodiscard]] std::string path() const {
+    [[nodiscard]] bool good() const { return good_; }
+    [[nodiscard]] std::filesystem::path path() const {
         return "/proc/self/fd/" + std::to_string(descriptor_);
     }
 
   private:
     int descriptor_;
+    bool good_;
 };
 
 /// The same under a name with an extension, for what is read by its kind.

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "io/image.h"
+#include "sensor_model/sensor_params.h"
+
+namespace stipple {
+
+/// Warning that a camera file has its black level elsewhere than a sensor of as many bits, by more
+/// than a DN; else empty. Numbers of other bits do not compare, and a sensor in paper mode has no
+/// black level.
+[[nodiscard]] std::string black_level_warning(const std::string& file, const SourceTraits& footage,
+                                              const SensorParams& sensor);
+
+}  // namespace stipple

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace stipple {
+
+/// A value with its name on the command line, in Python and in files. The values of a type are a
+/// table, from which all of them take the names.
+template <typename Value>
+struct NamedValue {
+    std::string_view name;
+    Value value;
+};
+
+/// The name of a value of the table; empty if it has none.
+template <typename Value, std::size_t kCount>
+[[nodiscard]] constexpr std::string_view name_in(const std::array<NamedValue<Value>, kCount>& table,
+                                                 Value value) {
+    for (const NamedValue<Value>& named : table)
+        if (named.value == value) return named.name;
+    return {};
+}
+
+/// The value of that name. \throws InputError at `where`, with all names, if there is none.
+template <typename Value, std::size_t kCount>
+[[nodiscard]] Value value_in(const std::array<NamedValue<Value>, kCount>& table,
+                             std::string_view name, std::string_view where) {
+    std::string names;
+    for (const NamedValue<Value>& named : table) {
+        if (named.name == name) return named.value;
+        names.append(names.empty() ? "" : ", ").append(named.name);
+    }
+    throw InputError(where, "\"" + std::string(name) + "\" is none of " + names);
+}
+
+}  // namespace stipple
