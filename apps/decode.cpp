@@ -67,6 +67,11 @@ void add_decode(Command& app, Action& action) {
                     "DIR/stage1.npy, DIR/stage2.npy, and draw DIR/convergence.png")
         .type_name("DIR")
         .output();
+    command
+        .add_option("--calibration", options->calibration,
+                    "calibration of the chip's pixels, which \"stipple calibrate\" wrote")
+        .type_name("FILE")
+        .input();
     const auto check_schedule = std::make_shared<std::string>();
     add_reading(command, *options, *check_schedule);
     add_video_arguments(command, options->video, options->images);
@@ -76,6 +81,7 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o decoded\n"
         "  stipple decode clip.stipple -o decoded.mp4 --method naive --threads 1\n"
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
+        "  stipple decode clip.stipple -o clean --calibration chip.stcal\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");

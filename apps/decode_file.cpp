@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "apps/decode_schedule.h"
+#include "apps/fixed_pattern.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -67,6 +68,14 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
+}
+
+/// Uses the calibration of the chip, or says what it costs that there is none.
+void calibrate(StreamReader& reader, const DecodeArguments& arguments) {
+    if (arguments.calibration.empty())
+        say_warning(fixed_pattern_warning(arguments.stream, reader.header()));
+    else
+        reader.use_sites(read_sites(arguments.calibration, reader.header()));
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -155,6 +164,7 @@ DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
       stages_(arguments.stages, decoded_shape(reader_.header()), run.force) {
     if (check_ && check_->verdict == ScheduleCheck::Verdict::kShifted)
         reader_.use_schedule(shifted_schedule(reader_.header().schedule, check_->shift));
+    calibrate(reader_, arguments);
     say_leftover(arguments.output);
     options_.stages = stages_.sink();
 }

@@ -27,9 +27,10 @@ struct DecodeArguments {
     std::string stages;  ///< folder; empty: none
     bool strict = false;
     bool fill_gaps = false;
-    std::int64_t until = 0;  ///< frames wanted; 0: all
-    bool follow = false;     ///< the stream is still being written
-    double timeout_s = 10;   ///< with `follow`: without growth
+    std::int64_t until = 0;   ///< frames wanted; 0: all
+    bool follow = false;      ///< the stream is still being written
+    double timeout_s = 10;    ///< with `follow`: without growth
+    std::string calibration;  ///< file of the chip's calibration; empty: none
     CheckSchedule check_schedule = CheckSchedule::kNo;
     VideoCoding video;   ///< of .mp4 and .mkv
     ImageCoding images;  ///< of folders and .tif

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/arguments/footage.h"
+#include "apps/info_calibration.h"
 #include "apps/info_footage.h"
 #include "apps/info_recording.h"
 #include "apps/info_settings.h"
@@ -13,6 +14,7 @@
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/subcommands.h"
+#include "calibration/calibration_file.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -86,14 +88,15 @@ void info(const InfoOptions& options, const RunOptions& run) {
     const bool ours = !options.raw && (is_recording(file) || is_stream(file));
     if (options.raw || (!ours && is_footage(file)))
         return info_footage(file, options.raw, options.header_only, run);
+    if (is_chip_calibration(file)) return info_calibration(file, run);
     if (options.header_only) throw InputError(file, "is no footage, of which --header is");
     if (ours) return is_stream(file) ? info_stream(file, run) : info_recording(file, run);
     if (const SettingsKind kind = settings_kind(file); kind != SettingsKind::kNone)
         return info_settings(kind, file, run);
     if (may_be_stream(file)) return info_stream(file, run);
     throw InputError(file,
-                     "is nothing that stipple reads: no sample stream, recording, footage, "
-                     "sensor, schedule or scene; frames without a header need --raw");
+                     "is nothing that stipple reads: no sample stream, recording, calibration, "
+                     "footage, sensor, schedule or scene; frames without a header need --raw");
 }
 
 }  // namespace
@@ -103,7 +106,8 @@ void add_info(Command& app, Action& action) {
     const auto options = std::make_shared<InfoOptions>();
     command
         .add_option("FILE", options->file,
-                    "stream, recording, footage, sensor or schedule, or the name of one")
+                    "stream, recording, calibration, footage, sensor or schedule, or the name of "
+                    "one")
         .required()
         .input();
     add_raw_argument(command, options->raw, "FILE");

@@ -40,10 +40,11 @@ void add_schedule(Command& app, Action& action);  ///< exposure schedules: its o
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
 /// EMVA 1288 figures of an emulated sensor or of images
 void add_characterize(Command& app, Action& action);
-void add_capture(Command& app, Action& action);  ///< cameras: its own subcommands
-void add_demo(Command& app, Action& action);     ///< all of it on an embedded scene
-void add_report(Command& app, Action& action);   ///< a run as an HTML page
-void add_list(Command& app, Action& action);     ///< names that options take, a line each
+void add_calibrate(Command& app, Action& action);  ///< gain, offset and defects of each pixel
+void add_capture(Command& app, Action& action);    ///< cameras: its own subcommands
+void add_demo(Command& app, Action& action);       ///< all of it on an embedded scene
+void add_report(Command& app, Action& action);     ///< a run as an HTML page
+void add_list(Command& app, Action& action);       ///< names that options take, a line each
 /// Manual pages and completions of the command line that `describe` describes
 void add_manual(Command& app, Action& action, std::function<CommandDescription()> describe);
 

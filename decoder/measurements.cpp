@@ -20,7 +20,7 @@ class Collector {
         : schedule_(header.schedule),
           array_(header.shape),
           cfa_(header.cfa),
-          responses_(header.calibration),
+          responses_(header),
           window_(window),
           out_(measurements) {}
 
@@ -54,9 +54,10 @@ class Collector {
         const int first_plane = cfa_ == ColourFilter::kNone ? 0 : colour_plane(cfa_, row, col);
         auto voxel = index(first) * sites + index(first_plane) * window_.shape.pixels() +
                      row_major(window_row, window_col, window_.shape.cols);
-        const PixelResponse& response = responses_.at(row, col);
-        for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels())
-            write(voxel, sample.dn[plane], span, response);
+        for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels()) {
+            const PixelResponse response = responses_.at(plane, row, col);
+            if (!response.defect()) write(voxel, sample.dn[plane], span, response);
+        }
         if (schedule_.weighted())
             write_weights(index(first), span, {last_slot - sample.span_slots + 1, row, col});
     }
@@ -82,10 +83,8 @@ class Collector {
         out_.sum[last_voxel] = response.light(dn, open_slots);
         out_.variance[last_voxel] = response.noise().variance(out_.sum[last_voxel]);
         if (out_.dark_variance.empty()) return;
-        out_.dark_variance[last_voxel] =
-            response.noise().variance(0) +
-            response.dark_variance_per_slot() * static_cast<float>(open_slots);
-        out_.variance_per_light[last_voxel] = response.noise().per_light();
+        out_.dark_variance[last_voxel] = response.dark_variance(open_slots);
+        out_.variance_per_light[last_voxel] = response.variance_per_light(out_.sum[last_voxel]);
         out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
     }
 
@@ -129,7 +128,7 @@ class Collector {
     const ExposureSchedule& schedule_;
     FrameShape array_;
     ColourFilter cfa_;
-    PixelResponses responses_;
+    SiteResponses responses_;
     VideoWindow window_;
     Measurements& out_;
 };
@@ -162,7 +161,8 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
         .variance_per_light = {},
     };
     const Calibration& calibration = header.calibration;
-    if (calibration.dark_e_per_slot != 0 || !calibration.tile.pixels.empty()) {
+    if (calibration.dark_e_per_slot != 0 || !calibration.tile.pixels.empty() ||
+        !header.sites.empty()) {
         result.dark_variance.resize(window.voxels());
         result.variance_per_light.resize(window.voxels());
     }

@@ -73,10 +73,10 @@ struct Measurements {
 [[nodiscard]] FrameShape decoded_shape(const StreamHeader& header);
 
 /// Collects the samples of `window` from packets that may contain more, converted by the response
-/// of each pixel (pixel_response.h). The variances are those for a sample equal to its mean. The
-/// samples of a mosaic go to the planes of their colours.
-/// \throws InputError if a pixel has more than two exposures at once. Precondition:
-/// window.shape.planes == decoded_shape(header).planes.
+/// of each site (pixel_response.h); a site with a defect has none. The variances are those for a
+/// sample equal to its mean. The samples of a mosaic go to the planes of their colours. \throws
+/// InputError if a pixel has more than two exposures at once. Precondition: window.shape.planes ==
+/// decoded_shape(header).planes.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);

@@ -9,10 +9,30 @@ namespace {
 constexpr double kSaturationSigmas = 5;
 
 /// The calibration as if all pixels were this one.
-Calibration calibration_of(Calibration whole, const CalibrationPixel& pixel) {
-    whole.gain_e_per_dn /= pixel.conversion_gain;
-    whole.electrons_per_unit *= pixel.responsivity;
-    return whole;
+Calibration calibration_of(const Calibration& whole, const CalibrationPixel& pixel) {
+    return {.bit_depth = whole.bit_depth,
+            .rounding = whole.rounding,
+            .black_level_dn = whole.black_level_dn,
+            .gain_e_per_dn = whole.gain_e_per_dn / pixel.conversion_gain,
+            .read_noise_e = whole.read_noise_e,
+            .full_well_e = whole.full_well_e,
+            .electrons_per_unit = whole.electrons_per_unit * pixel.responsivity,
+            .dark_e_per_slot = whole.dark_e_per_slot};
+}
+
+/// The same as if all sites were this one.
+Calibration calibration_of(const Calibration& whole, const CalibrationPixel& pixel,
+                           const SiteCalibration& site) {
+    constexpr double kRoundingDn2 = 1.0 / 12;
+    Calibration c = calibration_of(whole, pixel);
+    const double read_dn2 = static_cast<double>(site.readout_noise_dn2) - kRoundingDn2;
+    c.read_noise_e = std::sqrt(std::max(read_dn2, 0.0)) * c.gain_e_per_dn;
+    c.electrons_per_unit *= static_cast<double>(site.gain);
+    // The mean of rounded values: that of kFloor lies half a DN below the level that is rounded.
+    c.black_level_dn =
+        static_cast<double>(site.offset_dn) + (c.rounding == Rounding::kFloor ? 0.5 : 0.0);
+    c.dark_e_per_slot = 0;
+    return c;
 }
 
 /// The least DN that the full well or full scale may have clipped.
@@ -45,6 +65,35 @@ PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& p
     dark_per_slot_ = c.dark_e_per_slot / c.electrons_per_unit;
     saturation_dn_ = saturation_dn(c);
     dark_variance_per_slot_ = static_cast<float>(dark_per_slot_ / c.electrons_per_unit);
+}
+
+PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& pixel,
+                             const SiteCalibration& site, double slot_s)
+    : PixelResponse(calibration_of(whole, pixel, site), CalibrationPixel{}) {
+    const auto gain = static_cast<double>(site.gain);
+    const double electrons_per_unit = whole.electrons_per_unit * pixel.responsivity * gain;
+    dark_per_slot_ = static_cast<double>(site.dark_dn_per_s) * slot_s * unit_per_dn_;
+    dark_variance_per_slot_ =
+        static_cast<float>(std::max(dark_per_slot_, 0.0) / electrons_per_unit);
+    const double unit2 = unit_per_dn_ * unit_per_dn_;
+    offset_variance_ = static_cast<float>(static_cast<double>(site.offset_variance_dn2) * unit2);
+    dark_rate_variance_ =
+        static_cast<float>(static_cast<double>(site.dark_variance) * slot_s * slot_s * unit2);
+    relative_gain_variance_ =
+        static_cast<float>(static_cast<double>(site.gain_variance) / (gain * gain));
+    defect_ = site.defect;
+}
+
+PixelResponse SiteResponses::at(int plane, int row, int col) const {
+    if (header_.sites.empty()) return pixels_.at(row, col);
+    const FrameShape shape = header_.shape;
+    const SiteCalibration& site =
+        header_.sites[index(plane) * shape.pixels() + row_major(row, col, shape.cols)];
+    const CalibrationTile& tile = header_.calibration.tile;
+    const CalibrationPixel pixel =
+        tile.pixels.empty() ? CalibrationPixel{}
+                            : tile.pixels[row_major(row % tile.rows, col % tile.cols, tile.cols)];
+    return {header_.calibration, pixel, site, header_.slot_us * 1e-6};
 }
 
 PixelResponses::PixelResponses(const Calibration& calibration) {

@@ -34,6 +34,9 @@ class SampleNoise {
 class PixelResponse {
   public:
     PixelResponse(const Calibration& calibration, const CalibrationPixel& pixel);
+    /// The response of a calibrated site; `slot_s` is the length of a slot in seconds.
+    PixelResponse(const Calibration& calibration, const CalibrationPixel& pixel,
+                  const SiteCalibration& site, double slot_s);
 
     /// True if the sample is only a lower bound: at full scale, or so near the full well that it
     /// may have been clipped there. Read noise and rounding are added after the well, so clipped
@@ -53,6 +56,21 @@ class PixelResponse {
     [[nodiscard]] const SampleNoise& noise() const { return noise_; }
     /// Increase of the variance per open slot by dark electrons.
     [[nodiscard]] float dark_variance_per_slot() const { return dark_variance_per_slot_; }
+    /// Variance of `light` without light: noise, and the uncertainty of a calibration,
+    ///
+    ///     Var(offset) / (K g r R)^2 + n^2 Var(D) / (r R)^2
+    [[nodiscard]] float dark_variance(int open_slots) const {
+        const auto n = static_cast<float>(open_slots);
+        return noise_.variance(0) + dark_variance_per_slot_ * n +
+               (offset_variance_ + dark_rate_variance_ * n * n);
+    }
+    /// Increase of the variance per unit of light near `light`. The uncertain gain a of a
+    /// calibration adds X^2 Var(a) / a^2, which is taken as X `light` Var(a) / a^2.
+    [[nodiscard]] float variance_per_light(float light) const {
+        return noise_.per_light() + relative_gain_variance_ * (light > 0 ? light : 0);
+    }
+    /// True if the samples say nothing of the light.
+    [[nodiscard]] bool defect() const { return defect_; }
 
   private:
     double black_level_dn_;
@@ -61,6 +79,10 @@ class PixelResponse {
     double saturation_dn_;
     SampleNoise noise_;
     float dark_variance_per_slot_;
+    float offset_variance_ = 0;         ///< of `light`, as the next one
+    float dark_rate_variance_ = 0;      ///< per square of open slots
+    float relative_gain_variance_ = 0;  ///< Var(a) / a^2
+    bool defect_ = false;
 };
 
 /// The responses of all pixels of an array: those of the calibration tile, repeated.
@@ -76,6 +98,20 @@ class PixelResponses {
     int rows_ = 1;
     int cols_ = 1;
     std::vector<PixelResponse> responses_;
+};
+
+/// The responses of all sites of an array, calibrated if its header has a calibration of the sites.
+class SiteResponses {
+  public:
+    /// `header` must outlive this.
+    explicit SiteResponses(const StreamHeader& header)
+        : header_(header), pixels_(header.calibration) {}
+
+    [[nodiscard]] PixelResponse at(int plane, int row, int col) const;
+
+  private:
+    const StreamHeader& header_;
+    PixelResponses pixels_;
 };
 
 }  // namespace stipple

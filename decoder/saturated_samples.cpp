@@ -9,9 +9,8 @@ void SaturatedSamples::add(const SamplePacket& packet) {
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
         visit_due(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
-            const PixelResponse& response = responses_.at(row, col);
             for (int plane = 0; plane < header_.shape.planes; ++plane)
-                if (response.saturated(*dn++)) ++saturated_;
+                if (responses_.at(plane, row, col).saturated(*dn++)) ++saturated_;
         });
     samples_ += packet.dn.size();
 }

@@ -11,8 +11,7 @@ namespace stipple {
 /// Counts the samples of packets that are only a lower bound (PixelResponse).
 class SaturatedSamples {
   public:
-    explicit SaturatedSamples(const StreamHeader& header)
-        : header_(header), responses_(header.calibration) {}
+    explicit SaturatedSamples(const StreamHeader& header) : header_(header), responses_(header) {}
 
     void add(const SamplePacket& packet);
 
@@ -21,7 +20,7 @@ class SaturatedSamples {
 
   private:
     const StreamHeader& header_;
-    PixelResponses responses_;
+    SiteResponses responses_;
     std::uint64_t samples_ = 0;
     std::uint64_t saturated_ = 0;
 };

@@ -1,21 +1,29 @@
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "calibration/calibration_file.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "core/input_file.h"
 #include "core/memory_limit.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/errors.h"
 #include "python/footage.h"
 #include "python/sensor.h"
 #include "python/stream.h"
+#include "readout/provenance.h"
 #include "stream/stream_figures.h"
 
 namespace stipple::python {
@@ -25,7 +33,8 @@ namespace {
 struct DecodeTask {
     DecodeOptions options;
     bool strict = false;
-    std::optional<std::int64_t> until;  ///< slots; none: all
+    std::optional<std::int64_t> until;                      ///< slots; none: all
+    std::optional<std::filesystem::path> calibration = {};  ///< file of the chip's calibration
 };
 
 DecodeTask decode_task(const std::string& method, const py::dict& settings, bool fill_gaps,
@@ -49,6 +58,17 @@ std::string warning_of(const StreamReport& report, bool to_end) {
     return {};
 }
 
+/// The calibration of the sites of a stream's chip.
+std::vector<SiteCalibration> read_sites(const std::filesystem::path& file,
+                                        const StreamHeader& header) {
+    const auto bytes = reading(file, [&] { return read_file(file); });
+    ChipCalibration calibration = decode_chip_calibration(bytes, file.string());
+    const ChipOrigin chip = chip_of(header.provenance);
+    require_same_chip(calibration, header, {.name = chip.name, .device_id = chip.device_id},
+                      file.string());
+    return std::move(calibration.sites);
+}
+
 /// Appends the frames that are decoded. Without the GIL.
 void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& progress,
                    std::vector<float>& frames) {
@@ -63,6 +83,7 @@ void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& p
 
 py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const py::object& tell) {
     StreamReader reader = stream.reader(task.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
+    if (task.calibration) reader.use_sites(read_sites(*task.calibration, reader.header()));
     const FrameShape shape = decoded_shape(reader.header());
     const auto known = reader.slots();
     const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;
@@ -87,7 +108,9 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
 }  // namespace
 
 void bind_decode(py::module_& module) {
-    py::class_<DecodeTask>(module, "DecodeTask").def(py::init(&decode_task));
+    py::class_<DecodeTask>(module, "DecodeTask")
+        .def(py::init(&decode_task))
+        .def_readwrite("calibration", &DecodeTask::calibration);
     module.def("decode", &decode_stream);
     module.def("decode_methods", [] {
         std::vector<std::string> names;

@@ -35,28 +35,61 @@ std::vector<FlatFieldExposure> flat_field_exposures(const SensorParams& params) 
     return exposures;
 }
 
-struct FlatField::Impl {
-    Impl(SensorParams given, std::uint64_t seed)
-        : params(checked(std::move(given))),
-          sensor(params, kShape, every_slot, seed),
-          light(kShape.pixels()) {}
+std::vector<CalibrationExposure> calibration_exposures(const SensorParams& params,
+                                                       const CalibrationImages& images,
+                                                       std::uint64_t seed) {
+    constexpr int kLongSlots = 16;
+    constexpr std::uint64_t kSeeds = 0x9E3779B97F4A7C15;  // no seed that somebody chooses
+    const double saturation = params.saturation_e() / params.physical.quantum_efficiency;
+    return {
+        {.slot_us = params.slot_us, .images = images.darks, .seed = seed + kSeeds},
+        {.slot_us = params.slot_us * kLongSlots, .images = images.darks, .seed = seed + 2 * kSeeds},
+        {.slot_us = params.slot_us,
+         .photons = saturation / 2,
+         .images = images.flats,
+         .seed = seed + 3 * kSeeds}};
+}
 
+struct FlatField::Impl {
+    Impl(SensorParams given, std::uint64_t seed, FrameShape shape)
+        : cfa(given.physical.cfa),
+          params(checked(std::move(given))),
+          header{.shape = shape,
+                 .slot_us = params.slot_us,
+                 .calibration = calibration_of(params),
+                 .schedule = {1, 1, 1, {0, 1}, {{.first_slot = 0, .open_slots = 1}}},
+                 .schedule_source = {},
+                 .schedule_name = "every slot",
+                 .provenance = "",
+                 .cfa = cfa},
+          sensor(params, shape, header.schedule, seed),
+          light(shape.sites()) {}
+
+    ColourFilter cfa;
     SensorParams params;
-    ExposureSchedule every_slot{1, 1, 1, {0, 1}, {{.first_slot = 0, .open_slots = 1}}};
+    StreamHeader header;
     CodedSensor sensor;
     std::vector<float> light;
     SamplePacket packet;
 };
 
-FlatField::FlatField(SensorParams params, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(std::move(params), seed)) {}
+FlatField::FlatField(SensorParams params, std::uint64_t seed, FrameShape shape)
+    : impl_(std::make_unique<Impl>(std::move(params), seed, shape)) {}
 
 FlatField::~FlatField() = default;
 
-const std::vector<std::uint16_t>& FlatField::capture(double photons) {
+const StreamHeader& FlatField::header() const {
+    return impl_->header;
+}
+
+const SamplePacket& FlatField::expose(double photons) {
     std::ranges::fill(impl_->light, static_cast<float>(photons / impl_->params.photons_per_unit));
     impl_->sensor.expose(impl_->light, impl_->packet);
-    return impl_->packet.dn;
+    return impl_->packet;
+}
+
+const std::vector<std::uint16_t>& FlatField::capture(double photons) {
+    return expose(photons).dn;
 }
 
 }  // namespace stipple

@@ -178,6 +178,20 @@ std::string command_of(const std::string& provenance) {
     return command;
 }
 
+ChipOrigin chip_of(const std::string& provenance) {
+    const toml::table table = table_of(provenance);
+    const auto sensor = table["sensor"];
+    const auto number = [&](std::string_view key) { return sensor[key].value_or(0.0); };
+    ChipOrigin chip{.name = text_of(sensor["name"]),
+                    .prnu = number("prnu"),
+                    .dsnu_e = number("dsnu_e"),
+                    .column_noise_e = number("column_noise_e")};
+    const auto device_id = sensor["device_id"].value<std::int64_t>();
+    if (device_id && *device_id >= 0 && *device_id <= std::numeric_limits<std::uint32_t>::max())
+        chip.device_id = static_cast<std::uint32_t>(*device_id);
+    return chip;
+}
+
 std::vector<std::string> timing_settings(const std::string& provenance) {
     std::vector<std::string> settings;
     const toml::table table = table_of(provenance);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +33,16 @@ struct FootageOrigin {
 /// The keys of the section [timing] in `provenance`, as overrides of a Config; empty if there are
 /// none.
 [[nodiscard]] std::vector<std::string> timing_settings(const std::string& provenance);
+
+/// The chip of a stream, as its provenance tells: an emulated one.
+struct ChipOrigin {
+    std::string name = {};                        ///< of the sensor; empty: not told
+    std::optional<std::uint32_t> device_id = {};  ///< which chip of this sensor
+    double prnu = 0;                              ///< as the keys of docs/physics.md
+    double dsnu_e = 0;
+    double column_noise_e = 0;
+};
+
+[[nodiscard]] ChipOrigin chip_of(const std::string& provenance);
 
 }  // namespace stipple

@@ -171,6 +171,9 @@ RunReport::~RunReport() = default;
 
 std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::string& name) {
     auto run = std::make_unique<Run>(stream, name, impl_->area);
+    if (run->reader.header().schedule.weighted())
+        throw InputError(stream.string(),
+                         "a report shows no grey masks; \"stipple decode\" takes this stream");
     const FrameShape shape = decoded_shape(run->reader.header());
     if (shape != impl_->shape)
         throw InputError(stream.string(),

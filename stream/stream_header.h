@@ -48,6 +48,21 @@ struct Calibration {
     bool operator==(const Calibration&) const = default;
 };
 
+/// A calibration of one site (a pixel in one plane), in the terms of docs/calibration.md, with the
+/// variances of the estimates.
+struct SiteCalibration {
+    float gain = 1;           ///< factor of `Calibration::electrons_per_unit`
+    float gain_variance = 0;  ///< of `gain`
+    float offset_dn = 0;      ///< mean DN without light and dark current: the site's black level
+    float offset_variance_dn2 = 0;
+    float dark_dn_per_s = 0;      ///< dark current of an open slot; slightly negative if unknown
+    float dark_variance = 0;      ///< of `dark_dn_per_s`
+    float readout_noise_dn2 = 0;  ///< temporal variance without light, rounding included
+    bool defect = false;          ///< its samples say nothing of the light
+
+    bool operator==(const SiteCalibration&) const = default;
+};
+
 /// Limits of the format (docs/stream_format.md): exposures of a tile, exposures of the array of a
 /// random schedule, bytes of the name of a schedule.
 inline constexpr std::size_t kMaxTileExposures = std::size_t{1} << 24U;
@@ -75,6 +90,9 @@ struct StreamHeader {
     std::string schedule_name;  ///< informative, at most 64 bytes of UTF-8
     std::string provenance;     ///< TOML text: emulator parameters, seed, footage; may be empty
     ColourFilter cfa = ColourFilter::kNone;  ///< of the one plane, if it is a mosaic
+    /// Calibration of each site of the array, order (plane, row, col); empty: none. Not part of a
+    /// stream: a reader is told it.
+    std::vector<SiteCalibration> sites = {};
 
     bool operator==(const StreamHeader&) const = default;
 };

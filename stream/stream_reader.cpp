@@ -360,6 +360,12 @@ void StreamReader::use_schedule(ExposureSchedule schedule) {
     impl_->stream.counts.reset();
 }
 
+void StreamReader::use_sites(std::vector<SiteCalibration> sites) {
+    assert(impl_->report.packets == 0);
+    assert(sites.empty() || sites.size() == impl_->stream.header.shape.sites());
+    impl_->stream.header.sites = std::move(sites);
+}
+
 std::optional<std::int64_t> StreamReader::slots() const {
     return impl_->slots;
 }

@@ -13,6 +13,7 @@ HEADERS = {  # to begin with, of each module
     "sensor_model": ("pixel_array.h",),
     "readout": ("sensor_file.h", "emulator.h", "stream_recorder.h", "schedules/schedule_catalogue.h"),
     "decoder": ("reconstruct.h", "decode_method.h"),
+    "calibration": ("chip_estimate.h", "calibration_file.h"),
     "capture": ("camera.h", "capture_session.h", "frame_record.h", "recording/recording_reader.h",
                 "recording/recording_writer.h"),
     "metrics": ("video_quality.h",),

@@ -9,23 +9,13 @@
 namespace stipple::emva1288 {
 namespace {
 
-void check(const SeriesImage& image, const Series& series, const std::string& where) {
-    if (image.rows != series.rows || image.cols != series.cols)
-        throw InputError(where, fmt::format("is {} x {}, but the descriptor says {} x {}",
-                                            image.cols, image.rows, series.cols, series.rows));
-    const int max_dn = *std::ranges::max_element(image.dn);
-    if (max_dn >> series.bits != 0)
-        throw InputError(where, fmt::format("holds the DN {}, but the descriptor says {} bits",
-                                            max_dn, series.bits));
-}
-
 GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
                               const std::filesystem::path& folder, const ReadImage& read) {
     ImageStack stack;
     std::int64_t zeros = 0, values = 0;
     for (const std::string& file : group.files) {
         const SeriesImage image = read(folder / file);
-        check(image, series, (folder / file).string());
+        require_image_of(series, image, (folder / file).string());
         stack.add(image.dn);
         zeros += std::ranges::count(image.dn, 0);
         values += std::ssize(image.dn);
@@ -37,6 +27,16 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
 }
 
 }  // namespace
+
+void require_image_of(const Series& series, const SeriesImage& image, const std::string& where) {
+    if (image.rows != series.rows || image.cols != series.cols)
+        throw InputError(where, fmt::format("is {} x {}, but the descriptor says {} x {}",
+                                            image.cols, image.rows, series.cols, series.rows));
+    const int max_dn = *std::ranges::max_element(image.dn);
+    if (max_dn >> series.bits != 0)
+        throw InputError(where, fmt::format("holds the DN {}, but the descriptor says {} bits",
+                                            max_dn, series.bits));
+}
 
 Evaluation evaluate(const Series& series, const std::filesystem::path& folder,
                     const ReadImage& read, const std::string& where) {

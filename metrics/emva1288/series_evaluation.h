@@ -20,6 +20,10 @@ struct SeriesImage {
 /// Reads an image.
 using ReadImage = std::function<SeriesImage(const std::filesystem::path& file)>;
 
+/// \throws InputError at `where` if an image has another size than the series, or a DN beyond its
+/// bits.
+void require_image_of(const Series& series, const SeriesImage& image, const std::string& where);
+
 /// Evaluates a series whose images lie in `folder`; `read` is called for each, in their order.
 /// \throws InputError naming an image of another size or with a DN beyond the bits of the series,
 /// and as evaluate of their statistics, which calls the series `where`.

@@ -132,6 +132,7 @@ def decode(
     until: Optional[int] = None,
     fill_gaps: bool = False,
     strict: bool = False,
+    calibration: Optional[Name] = None,
     threads: int = 0,
     progress: Tell = None,
 ) -> npt.NDArray[np.float32]:
@@ -147,10 +148,12 @@ def decode(
     until: decode only so many slots.
     fill_gaps: decode slots that are missing, however many they are.
     strict: raise ValueError at the first damage. Else damage costs its own samples and is a UserWarning.
+    calibration: of the chip's pixels, a file that "stipple calibrate" wrote (docs/calibration.md).
     threads: 0 means all cores. The values do not depend on it.
     progress: as for `emulate`.
     """
     task = _stipple.DecodeTask(method, options, fill_gaps, strict, until)
+    task.calibration = calibration
     source = stream if isinstance(stream, Stream) else Stream.open(stream)
     with _stipple.Threads(threads):
         return _stipple.decode(source, task, progress)

@@ -229,6 +229,7 @@ class DecodeTask:
     def __init__(
         self, method: str, options: Mapping[str, object], fill_gaps: bool, strict: bool, until: Optional[int]
     ) -> None: ...
+    calibration: Optional[Name]
 
 class Comparison:
     def __init__(

@@ -26,6 +26,7 @@ TABLE = """| module | may include |
 | core | nothing |
 | io, stream, sensor_model, metrics, scenes | core |
 | decoder | stream, core |
+| calibration | decoder, stream, core |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |
 | report | readout, decoder, metrics, stream, io, core |
@@ -133,7 +134,8 @@ class ChecksTest(unittest.TestCase):
             self.assertIn(f"{tested.LIST}:5", found, line)
 
     def test_all_lists_of_modules_are_equal(self):
-        every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "readout", "capture", "report")
+        every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "calibration", "readout",
+                 "capture", "report")
         page = "".join(f"| `{name}/` | x |\n" for name in (*every, "apps", "python", "tests")) + TABLE
         files = {f"{name}/CMakeLists.txt": "" for name in (*every, "apps", "python", "tests")}
         files |= {modules.BUILD: f"set(STIPPLE_MODULES {' '.join(every)})\n", modules.PAGE: page,

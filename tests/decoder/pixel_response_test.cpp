@@ -40,6 +40,56 @@ TEST(PixelResponseTest, ASaturatedSampleIsABoundThatNoiseDoesNotLift) {
     EXPECT_GT(response.light(125, 1), 0.94F);
 }
 
+// Each term of docs/calibration.md in turn: 2 e/DN, 1000 e per unit, gain 1.25, so 1.6 thousandths
+// of a unit per DN.
+TEST(PixelResponseTest, ACalibratedSiteHasItsOwnResponseAndNoise) {
+    Calibration calibration;
+    calibration.bit_depth = 12;
+    calibration.black_level_dn = 64;
+    calibration.gain_e_per_dn = 2;
+    const SiteCalibration site{.gain = 1.25F,
+                               .gain_variance = 0.0025F,
+                               .offset_dn = 70,
+                               .offset_variance_dn2 = 4,
+                               .dark_dn_per_s = 1000,
+                               .dark_variance = 10000,
+                               .readout_noise_dn2 = 9 + 1.0F / 12,
+                               .defect = true};
+    const PixelResponse response(calibration, {}, site, 0.005);
+    // 70 DN and 3 x 5 DN of dark current: 415 DN are 330 DN of light.
+    EXPECT_FLOAT_EQ(response.light(415, 3), 330 * 1.6e-3F);
+    // 3 DN of read noise and rounding; 15 DN = 30 e of dark signal; 2 DN of the offset; 100 DN/s of
+    // the dark current, 1.5 DN in 15 ms.
+    const double dn2 = 9 + 1.0 / 12 + 30.0 / 4 + 4 + 1.5 * 1.5;
+    EXPECT_NEAR(static_cast<double>(response.dark_variance(3)), dn2 * 1.6e-3 * 1.6e-3, 1e-9);
+    // Shot noise of 1250 e per unit; 4 % of the gain: at a light of 0.5 as much as 0.0016 x 0.5.
+    EXPECT_NEAR(static_cast<double>(response.variance_per_light(0.5F)), 1.0 / 1250 + 0.0016 * 0.5,
+                1e-8);
+    EXPECT_NEAR(static_cast<double>(response.variance_per_light(-1)), 1.0 / 1250, 1e-8);
+    EXPECT_TRUE(response.defect());
+}
+
+TEST(PixelResponseTest, ASiteOfTheHeadersValuesHasTheHeadersResponse) {
+    for (const Rounding rounding : {Rounding::kNearest, Rounding::kFloor}) {
+        Calibration calibration;
+        calibration.rounding = rounding;
+        calibration.black_level_dn = 20;
+        const CalibrationPixel pixel{.responsivity = 0.5, .conversion_gain = 2};
+        const double read_dn = calibration.read_noise_e / calibration.gain_e_per_dn * 2;
+        const SiteCalibration site{
+            .offset_dn = rounding == Rounding::kFloor ? 19.5F : 20.0F,
+            .readout_noise_dn2 = static_cast<float>(read_dn * read_dn + 1.0 / 12)};
+        const PixelResponse nominal(calibration, pixel);
+        const PixelResponse calibrated(calibration, pixel, site, 0.005);
+        for (const std::uint16_t dn : std::vector<std::uint16_t>{0, 20, 100, 254, 255}) {
+            EXPECT_FLOAT_EQ(calibrated.light(dn, 2), nominal.light(dn, 2)) << dn;
+            EXPECT_EQ(calibrated.saturated(dn), nominal.saturated(dn)) << dn;
+        }
+        EXPECT_FLOAT_EQ(calibrated.dark_variance(2), nominal.dark_variance(2));
+        EXPECT_FLOAT_EQ(calibrated.variance_per_light(1), nominal.variance_per_light(1));
+    }
+}
+
 // What clips at the full well scatters around it by the read noise. Were one of these samples taken
 // for exact, an exposure of 8 slots would say that the light is 1800 / 8 e and not 2900.
 TEST(PixelResponseTest, NoClippedSampleCountsAsExact) {

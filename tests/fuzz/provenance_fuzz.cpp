@@ -12,5 +12,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!is_plain_text(text, true)) return 0;  // which no header holds
     if (!is_plain_text(command_of(text), false)) std::abort();
     static_cast<void>(timing_settings(text));
+    static_cast<void>(chip_of(text));
     return 0;
 }

@@ -125,8 +125,10 @@ void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule&
     writer.finish();
 }
 
-FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method) {
+FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,
+                         std::vector<SiteCalibration> sites) {
     StreamReader reader(file, ReadPolicy::kStrict);
+    reader.use_sites(std::move(sites));
     FluxVideo video(static_cast<int>(reader.slots().value()), decoded_shape(reader.header()));
     decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
         std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());

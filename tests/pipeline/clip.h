@@ -12,6 +12,7 @@
 #include "metrics/video_quality.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "sensor_model/sensor_params.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 
@@ -55,7 +56,9 @@ void write_recording(const FluxVideo& video, const NamedSchedule& schedule,
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& schedule,
                   const std::filesystem::path& file);
 
-[[nodiscard]] FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method);
+/// Decoded with this calibration of the sites, if there is one.
+[[nodiscard]] FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,
+                                       std::vector<SiteCalibration> sites = {});
 
 /// Quality without the first and last 4 frames, light clipped at 2.0.
 [[nodiscard]] VideoQuality quality_of(const FluxVideo& decoded, const FluxVideo& truth);

@@ -29,6 +29,18 @@ class DecodeTest(ProgramTest):
     def decodes(self, *arguments, **options):
         return stipple.decode(self.folder / "clip.stipple", *arguments, **options)
 
+    def test_a_calibrated_chip_decodes_as_in_the_program(self):
+        self.write_flat("light.npy", 20, 8, 8, 0.8)
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--sensor", "t6", "--force")
+        self.succeed("calibrate", "--sensor", "t6", "--size", "8x8", "-o", "chip.stcal")
+        result = self.decodes("naive", calibration=self.folder / "chip.stcal")
+        np.testing.assert_array_equal(
+            result, self.program_decodes("--method", "naive", "--calibration", "chip.stcal"))
+        with self.assertRaisesRegex(ValueError, "clip.stipple: is no calibration file"):
+            self.decodes("naive", calibration=self.folder / "clip.stipple")
+        with self.assertRaises(FileNotFoundError):
+            self.decodes("naive", calibration=self.folder / "none.stcal")
+
     def test_each_method_gives_the_values_of_the_program(self):
         self.write_clip()
         for method in ("naive", "fast", "best"):

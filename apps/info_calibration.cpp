@@ -1,0 +1,85 @@
+#include "apps/info_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "calibration/calibration_file.h"
+#include "stream/plain_text.h"
+
+namespace stipple {
+namespace {
+
+/// Mean and standard deviation over the sites without defect; NaN without such sites.
+struct MapFigures {
+    double mean = 0;
+    double deviation = 0;
+};
+
+MapFigures figures_of(const ChipCalibration& calibration, float SiteCalibration::*number) {
+    double count = 0, sum = 0, squares = 0;
+    for (const SiteCalibration& site : calibration.sites) {
+        if (site.defect) continue;
+        const auto value = static_cast<double>(site.*number);
+        ++count;
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0))};
+}
+
+nlohmann::ordered_json json_of(const MapFigures& figures) {
+    return {{"mean", figures.mean}, {"deviation", figures.deviation}};
+}
+
+}  // namespace
+
+void info_calibration(const std::string& file, const RunOptions& run) {
+    JsonFile json(run);
+    const ChipCalibration c = read_chip_calibration(file);
+    const MapFigures gain = figures_of(c, &SiteCalibration::gain);
+    const double gain_error = std::sqrt(figures_of(c, &SiteCalibration::gain_variance).mean);
+    const MapFigures offset = figures_of(c, &SiteCalibration::offset_dn);
+    const MapFigures dark = figures_of(c, &SiteCalibration::dark_dn_per_s);
+    const double noise_dn = std::sqrt(figures_of(c, &SiteCalibration::readout_noise_dn2).mean);
+    const auto defects = std::ranges::count_if(c.sites, &SiteCalibration::defect);
+    nlohmann::ordered_json device_id;
+    if (c.chip.device_id) device_id = *c.chip.device_id;
+    json.write({{"kind", "calibration"},
+                {"sensor", c.chip.name},
+                {"device_id", device_id},
+                {"rows", c.shape.rows},
+                {"cols", c.shape.cols},
+                {"planes", c.shape.planes},
+                {"cfa", name_of(c.cfa)},
+                {"bit_depth", c.bit_depth},
+                {"flats", c.flats},
+                {"darks", c.darks},
+                {"gain", json_of(gain)},
+                {"gain_error", gain_error},
+                {"offset_dn", json_of(offset)},
+                {"dark_dn_per_s", json_of(dark)},
+                {"readout_noise_dn", noise_dn},
+                {"defects", defects}});
+    run.say(fmt::format(
+        "calibration  {} x {} pixels, {} of {} bits{}{}\n"
+        "frames       {}, {}\n"
+        "gain         1 +- {}, known to {}\n"
+        "offset       {} +- {} DN\n"
+        "dark current {} +- {} DN/s\n"
+        "noise        {} DN without light\n"
+        "defects      {}",
+        c.shape.cols, c.shape.rows, counted(c.shape.planes, "plane"), c.bit_depth,
+        c.chip.name.empty() ? "" : fmt::format(", sensor {}", terminal_text(c.chip.name)),
+        c.chip.device_id ? fmt::format(", device id {}", *c.chip.device_id) : "",
+        counted(c.flats, "flat"), counted(c.darks, "dark"), rounded(gain.deviation),
+        rounded(gain_error), rounded(offset.mean), rounded(offset.deviation), rounded(dark.mean),
+        rounded(dark.deviation), rounded(noise_dn), defects));
+}
+
+}  // namespace stipple

@@ -1,0 +1,76 @@
+// Quality of a chip with fixed pattern, without calibration and with calibrations of some frames,
+// and of the same chip without fixed pattern: the table of docs/calibration.md. `bench_calibration
+// [CLIP] [SIDE]` (mouse250_a 128).
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "tests/pipeline/chip_sites.h"
+#include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kSlots = 32;
+
+/// PSNR of a decoding, linear and after 1/2.2, and its seconds.
+std::string cell(const FluxVideo& video, const SensorParams& sensor, DecodeMethod method,
+                 std::vector<SiteCalibration> sites) {
+    const TemporaryFolder folder;
+    write_recording(video, schedule_of("random", video.shape()), sensor, folder / "clip.stipple");
+    const auto begin = std::chrono::steady_clock::now();
+    const FluxVideo decoded = read_recording(folder / "clip.stipple", method, std::move(sites));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const VideoQuality quality = quality_of(decoded, video);
+    return fmt::format("{:.2f} / {:.2f} ({:.1f} s)", quality.psnr_db, quality.psnr_gamma_db,
+                       seconds);
+}
+
+void print_table(const FluxVideo& video) {
+    fmt::print(
+        "| sensor | method | no fixed pattern | not calibrated | 25 flats | 100 flats |\n"
+        "|---|---|---|---|---|---|\n");
+    for (const std::string name : {"t6", "grasshopper"}) {
+        const SensorParams sensor = sensor_of(name);
+        const auto sites = [&](int images) {
+            return calibrated_chip(sensor, video.shape(), {.darks = images, .flats = images})
+                .calibration.sites;
+        };
+        const std::vector<SiteCalibration> few = sites(25), many = sites(100);
+        for (const std::string method : {"fast", "best"}) {
+            const DecodeMethod decoding = decode_method_from_name(method);
+            fmt::print("| `{}` | `{}` | {} | {} | {} | {} |\n", name, method,
+                       cell(video, without_fixed_pattern(sensor), decoding, {}),
+                       cell(video, sensor, decoding, {}), cell(video, sensor, decoding, few),
+                       cell(video, sensor, decoding, many));
+            std::fflush(stdout);  // rows take a while
+        }
+    }
+}
+
+}  // namespace
+}  // namespace stipple
+
+int main(int argc, char** argv) {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    const std::string clip = arguments.empty() ? "mouse250_a" : arguments[0];
+    const int side = arguments.size() < 2 ? 128 : std::atoi(arguments[1].c_str());
+    try {
+        const auto video = stipple::luminance_clip(clip);
+        if (!video || side < 1) {
+            fmt::print(stderr, "no clip {} of {} pixels\n", clip, side);
+            return 1;
+        }
+        stipple::print_table(stipple::middle(*video, side, stipple::kSlots));
+    } catch (const stipple::InputError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+}

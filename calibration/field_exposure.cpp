@@ -1,0 +1,44 @@
+#include "calibration/field_exposure.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "calibration/shrinkage.h"
+#include "core/colour_filter.h"
+#include "core/index.h"
+
+namespace stipple {
+
+std::size_t light_group(const StreamHeader& header, std::size_t site) {
+    if (header.cfa == ColourFilter::kNone) return site / header.shape.pixels();
+    const auto cols = index(header.shape.cols);
+    return index(
+        colour_plane(header.cfa, static_cast<int>(site / cols), static_cast<int>(site % cols)));
+}
+
+double FieldExposure::mean_variance(std::size_t site, std::size_t group) const {
+    constexpr double kNoisy = 4;
+    const double pooled = noise_dn2[group];
+    const double own = sums->count[site] > 1 ? sums->variance(site) : 0;
+    return (own > kNoisy * pooled ? own : pooled) / sums->count[site];
+}
+
+FieldExposure field_exposure(std::int64_t exposure_ns, const ExposureSums& sums,
+                             const StreamHeader& header) {
+    constexpr double kRoundingDn2 = 1.0 / 12;
+    FieldExposure exposure{.seconds = 1e-9 * static_cast<double>(exposure_ns), .sums = &sums};
+    for (std::size_t group = 0; group < kMaxLightGroups; ++group) {
+        EstimateMap means;
+        std::vector<double> variances;
+        for (std::size_t site = 0; site < sums.count.size(); ++site) {
+            if (light_group(header, site) != group || sums.count[site] < 2) continue;
+            means.value.push_back(sums.mean(site));
+            means.variance.push_back(0);
+            variances.push_back(sums.variance(site));
+        }
+        exposure.noise_dn2[group] = std::max(mean_of(variances, inliers(means)), kRoundingDn2);
+    }
+    return exposure;
+}
+
+}  // namespace stipple

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "calibration/field_samples.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// The groups of sites that see the same light: the planes, or the colours of a mosaic.
+inline constexpr std::size_t kMaxLightGroups = 4;
+
+[[nodiscard]] std::size_t light_group(const StreamHeader& header, std::size_t site);
+
+/// The samples of one exposure time, with their noise.
+struct FieldExposure {
+    double seconds = 0;
+    const ExposureSums* sums = nullptr;
+    /// Temporal variance of a sample, mean over the sites of a group, in DN^2; at least 1 / 12,
+    /// because the rounding errors of a sample without noise are the same in all frames.
+    std::array<double, kMaxLightGroups> noise_dn2{};
+
+    [[nodiscard]] bool has(std::size_t site) const { return sums->count[site] > 0; }
+    /// Variance of the mean of a site's samples: noise / number of samples. A site with more than
+    /// four times the noise of its group has its own. Precondition: has(site).
+    [[nodiscard]] double mean_variance(std::size_t site, std::size_t group) const;
+};
+
+/// `sums` must outlive the result.
+[[nodiscard]] FieldExposure field_exposure(std::int64_t exposure_ns, const ExposureSums& sums,
+                                           const StreamHeader& header);
+
+}  // namespace stipple

@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+
+#include "scenes/scene.h"
+#include "tests/pipeline/chip_sites.h"
+#include "tests/pipeline/clip.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+FluxVideo render() {
+    const SceneOptions options{
+        .slots = 20, .shape = {.rows = 64, .cols = 64, .planes = 3}, .time_samples = 2};
+    const Scene scene(scene_from_name("pan"), options);
+    FluxVideo video(options.slots, options.shape);
+    for (int slot = 0; slot < options.slots; ++slot) scene.render(slot, video.frame(slot));
+    return video;
+}
+
+double psnr(const FluxVideo& video, const SensorParams& sensor,
+            std::vector<SiteCalibration> sites) {
+    const TemporaryFolder folder;
+    write_recording(video, schedule_of("random", video.shape()), sensor, folder / "clip.stipple");
+    const FluxVideo decoded =
+        read_recording(folder / "clip.stipple", DecodeMethod::kFast, std::move(sites));
+    return quality_of(decoded, video).psnr_gamma_db;
+}
+
+// In much light, where the fixed pattern is the largest noise.
+TEST(CalibratedChipTest, AHundredFlatsUndoTheFixedPattern) {
+    const FluxVideo video = render();
+    const SensorParams sensor =
+        sensor_of("t6", {"dsnu_e=60", "column_noise_e=30", "black_level_dn=128"}, 4);
+    const ChipEstimate estimate =
+        calibrated_chip(sensor, video.shape(), {.darks = 100, .flats = 100});
+    const double equal = psnr(video, without_fixed_pattern(sensor), {});
+    const double uncalibrated = psnr(video, sensor, {});
+    const double calibrated = psnr(video, sensor, estimate.calibration.sites);
+    RecordProperty("equal_db", std::to_string(equal));
+    RecordProperty("uncalibrated_db", std::to_string(uncalibrated));
+    RecordProperty("calibrated_db", std::to_string(calibrated));
+    EXPECT_GT(calibrated, equal - 0.3);
+    EXPECT_LT(uncalibrated, equal - 0.6);
+}
+
+}  // namespace
+}  // namespace stipple
