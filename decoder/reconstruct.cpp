@@ -213,7 +213,7 @@ void check_block(const StreamReader& reader, const DecodeOptions& options, const
     const std::uint64_t voxels =
         block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
     const bool small = voxels / kVoxelsAByte > reader.input_bytes();
-    const std::uint64_t weight_bytes = header.schedule.weighted() ? sizeof(float) : 0;
+    const std::uint64_t weight_bytes = reader.header().schedule.weighted() ? sizeof(float) : 0;
     check_memory(core_slots * shape.sites() * sizeof(float) +
                      voxels * (named(options.method).voxel_bytes + weight_bytes),
                  reader.name(),
