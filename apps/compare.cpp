@@ -22,6 +22,7 @@
 #include "apps/subcommands.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"
+#include "core/shape_difference.h"
 #include "io/footage_files.h"
 #include "io/pending_output.h"
 #include "metrics/video_quality.h"
@@ -47,11 +48,9 @@ struct CompareOptions {
     const bool same_size = result.rows == wanted.rows && result.cols == wanted.cols;
     throw InputError(
         options.result,
-        fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
-                    "reference \"{}\" has {} x {} x {}{}",
-                    result.cols, result.rows, result.planes, options.reference, wanted.cols,
-                    wanted.rows, wanted.planes,
-                    same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
+        shape_difference(result, wanted,
+                         fmt::format("but the reference \"{}\" has", options.reference)) +
+            (same_size && result.planes != wanted.planes ? "; try --luminance" : ""));
 }
 
 /// \throws InputError for a video that ends before --until.

@@ -262,17 +262,14 @@ void DecodeRun::warn_of_end() const {
 
 void DecodeRun::tell_faults() const {
     StreamReport found = reader_.report();
-    if (found.samples == 0)
-        say_warning(fmt::format("{}: holds no sample, so the frames are black", arguments_.stream));
-    if (end_ == DecodeEnd::kStream && !found.complete && undamaged(found))
-        say_error("{}: has no end marker: it was cut off, or is still being written (--follow)",
-                  arguments_.stream);
+    if (const auto text = no_sample_text(found); !text.empty())
+        say_warning(fmt::format("{}: {}", arguments_.stream, text));
+    if (const auto text = no_end_text(found); end_ == DecodeEnd::kStream && !text.empty())
+        say_error("{}: {} (--follow)", arguments_.stream, text);
     if (end_ == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
-    if (!undamaged(found))
-        throw InputError(arguments_.stream,
-                         fmt::format("{}{}\n  the output contains the undamaged part",
-                                     damage_text(found), schedule_hint(found)));
+    if (const auto text = decoded_damage_text(found, schedule_hint(found)); !text.empty())
+        throw InputError(arguments_.stream, text);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "core/shape_difference.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
@@ -83,12 +84,8 @@ std::vector<fs::path> streams_of(const std::vector<std::string>& runs) {
 FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
     ReadAhead footage = read_footage(arguments.truth, arguments.footage);
     if (footage.shape() != shape)
-        throw InputError(
-            arguments.truth,
-            fmt::format("has frames of {} x {} x {} (width x height x planes), the runs "
-                        "have {} x {} x {}",
-                        footage.shape().cols, footage.shape().rows, footage.shape().planes,
-                        shape.cols, shape.rows, shape.planes));
+        throw InputError(arguments.truth,
+                         shape_difference(footage.shape(), shape, "the runs have"));
     constexpr std::uint64_t kValueBytes = 2 * sizeof(float);  // here, and in the video
     const std::uint64_t bytes = input_bytes(arguments.truth);
     std::vector<float> light;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/shape_difference.h"
 #include "metrics/video_quality.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
@@ -23,15 +24,6 @@ struct Comparison {
 struct ComparedVideos : VideoQuality {
     std::vector<VideoQuality> frames;  ///< between the margins
 };
-
-[[noreturn]] void fail_shape(const Footage& result, const Footage& reference) {
-    const FrameShape a = result.shape();
-    const FrameShape b = reference.shape();
-    throw InputError(result.name(),
-                     fmt::format("has frames of {} x {} x {} (width x height x planes), but the "
-                                 "reference has {} x {} x {}",
-                                 a.cols, a.rows, a.planes, b.cols, b.rows, b.planes));
-}
 
 /// Adds up the frames that both have. Without the GIL. Returns a warning if one has more, else an
 /// empty text. \throws InputError if one ends before `until`.
@@ -56,7 +48,9 @@ std::string compare_frames(Footage& result, Footage& reference, const Comparison
 
 ComparedVideos compare(Footage& result, Footage& reference, const Comparison& comparison,
                        const py::object& tell) {
-    if (result.shape() != reference.shape()) fail_shape(result, reference);
+    if (result.shape() != reference.shape())
+        throw InputError(result.name(), shape_difference(result.shape(), reference.shape(),
+                                                         "but the reference has"));
     QualityMeter meter(reference.shape(), comparison.options);
     CallProgress progress(tell, comparison.until ? comparison.until : reference.slots());
     std::string overlap;

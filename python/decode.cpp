@@ -50,12 +50,9 @@ DecodeTask decode_task(const std::string& method, const py::dict& settings, bool
 
 /// What the user should know of a stream that was decoded to its end, or to `until`.
 std::string warning_of(const StreamReport& report, bool to_end) {
-    const std::string damage = damage_text(report);
-    if (!damage.empty()) return damage + "\n  the output contains the undamaged part";
-    if (report.samples == 0) return "holds no sample, so the frames are black";
-    if (to_end && !report.complete)
-        return "has no end marker: it was cut off, or is still being written";
-    return {};
+    if (std::string damage = decoded_damage_text(report); !damage.empty()) return damage;
+    if (std::string empty = no_sample_text(report); !empty.empty()) return empty;
+    return to_end ? no_end_text(report) : "";
 }
 
 /// The calibration of the sites of a stream's chip.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "capture/capture_end.h"
+#include "capture/live_figures.h"
 #include "capture/live_origin.h"
 #include "capture/rate_warning.h"
 #include "core/error.h"
@@ -29,8 +30,6 @@ namespace stipple::python {
 namespace fs = std::filesystem;
 namespace {
 
-using namespace pybind11::literals;
-
 /// The sensor behind a camera, how late it may be, and who watches.
 struct LiveTask {
     ChosenSensor sensor;
@@ -45,24 +44,10 @@ struct LiveTask {
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);
-    dict.attr("update")(dict_of(
-        [&](const auto& add) { visit_speed_figures(recorder, live.slots_per_second, add); }));
-    py::list late;
-    for (const LateSlot& slot : live.late)
-        late.append(py::dict("slot"_a = slot.slot, "arrival_monotonic_ns"_a = slot.arrival_ns,
-                             "latency_us"_a = slot.latency_us));
-    dict.attr("update")(py::dict(
-        "frames"_a = live.latencies.count(), "frames_hz"_a = live.rate.hz(),
-        "slots_hz"_a = 1e6 / recorder.setup().params.slot_us,
-        "incomplete"_a = live.totals.incomplete, "repeated"_a = live.totals.repeated,
-        "lost"_a = lost_dict(live.totals),
-        "missing_before_first"_a = live.totals.missing_before_first,
-        "transport"_a = transport_dict(camera.transport()), "held_slots"_a = live.held_slots,
-        "unheld_slots"_a = live.unheld_slots, "late_slots"_a = live.late_slots, "late"_a = late,
-        "queue_peak_frames"_a = camera.peak(),
-        "latency_us"_a = py::dict("median"_a = live.latencies.quantile_us(0.5),
-                                  "p99"_a = live.latencies.quantile_us(0.99),
-                                  "max"_a = live.latencies.longest_us())));
+    dict.attr("update")(dict_of([&](const auto& add) {
+        visit_speed_figures(recorder, live.slots_per_second, add);
+        visit_live_figures({live, recorder, camera}, add);
+    }));
     return dict;
 }
 

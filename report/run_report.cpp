@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/shape_difference.h"
 #include "core/version.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
@@ -176,11 +177,7 @@ std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::s
                          "a report shows no grey masks; \"stipple decode\" takes this stream");
     const FrameShape shape = decoded_shape(run->reader.header());
     if (shape != impl_->shape)
-        throw InputError(stream.string(),
-                         fmt::format("has frames of {} x {} x {} (width x height x planes), the "
-                                     "report has {} x {} x {}",
-                                     shape.cols, shape.rows, shape.planes, impl_->shape.cols,
-                                     impl_->shape.rows, impl_->shape.planes));
+        throw InputError(stream.string(), shape_difference(shape, impl_->shape, "the report has"));
     run->read(impl_->options);
     impl_->slots = std::max(impl_->slots, run->loads.slots());
     if (const auto all = run->reader.slots(); all && *all > impl_->options.slots)

@@ -42,4 +42,18 @@ std::string damage_text(const StreamReport& report) {
     return text;
 }
 
+std::string decoded_damage_text(const StreamReport& report, std::string_view hint) {
+    if (undamaged(report)) return {};
+    return fmt::format("{}{}\n  the output contains the undamaged part", damage_text(report), hint);
+}
+
+std::string no_sample_text(const StreamReport& report) {
+    return report.samples == 0 ? "holds no sample, so the frames are black" : "";
+}
+
+std::string no_end_text(const StreamReport& report) {
+    if (report.complete || !undamaged(report)) return {};
+    return "has no end marker: it was cut off, or is still being written";
+}
+
 }  // namespace stipple

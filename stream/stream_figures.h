@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/colour_filter.h"
@@ -26,6 +27,15 @@ struct TileShape {
 
 /// Damage of a stream in lines of text: the places of at most ten. Empty if it is undamaged.
 [[nodiscard]] std::string damage_text(const StreamReport& report);
+
+/// Of a decoded stream that is damaged: `damage_text`, then `hint`, then that the output contains
+/// the undamaged part. Empty if it is undamaged.
+[[nodiscard]] std::string decoded_damage_text(const StreamReport& report,
+                                              std::string_view hint = {});
+/// Of a decoded stream without a sample; else empty.
+[[nodiscard]] std::string no_sample_text(const StreamReport& report);
+/// Of an undamaged stream that was read up to its end, and has no end marker; else empty.
+[[nodiscard]] std::string no_end_text(const StreamReport& report);
 
 template <typename Add>
 void visit_header_figures(const StreamHeader& header, const Add& add) {

@@ -14,26 +14,7 @@ namespace stipple {
 nlohmann::ordered_json live_json(const LiveReport& report) {
     const LiveEmulation& live = report.emulation;
     nlohmann::ordered_json json = emulation_json(report.recorder, live.slots_per_second);
-    json["frames"] = live.latencies.count();
-    json["frames_hz"] = or_null(live.rate.hz());
-    json["slots_hz"] = 1e6 / report.recorder.setup().params.slot_us;
-    json["incomplete"] = live.totals.incomplete;
-    json["repeated"] = live.totals.repeated;
-    json["lost"] = lost_json(live.totals);
-    json["missing_before_first"] = live.totals.missing_before_first;
-    json["transport"] = transport_json(report.camera.transport());
-    json["held_slots"] = live.held_slots;
-    json["unheld_slots"] = live.unheld_slots;
-    json["late_slots"] = live.late_slots;
-    json["late"] = nlohmann::ordered_json::array();
-    for (const LateSlot& late : live.late)
-        json["late"].push_back({{"slot", late.slot},
-                                {"arrival_monotonic_ns", late.arrival_ns},
-                                {"latency_us", late.latency_us}});
-    json["queue_peak_frames"] = report.camera.peak();
-    json["latency_us"] = {{"median", live.latencies.quantile_us(0.5)},
-                          {"p99", live.latencies.quantile_us(0.99)},
-                          {"max", live.latencies.longest_us()}};
+    json.update(json_of([&](const auto& add) { visit_live_figures(report, add); }));
     return json;
 }
 

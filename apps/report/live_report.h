@@ -3,16 +3,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "capture/live_emulator.h"
+#include "capture/live_figures.h"
 
 namespace stipple {
-
-/// Results of `capture live`.
-struct LiveReport {
-    const LiveEmulation& emulation;
-    const StreamRecorder& recorder;
-    const LiveCamera& camera;  ///< stopped
-};
 
 /// The keys of `capture live` in docs/cli.md, without `preview`.
 [[nodiscard]] nlohmann::ordered_json live_json(const LiveReport& report);

@@ -38,6 +38,23 @@ TEST(StreamFiguresTest, DamageTextNamesTenPlacesAndCountsTheOthers) {
     EXPECT_TRUE(text.ends_with("\n  and 7 more"));
 }
 
+TEST(StreamFiguresTest, TextsOnADecodedStreamAreEmptyWhereNothingIsAmiss) {
+    StreamReport report;
+    report.samples = 1;
+    report.complete = true;
+    EXPECT_EQ(decoded_damage_text(report, "\n  a hint"), "");
+    EXPECT_EQ(no_sample_text(report), "");
+    EXPECT_EQ(no_end_text(report), "");
+    report.complete = false;
+    EXPECT_TRUE(no_end_text(report).starts_with("has no end marker"));
+    report.samples = 0;
+    EXPECT_TRUE(no_sample_text(report).starts_with("holds no sample"));
+    report.tail_bytes = 7;  // told by the text on the damage
+    EXPECT_EQ(no_end_text(report), "");
+    EXPECT_EQ(decoded_damage_text(report, "\n  a hint"),
+              damage_text(report) + "\n  a hint\n  the output contains the undamaged part");
+}
+
 // A reader with ReadPolicy::kCounts keeps one pixel of a random schedule, whose tile is the array.
 TEST(StreamFiguresTest, TheTileOfARandomScheduleIsTheArray) {
     StreamHeader header{.shape = {.rows = 6, .cols = 8, .planes = 1},

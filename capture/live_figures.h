@@ -1,0 +1,48 @@
+#pragma once
+
+#include "capture/live_emulator.h"
+#include "capture/session_figures.h"
+#include "core/nested_figures.h"
+
+namespace stipple {
+
+/// Results of a live emulation.
+struct LiveReport {
+    const LiveEmulation& emulation;
+    const StreamRecorder& recorder;
+    const LiveCamera& camera;  ///< stopped
+};
+
+/// The figures of a live emulation under their names of docs/cli.md (`capture live`), in addition
+/// to those of its stream (readout/emulation_figures.h) and without `preview`. Calls `add(name,
+/// value)` for each; values are numbers, std::nullopt, and those of core/nested_figures.h.
+template <typename Add>
+void visit_live_figures(const LiveReport& report, const Add& add) {
+    const LiveEmulation& live = report.emulation;
+    add("frames", live.latencies.count());
+    add("frames_hz", live.rate.hz());
+    add("slots_hz", 1e6 / report.recorder.setup().params.slot_us);
+    add("incomplete", live.totals.incomplete);
+    add("repeated", live.totals.repeated);
+    add("lost", NestedFigures{[&](const auto& inner) { visit_lost_figures(live.totals, inner); }});
+    add("missing_before_first", live.totals.missing_before_first);
+    add("transport", NestedFigures{[&](const auto& inner) {
+            visit_transport_figures(report.camera.transport(), inner);
+        }});
+    add("held_slots", live.held_slots);
+    add("unheld_slots", live.unheld_slots);
+    add("late_slots", live.late_slots);
+    add("late", FigureList{live.late, [](const LateSlot& late, const auto& inner) {
+                               inner("slot", late.slot);
+                               inner("arrival_monotonic_ns", late.arrival_ns);
+                               inner("latency_us", late.latency_us);
+                           }});
+    add("queue_peak_frames", report.camera.peak());
+    add("latency_us", NestedFigures{[&](const auto& inner) {
+            inner("median", live.latencies.quantile_us(0.5));
+            inner("p99", live.latencies.quantile_us(0.99));
+            inner("max", live.latencies.longest_us());
+        }});
+}
+
+}  // namespace stipple
