@@ -36,7 +36,8 @@ enum class RandomPurpose : std::uint32_t {
     kScene = 3,
     kColumnPattern = 4,
     kConverterPattern = 5,
-    kRowNoise = 6
+    kRowNoise = 6,
+    kColumnNoise = 7
 };
 
 /// Version of the counter layout, counter word 3. It defines the bits of every random draw.

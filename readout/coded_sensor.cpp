@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "readout/sequencer.h"
 #include "sensor_model/physical_pixels.h"
 #include "sensor_model/pixel_array.h"
+#include "sensor_model/slot_light.h"
 
 namespace stipple {
 namespace {
@@ -53,10 +55,17 @@ void add(std::span<const float> frame, std::span<float> light) noexcept {
     for (std::size_t i = 0; i < light.size(); ++i) light[i] += frame[i];
 }
 
-/// Adds to charge store 1 or 2 where it is the one that is open.
-void add_where(std::span<const std::uint8_t> open, int store, std::span<const float> frame,
-               std::span<float> light) noexcept {
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] += open[i] == store ? frame[i] : 0.0F;
+/// Adds to charge store 1 or 2 where it is the one that is open, and the fraction `parasitic` where
+/// it is not.
+void add_where(std::span<const std::uint8_t> open, int store, float parasitic,
+               std::span<const float> frame, std::span<float> light) noexcept {
+    if (parasitic == 0) {
+        for (std::size_t i = 0; i < light.size(); ++i)
+            light[i] += open[i] == store ? frame[i] : 0.0F;
+        return;
+    }
+    for (std::size_t i = 0; i < light.size(); ++i)
+        light[i] += open[i] == store ? frame[i] : parasitic * frame[i];
 }
 
 /// Moves the light of `pixels` out of `plane`, which leaves them reset.
@@ -109,11 +118,16 @@ struct CodedSensor::Impl {
           shape(frame_shape),
           stores(schedule.charge_stores()) {
         check(shape);
-        if (params.mode == SensorMode::kPhysical) physical.emplace(params, shape, seed);
         light.resize(shape.sites() * static_cast<std::size_t>(stores));
+        if (params.mode == SensorMode::kPhysical) set_up_physical(params, schedule, seed);
         bands.resize(static_cast<std::size_t>((shape.rows + kBandRows - 1) / kBandRows));
     }
 
+    void set_up_physical(const SensorParams& params, const ExposureSchedule& schedule,
+                         std::uint64_t seed);
+    [[nodiscard]] std::span<const float> light_of_slot(std::span<const float> frame);
+    void find_overflow(std::span<const float> arriving, int row);
+    void leave_lag(std::uint32_t plane, Band& band);
     void expose_band(std::span<const float> frame, int first_row, Band& band);
     void collect(std::span<const float> frame, int row, Band& band);
     void read(std::uint32_t plane, Band& band);
@@ -122,6 +136,10 @@ struct CodedSensor::Impl {
 
     PixelArray array;
     std::optional<PhysicalPixels> physical;  ///< in place of `array` in physical mode
+    std::optional<SlotLight> slot_light;     ///< where terms change the light of a slot
+    std::vector<float> overflow;             ///< of this slot, for blooming; else empty
+    float lag = 0;
+    float parasitic = 0;  ///< fraction of light that a closed store collects
     ColumnAdc adc;
     Sequencer sequencer;
     FrameShape shape;
@@ -130,6 +148,59 @@ struct CodedSensor::Impl {
     std::vector<Band> bands;
     ReadoutStats stats;  ///< `stats.slots` is the slot to expose next
 };
+
+void CodedSensor::Impl::set_up_physical(const SensorParams& params,
+                                        const ExposureSchedule& schedule, std::uint64_t seed) {
+    const PhysicalTerms& terms = params.physical;
+    physical.emplace(params, shape, seed);
+    lag = static_cast<float>(terms.lag);
+    // A single store that is always open is never closed, also not before its first exposure.
+    if (stores == 2 || schedule.light_throughput() < 1)
+        parasitic = static_cast<float>(terms.parasitic_light_sensitivity);
+    if (SlotLight::changes(terms)) slot_light.emplace(terms, shape);
+    if (terms.blooming != 0) overflow.resize(shape.sites());
+}
+
+/// The light of this slot that overflows in the pixels of one row: what comes when the well of the
+/// open store is full.
+void CodedSensor::Impl::find_overflow(std::span<const float> arriving, int row) {
+    const auto cols = static_cast<std::size_t>(shape.cols);
+    std::vector<std::uint8_t> open(cols);
+    sequencer.list_open(stats.slots, row, open);
+    for (std::uint32_t plane = 0; plane < static_cast<std::uint32_t>(shape.planes); ++plane) {
+        const std::size_t in_plane = static_cast<std::size_t>(row) * cols;
+        const std::size_t first = plane * shape.pixels() + in_plane;
+        for (std::size_t col = 0; col < cols; ++col) {
+            const SiteTraits& site = physical->pattern().plane(plane)[in_plane + col];
+            const float come = std::min(arriving[first + col], std::numeric_limits<float>::max());
+            const float held = light[first + col + (open[col] == 2 ? shape.sites() : 0)];
+            const float beyond = held + come - physical->full_well_light(site);
+            const bool collects = open[col] != 0 && site.responsivity_e > 0;
+            overflow[first + col] = collects ? std::clamp(beyond, 0.0F, come) : 0;
+        }
+    }
+}
+
+/// The light that arrives in each pixel in this slot.
+std::span<const float> CodedSensor::Impl::light_of_slot(std::span<const float> frame) {
+    if (!slot_light) return frame;
+    const auto arriving = slot_light->arriving(frame);
+    if (overflow.empty()) return arriving;
+    parallel_for(0, shape.rows, [&](int row) { find_overflow(arriving, row); });
+    return slot_light->with_overflow(overflow);
+}
+
+/// Keeps a fraction of the charge of the due pixels for the next exposure of their stores.
+void CodedSensor::Impl::leave_lag(std::uint32_t plane, Band& band) {
+    const auto at_plane = std::span(light).subspan(plane * shape.pixels());
+    for (std::size_t i = 0; i < band.pixels.size(); ++i) {
+        const SiteTraits& site = physical->pattern().plane(plane)[band.pixels[i]];
+        const float come = std::min(band.light[i], std::numeric_limits<float>::max());
+        const float left = lag * std::min(come, physical->full_well_light(site));
+        band.light[i] = come - left;
+        at_plane[band.pixels[i] + (stores == 2 ? band.stores[i] * shape.sites() : 0)] = left;
+    }
+}
 
 /// Adds the light of one row, all planes.
 void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& band) {
@@ -142,9 +213,10 @@ void CodedSensor::Impl::collect(std::span<const float> frame, int row, Band& ban
     for (auto at = static_cast<std::size_t>(row) * cols; at < frame.size(); at += shape.pixels()) {
         const auto from = frame.subspan(at, cols);
         const auto to = std::span(light).subspan(at, cols);
-        all_open ? add(from, to) : add_where(band.open, 1, from, to);
+        all_open ? add(from, to) : add_where(band.open, 1, parasitic, from, to);
         if (stores == 2)
-            add_where(band.open, 2, from, std::span(light).subspan(at + shape.sites(), cols));
+            add_where(band.open, 2, parasitic, from,
+                      std::span(light).subspan(at + shape.sites(), cols));
     }
 }
 
@@ -163,6 +235,7 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     stores == 1 ? take(band.pixels, at_plane, band.light)
                 : take(band, shape.sites(), at_plane, band.light);
+    if (lag != 0) leave_lag(plane, band);
     charge(plane, band);
     adc.convert(band.electrons, band.plane_dn);
     const auto planes = static_cast<std::size_t>(shape.planes);
@@ -206,6 +279,7 @@ void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
     assert(frame.size() == impl_->shape.sites());
     auto& bands = impl_->bands;
     const auto band_of = [&](int i) -> Band& { return bands[static_cast<std::size_t>(i)]; };
+    frame = impl_->light_of_slot(frame);
     parallel_for(0, static_cast<int>(bands.size()),
                  [&](int i) { impl_->expose_band(frame, i * kBandRows, band_of(i)); });
 

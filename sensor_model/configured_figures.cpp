@@ -19,9 +19,11 @@ emva1288::CameraFigures configured_figures(const SensorParams& params) {
     f.quantum_efficiency = terms.quantum_efficiency * alive;
     f.dark_noise_e = std::sqrt(read_e * read_e + dark_e + share * hot_e);
     f.saturation_e = params.saturation_e();
-    f.dsnu_e = std::sqrt(terms.dsnu_e * terms.dsnu_e + terms.column_noise_e * terms.column_noise_e +
-                         share * (1 - share) * hot_e * hot_e);
+    f.dsnu_column_e = terms.column_noise_e;
+    f.dsnu_pixel_e = std::hypot(terms.dsnu_e, std::sqrt(share * (1 - share)) * hot_e);
+    f.dsnu_e = std::hypot(f.dsnu_pixel_e, f.dsnu_column_e);
     f.prnu = std::sqrt((1 + terms.prnu * terms.prnu) / alive - 1);
+    f.prnu_pixel = f.prnu;
     f.snr_max = std::sqrt(f.saturation_e);
     const double noise2_e2 =
         f.dark_noise_e * f.dark_noise_e + params.gain_e_per_dn() * params.gain_e_per_dn() / 12;

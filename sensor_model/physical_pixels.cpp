@@ -8,6 +8,7 @@
 #include "core/philox.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/poisson.h"
+#include "sensor_model/power_of_two.h"
 
 namespace stipple {
 namespace {
@@ -20,9 +21,15 @@ const SensorParams& checked(const SensorParams& params) {
 }
 
 /// Mean electrons; light without end is held finite, so that no responsivity makes it NaN.
-float mean_of(const SiteTraits& site, float light, int open_slots) {
+float mean_of(const SiteTraits& site, float light, float dark_slots) {
     return site.responsivity_e * std::min(light, std::numeric_limits<float>::max()) +
-           site.dark_e_per_slot * static_cast<float>(open_slots);
+           site.dark_e_per_slot * dark_slots;
+}
+
+/// Charge above which a pixel is read at low gain.
+float gain_limit(const PhysicalTerms& terms) {
+    return terms.dual_gain_limit_e == 0 ? std::numeric_limits<float>::infinity()
+                                        : static_cast<float>(terms.dual_gain_limit_e);
 }
 
 }  // namespace
@@ -30,22 +37,41 @@ float mean_of(const SiteTraits& site, float light, int open_slots) {
 PhysicalPixels::PhysicalPixels(const SensorParams& params, FrameShape shape, std::uint64_t seed)
     : pattern_(checked(params), shape),
       row_noise_e_(params.physical.row_noise_e.begin(), params.physical.row_noise_e.end()),
+      column_noise_e_(static_cast<float>(params.physical.column_temporal_noise_e)),
       cols_(static_cast<std::uint32_t>(shape.cols)),
       full_well_e_(static_cast<float>(params.full_well_e)),
+      loss_per_e_(static_cast<float>(params.physical.response_loss / params.full_well_e)),
+      dual_gain_limit_e_(gain_limit(params.physical)),
+      low_gain_noise_e_(static_cast<float>(params.physical.low_gain_read_noise_e)),
+      doublings_per_slot_(params.physical.temperature_drift_c_per_s * params.slot_us * 1e-6 /
+                          params.physical.dark_doubling_c),
       shot_noise_(params.shot_noise),
       seed_(seed) {}
 
 Charge PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
-                              float row_noise_e) const noexcept {
-    const float read = noise * site.read_noise_e + std::min(count, full_well_e_);
-    return {site.gain * (read + (site.offset_e + row_noise_e)), count > full_well_e_};
+                              float shared_noise_e) const noexcept {
+    const float held = std::min(count, full_well_e_);
+    const float sigma = held > dual_gain_limit_e_ ? low_gain_noise_e_ : site.read_noise_e;
+    const float read = noise * sigma + (held - loss_per_e_ * held * held);
+    return {site.gain * (read + (site.offset_e + shared_noise_e)), count > full_well_e_};
 }
 
-Charge PhysicalPixels::expose_one(const SiteTraits& site, float light, int open_slots,
+Charge PhysicalPixels::expose_one(const SiteTraits& site, float light, float dark_slots,
                                   const SampleDraws& draws) const noexcept {
-    const float mean = mean_of(site, light, open_slots);
+    const float mean = mean_of(site, light, dark_slots);
     const float count = shot_noise_ ? static_cast<float>(poisson_one(mean, draws.shot)) : mean;
-    return charge(count, site, normal_one(draws.read), draws.row_noise_e);
+    return charge(count, site, normal_one(draws.read), draws.shared_noise_e);
+}
+
+float PhysicalPixels::dark_factor(std::uint32_t slot) const noexcept {
+    return static_cast<float>(power_of_two(std::clamp(doublings_per_slot_ * slot, -900.0, 30.0)));
+}
+
+float PhysicalPixels::column_noise_e(std::uint32_t pixel, std::uint32_t slot,
+                                     std::uint32_t plane) const noexcept {
+    const auto words =
+        philox4x32(random_address(pixel % cols_, slot, RandomPurpose::kColumnNoise, plane), seed_);
+    return normal_one(words[0]) * column_noise_e_;
 }
 
 float PhysicalPixels::row_noise_e(std::uint32_t pixel, std::uint32_t slot,
@@ -59,10 +85,13 @@ float PhysicalPixels::row_noise_e(std::uint32_t pixel, std::uint32_t slot,
     return normal_one(words[0]) * row_noise_e_[tap];
 }
 
-/// Adds the row noise of each pixel; one that follows another in the same row and tap shares it.
-void PhysicalPixels::add_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
-                                   std::uint32_t plane, std::span<float> noise) const noexcept {
-    if (row_noise_e_.empty()) return;
+/// The row noise of each pixel; one that follows another in the same row and tap shares it.
+void PhysicalPixels::fill_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
+                                    std::uint32_t plane, std::span<float> noise) const noexcept {
+    if (row_noise_e_.empty()) {
+        std::ranges::fill(noise, 0.0F);
+        return;
+    }
     const auto taps = static_cast<std::uint32_t>(row_noise_e_.size());
     std::uint32_t first = 1, end = 0;  // pixels of the row and tap of `shared`
     float shared = 0;
@@ -82,6 +111,13 @@ void PhysicalPixels::add_row_noise(std::span<const std::uint32_t> pixel, std::ui
     }
 }
 
+void PhysicalPixels::add_column_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
+                                      std::uint32_t plane, std::span<float> noise) const noexcept {
+    if (column_noise_e_ == 0) return;
+    for (std::size_t i = 0; i < pixel.size(); ++i)
+        noise[i] += column_noise_e(pixel[i], slot, plane);
+}
+
 void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, std::uint32_t plane,
                             const Charges& charges) const noexcept {
     assert(exposed.light.size() == exposed.pixel.size());
@@ -91,22 +127,24 @@ void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, st
     const SiteTraits* sites = pattern_.plane(plane);
     const SampleAddress address{.seed = seed_, .slot = slot, .plane = plane};
     std::array<std::uint32_t, kChunk> shot, read, count;
-    std::array<float, kChunk> mean, noise, rows{};
+    std::array<float, kChunk> mean, noise, shared;
+    const float dark = dark_factor(slot);
     for (std::size_t begin = 0; begin < exposed.pixel.size(); begin += kChunk) {
         const std::size_t n = std::min(kChunk, exposed.pixel.size() - begin);
         const auto pixel = exposed.pixel.subspan(begin, n);
         for (std::size_t i = 0; i < n; ++i)
-            mean[i] =
-                mean_of(sites[pixel[i]], exposed.light[begin + i], exposed.open_slots[begin + i]);
+            mean[i] = mean_of(sites[pixel[i]], exposed.light[begin + i],
+                              static_cast<float>(exposed.open_slots[begin + i]) * dark);
         sample_words(pixel, address, std::span(shot).first(n), std::span(read).first(n));
         normal(std::span(read).first(n), std::span(noise).first(n));
-        add_row_noise(pixel, slot, plane, std::span(rows).first(n));
+        fill_row_noise(pixel, slot, plane, std::span(shared).first(n));
+        add_column_noise(pixel, slot, plane, std::span(shared).first(n));
         if (shot_noise_) {
             poisson(std::span(mean).first(n), std::span(shot).first(n), std::span(count).first(n));
             for (std::size_t i = 0; i < n; ++i) mean[i] = static_cast<float>(count[i]);
         }
         for (std::size_t i = 0; i < n; ++i) {
-            const Charge one = charge(mean[i], sites[pixel[i]], noise[i], rows[i]);
+            const Charge one = charge(mean[i], sites[pixel[i]], noise[i], shared[i]);
             charges.electrons[begin + i] = one.electrons;
             if (!charges.clipped.empty()) charges.clipped[begin + i] = one.clipped ? 1 : 0;
         }

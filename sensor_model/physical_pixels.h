@@ -19,22 +19,25 @@ struct ExposedPixels {
     std::span<const std::uint16_t> open_slots;  ///< slots in which each was open
 };
 
-/// The random words of one sample, and the row noise that it shares with its neighbours.
+/// The random words of one sample, and the noise that it shares with its row and its column.
 struct SampleDraws {
     std::uint32_t shot;
     std::uint32_t read;
-    float row_noise_e;
+    float shared_noise_e;
 };
 
 /// Light to charge in the physical mode (docs/sensor_model.md):
 ///
-///     electrons = g (min(Z, w) + V + offset + row noise),   Z ~ Poisson(R x + D n)
+///     electrons = g (Q + V + offset + row noise + column noise)
+///     Q = min(Z, w) (1 - e min(Z, w) / w),   Z ~ Poisson(R x + D n)
 ///
-/// with light x, n open slots, responsivity R, D dark electrons per slot, full well w, read and
-/// reset noise V and relative conversion gain g of the pixel. The result is the input of the ADC,
-/// in electrons at gain 1. Row noise is one draw per (row, slot, plane, tap) at the address (row,
-/// slot, kRowNoise, plane + 256 tap); taps are equal blocks of columns. As in PixelArray, the words
-/// depend on seed, slot, plane and pixel only.
+/// with light x, n open slots, responsivity R, D dark electrons per slot, full well w, response
+/// loss e, read and reset noise V and relative conversion gain g of the pixel. The result is the
+/// input of the ADC, in electrons at gain 1. V has the standard deviation `low_gain_read_noise_e`
+/// where min(Z, w) exceeds `dual_gain_limit_e`. Row noise is one draw per (row, slot, plane, tap)
+/// at the address (row, slot, kRowNoise, plane + 256 tap); taps are equal blocks of columns. Column
+/// noise is one draw per (column, slot, plane) at (column, slot, kColumnNoise, plane). As in
+/// PixelArray, the words depend on seed, slot, plane and pixel only.
 class PhysicalPixels {
   public:
     /// \throws InputError as `validate`. Precondition: shape.sites() > 0.
@@ -45,26 +48,47 @@ class PhysicalPixels {
     void expose(const ExposedPixels& exposed, std::uint32_t slot, std::uint32_t plane,
                 const Charges& charges) const noexcept;
 
-    /// One sample with the given draws: the reference of `expose`.
-    [[nodiscard]] Charge expose_one(const SiteTraits& site, float light, int open_slots,
+    /// One sample with the given draws: the reference of `expose`. `dark_slots` is the number of
+    /// open slots times `dark_factor`.
+    [[nodiscard]] Charge expose_one(const SiteTraits& site, float light, float dark_slots,
                                     const SampleDraws& draws) const noexcept;
 
     /// Row noise of a sample in electrons.
     [[nodiscard]] float row_noise_e(std::uint32_t pixel, std::uint32_t slot,
                                     std::uint32_t plane) const noexcept;
 
+    /// Temporal column noise of a sample in electrons.
+    [[nodiscard]] float column_noise_e(std::uint32_t pixel, std::uint32_t slot,
+                                       std::uint32_t plane) const noexcept;
+
+    /// Dark current of an exposure that ends in `slot`, relative to that at `temperature_c`; at
+    /// most 2^30.
+    [[nodiscard]] float dark_factor(std::uint32_t slot) const noexcept;
+
+    /// Light that fills the well of a pixel; infinite without responsivity.
+    [[nodiscard]] float full_well_light(const SiteTraits& site) const noexcept {
+        return full_well_e_ / site.responsivity_e;
+    }
+
     [[nodiscard]] const FixedPattern& pattern() const { return pattern_; }
 
   private:
     [[nodiscard]] Charge charge(float count, const SiteTraits& site, float noise,
-                                float row_noise_e) const noexcept;
-    void add_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
-                       std::uint32_t plane, std::span<float> noise) const noexcept;
+                                float shared_noise_e) const noexcept;
+    void fill_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
+                        std::uint32_t plane, std::span<float> noise) const noexcept;
+    void add_column_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
+                          std::uint32_t plane, std::span<float> noise) const noexcept;
 
     FixedPattern pattern_;
     std::vector<float> row_noise_e_;  ///< by tap; empty: none
+    float column_noise_e_;
     std::uint32_t cols_;
     float full_well_e_;
+    float loss_per_e_;         ///< of the response
+    float dual_gain_limit_e_;  ///< infinite: one gain
+    float low_gain_noise_e_;
+    double doublings_per_slot_;  ///< of the dark current
     bool shot_noise_;
     std::uint64_t seed_;
 };

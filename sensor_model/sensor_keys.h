@@ -43,6 +43,20 @@ void visit_sensor_keys(Params& params, const Visit& visit) {
           params.mode);
 }
 
+/// The keys of mode "physical" by which pixels and exposures share light.
+template <typename Terms, typename Visit>
+void visit_shared_light_keys(Terms& terms, const Visit& visit) {
+    visit({"crosstalk", {0, 0.8}, "", "fraction of light that reaches the four neighbours"},
+          terms.crosstalk);
+    visit({"blooming", {0, 1}, "", "fraction of overflow that reaches the four neighbours"},
+          terms.blooming);
+    visit({"lag", {0, 0.5}, "", "fraction of charge that stays for the next exposure"}, terms.lag);
+    visit({"parasitic_light_sensitivity", {0, 1}, "", "fraction of light of a closed charge store"},
+          terms.parasitic_light_sensitivity);
+    visit({"row_skew_slots", {0, 1}, "slots", "delay of the last row behind the first"},
+          terms.row_skew_slots);
+}
+
 /// The keys of mode "physical" only.
 template <typename Terms, typename Visit>
 void visit_physical_keys(Terms& terms, const Visit& visit) {
@@ -56,6 +70,8 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
           terms.temperature_c);
     visit({"dark_doubling_c", {1, 100}, "kelvins", "step that doubles the dark current"},
           terms.dark_doubling_c);
+    visit({"temperature_drift_c_per_s", {-100, 100}, "kelvins/s", "rise of temperature_c"},
+          terms.temperature_drift_c_per_s);
     visit({"dsnu_e", {0, 1e5}, "electrons", "DSNU: standard deviation of the pixels' offsets"},
           terms.dsnu_e);
     visit({"prnu", {0, 0.5}, "", "PRNU: relative standard deviation of the responsivity"},
@@ -68,8 +84,16 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
           terms.row_noise_e);
     visit({"column_noise_e", {0, 1e5}, "electrons", "standard deviation of column offsets"},
           terms.column_noise_e);
+    visit({"column_temporal_noise_e", {0, 1e5}, "electrons", "sigma of column noise, by slot"},
+          terms.column_temporal_noise_e);
     visit({"black_level_dn", {0, 65535}, "DN", "of no charge; absent: 4 sigma of a dark sample"},
           terms.black_level_dn);
+    visit({"response_loss", {0, 0.4}, "", "non-linearity: relative loss at the full well"},
+          terms.response_loss);
+    visit({"low_gain_read_noise_e", {0, 1e5}, "electrons", "sigma above dual_gain_limit_e"},
+          terms.low_gain_read_noise_e);
+    visit({"dual_gain_limit_e", {0, 1e7}, "electrons", "charge up to which high gain is read"},
+          terms.dual_gain_limit_e);
     visit({"inl_dn", {-1000, 1000}, "DN", "INL: peak of the converter's integral non-linearity"},
           terms.inl_dn);
     visit({"dnl_dn", {0, 0.5}, "DN", "DNL: largest differential non-linearity of the converter"},
@@ -78,6 +102,7 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
     visit({"hot_pixel_dark_current", {0, 1e9}, "electrons/s", "added dark current of hot pixels"},
           terms.hot_pixel_dark_current);
     visit({"dead_pixel_fraction", {0, 0.5}, "", "share of dead pixels"}, terms.dead_pixel_fraction);
+    visit_shared_light_keys(terms, visit);
     visit({"device_id", {0, 4294967295}, "", "which chip: seed of the fixed pattern"},
           terms.device_id);
     visit({"cfa", {}, "", "colour filter array", kColourFilterNames}, terms.cfa);

@@ -71,6 +71,8 @@ void check_together(const SensorParams& params) {
         fail(params, "dark_current_e_per_s",
              fmt::format("{:.3g} electrons in a slot at {} degrees; more than 1e9",
                          params.dark_e_per_slot(), terms.temperature_c));
+    if ((terms.dual_gain_limit_e == 0) != (terms.low_gain_read_noise_e == 0))
+        fail(params, "dual_gain_limit_e", "needs low_gain_read_noise_e, and the other way round");
     if (terms.hot_pixel_fraction + terms.dead_pixel_fraction > 0.5)
         fail(params, "hot_pixel_fraction", "more than half of the pixels are hot or dead");
 }
@@ -104,8 +106,9 @@ double SensorParams::temporal_read_noise_e() const {
     double row2 = 0;
     for (const double noise : physical.row_noise_e) row2 += noise * noise;
     if (!physical.row_noise_e.empty()) row2 /= static_cast<double>(physical.row_noise_e.size());
+    const double column = physical.column_temporal_noise_e;
     return std::sqrt(read_noise_e * read_noise_e + physical.reset_noise_e * physical.reset_noise_e +
-                     row2);
+                     row2 + column * column);
 }
 
 double default_black_level_dn(const SensorParams& params) {

@@ -41,8 +41,8 @@ struct SensorParams {
     /// Mean electrons of light at which a pixel without defects reaches the full well or the
     /// highest DN.
     [[nodiscard]] double saturation_e() const;
-    /// Standard deviation of the temporal noise of a readout, in electrons: read, reset and row
-    /// noise (root mean square over the taps).
+    /// Standard deviation of the temporal noise of a readout, in electrons: read, reset, row noise
+    /// (root mean square over the taps) and column noise; of dual-gain pixels at high gain.
     [[nodiscard]] double temporal_read_noise_e() const;
 
     bool operator==(const SensorParams&) const = default;

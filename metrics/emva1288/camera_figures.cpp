@@ -116,23 +116,41 @@ double dark_noise_e(double dark_variance_dn2, double gain_dn_per_e) {
     return std::sqrt(telling - kRoundingVariance) / gain_dn_per_e;
 }
 
-void set_figures(Evaluation& evaluation, const ImageStatistics& bright, const ImageStatistics& dark,
+/// Standard deviation of a variance that a statistical error may have made negative.
+double deviation(double variance) {
+    return std::sqrt(std::max(variance, 0.0));
+}
+
+void set_non_uniformity(CameraFigures& f, const GroupStatistics& bright,
+                        const GroupStatistics& dark) {
+    const double k = f.gain_dn_per_e;
+    const double signal = bright.images.mean_dn - dark.images.mean_dn;
+    f.dsnu_e = deviation(dark.images.spatial_variance_dn2) / k;
+    f.dsnu_row_e = deviation(dark.split.row_dn2) / k;
+    f.dsnu_column_e = deviation(dark.split.column_dn2) / k;
+    f.dsnu_pixel_e = deviation(dark.split.pixel_dn2) / k;
+    f.prnu =
+        deviation(bright.images.spatial_variance_dn2 - dark.images.spatial_variance_dn2) / signal;
+    f.prnu_row = deviation(bright.split.row_dn2 - dark.split.row_dn2) / signal;
+    f.prnu_column = deviation(bright.split.column_dn2 - dark.split.column_dn2) / signal;
+    f.prnu_pixel = deviation(bright.split.pixel_dn2 - dark.split.pixel_dn2) / signal;
+}
+
+void set_figures(Evaluation& evaluation, const GroupStatistics& bright, const GroupStatistics& dark,
                  const std::string& where) {
     const auto linear = linear_part(evaluation, where);
     const TransferPoint& saturation = evaluation.transfer[evaluation.saturation];
     const double k = slope(linear, &TransferPoint::mean_dn, &TransferPoint::variance_dn2);
     const double responsivity = slope(linear, &TransferPoint::photons, &TransferPoint::mean_dn);
     if (!(k > 0 && responsivity > 0 && std::isfinite(k) && std::isfinite(responsivity) &&
-          bright.mean_dn > dark.mean_dn))
+          bright.images.mean_dn > dark.images.mean_dn))
         throw InputError(where, "more light does not give more signal and more noise");
-    const double s_bright = bright.spatial_variance_dn2, s_dark = dark.spatial_variance_dn2;
     CameraFigures& f = evaluation.figures;
     f.gain_dn_per_e = k;
     f.quantum_efficiency = responsivity / k;
     f.dark_noise_e = dark_noise_e(evaluation.dark_variance_dn2, k);
     f.saturation_e = f.quantum_efficiency * saturation.photons;
-    f.dsnu_e = std::sqrt(std::max(s_dark, 0.0)) / k;
-    f.prnu = std::sqrt(std::max(s_bright - s_dark, 0.0)) / (bright.mean_dn - dark.mean_dn);
+    set_non_uniformity(f, bright, dark);
     f.snr_max = std::sqrt(f.saturation_e);
     const double noise2_e2 = f.dark_noise_e * f.dark_noise_e + kRoundingVariance / (k * k);
     f.sensitivity_threshold_p = (std::sqrt(noise2_e2 + 0.25) + 0.5) / f.quantum_efficiency;
@@ -153,7 +171,7 @@ Evaluation evaluate(const Series& series, const Statistics& statistics, const st
     evaluation.dark_mean_dn = dark.images.mean_dn;
     evaluation.dark_variance_dn2 = dark.images.temporal_variance_dn2;
     evaluation.dark_zero_fraction = dark.zero_fraction;
-    set_figures(evaluation, bright.images, dark.images, where);
+    set_figures(evaluation, bright, dark, where);
     return evaluation;
 }
 

@@ -31,6 +31,7 @@ struct Evaluation {
 /// Statistics of one group of images, and the fraction of its values that are 0.
 struct GroupStatistics {
     ImageStatistics images;
+    SpatialVariances split = {};  ///< of stacks of more than two images, with 3 rows and columns
     double zero_fraction = 0;
 };
 

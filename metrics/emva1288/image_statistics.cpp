@@ -47,4 +47,24 @@ ImageStatistics ImageStack::statistics() const {
             .spatial_variance_dn2 = spread / (pixels - 1) - temporal / images};
 }
 
+SpatialVariances ImageStack::spatial_variances(int cols) const {
+    const auto columns = static_cast<std::size_t>(cols);
+    const std::size_t rows = sum_.size() / columns;
+    assert(rows >= 3 && columns >= 3 && rows * columns == sum_.size());
+    const auto images = static_cast<double>(means_.size());
+    const auto m = static_cast<double>(rows), n = static_cast<double>(columns);
+    std::vector<double> row_means(rows), column_means(columns);
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+        const double pixel = static_cast<double>(sum_[i]) / images;
+        row_means[i / columns] += pixel / n;
+        column_means[i % columns] += pixel / m;
+    }
+    const ImageStatistics all = statistics();
+    const double temporal = all.temporal_variance_dn2 / images;
+    const double row = scatter(row_means) / (m - 1) - temporal / n;
+    const double column = scatter(column_means) / (n - 1) - temporal / m;
+    const double single = m * n * (all.spatial_variance_dn2 - row - column) / (m * n - m - n);
+    return {.row_dn2 = row - single / n, .column_dn2 = column - single / m, .pixel_dn2 = single};
+}
+
 }  // namespace stipple::emva1288

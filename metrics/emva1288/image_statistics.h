@@ -13,6 +13,15 @@ struct ImageStatistics {
     double spatial_variance_dn2 = 0;   ///< between the means of pixels, minus the temporal part
 };
 
+/// The spatial variance of an exposure, split into parts of rows, of columns and of single pixels
+/// (EMVA 1288 release 4.0). The part of the pixels is low by row / M + column / N, as the standard
+/// defines it.
+struct SpatialVariances {
+    double row_dn2 = 0;
+    double column_dn2 = 0;
+    double pixel_dn2 = 0;
+};
+
 /// Accumulates images of one exposure; sums are exact, so their order has no influence.
 class ImageStack {
   public:
@@ -28,6 +37,17 @@ class ImageStack {
     /// y_b)^2 / 2, as in EMVA 1288: fluctuations of the lamp are not counted as noise.
     /// Precondition: at least two images.
     [[nodiscard]] ImageStatistics statistics() const;
+
+    /// With M rows and N columns, s^2 the spatial variance of `statistics`, r and c the variances
+    /// of the row means and of the column means of m, minus temporal / L N and temporal / L M:
+    ///
+    ///     pixel  = M N (s^2 - r - c) / (M N - M - N)
+    ///     row    = r - pixel / N
+    ///     column = c - pixel / M
+    ///
+    /// Each may be negative, by its statistical error. Precondition: as `statistics`; `cols`
+    /// divides the number of values; at least three rows and columns.
+    [[nodiscard]] SpatialVariances spatial_variances(int cols) const;
 
   private:
     std::vector<std::uint64_t> sum_;  ///< of each pixel

@@ -20,7 +20,9 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
         zeros += std::ranges::count(image.dn, 0);
         values += std::ssize(image.dn);
     }
+    const bool has_split = group.files.size() > 2 && series.rows > 2 && series.cols > 2;
     return {.images = stack.statistics(),
+            .split = has_split ? stack.spatial_variances(series.cols) : SpatialVariances{},
             .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};
 }
 

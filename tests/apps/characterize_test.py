@@ -91,6 +91,17 @@ class CharacterizeTest(ProgramTest):
         self.expect_configured(figures, BOUNDS)
         self.assertAlmostEqual(figures["dark_mean_dn"], 64 + 16 * 0.28, delta=0.05)
 
+    def test_the_pattern_of_columns_is_told_from_that_of_pixels(self):
+        """DSNU of 5 e and columns of 3 e; 320 columns scatter by 4 %, so 4 of that. No rows differ."""
+        figures = self.characterize("grasshopper", "dsnu_e=5", "column_noise_e=3")
+        measured, configured = figures["measured"], figures["configured"]
+        self.assertEqual((configured["dsnu_pixel_e"], configured["dsnu_column_e"]), (5, 3))
+        self.assertAlmostEqual(measured["dsnu_pixel_e"], (25 - 9 / 320) ** 0.5, delta=0.05)
+        self.assertAlmostEqual(measured["dsnu_column_e"], 3, delta=0.48)
+        self.assertLess(measured["dsnu_row_e"], 0.1)
+        self.assertAlmostEqual(measured["prnu_pixel"], configured["prnu_pixel"], delta=4e-4)
+        self.assertLess(measured["prnu_column"], 2e-3)
+
     def test_a_curve_of_the_converter_is_a_linearity_error(self):
         figures = self.characterize("grasshopper", "inl_dn=40")
         self.assertGreater(figures["measured"]["linearity_error"], 0.003)

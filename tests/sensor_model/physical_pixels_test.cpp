@@ -25,16 +25,21 @@ PhysicalTerms every_term() {
     return {.quantum_efficiency = 0.6,
             .dark_current_e_per_s = 300,
             .temperature_c = 31,
+            .temperature_drift_c_per_s = 100,
             .dsnu_e = 4,
             .prnu = 0.02,
             .read_noise_spread = 0.3,
             .reset_noise_e = 5,
             .row_noise_e = {2, 6, 3},
             .column_noise_e = 1.5,
+            .column_temporal_noise_e = 2.5,
             .black_level_dn = 10,
             .hot_pixel_fraction = 0.01,
             .hot_pixel_dark_current = 5000,
             .dead_pixel_fraction = 0.01,
+            .response_loss = 0.1,
+            .low_gain_read_noise_e = 40,
+            .dual_gain_limit_e = 500,
             .device_id = 9,
             .map_cols = 2,
             .transmittance = {1, 0.25},
@@ -83,10 +88,13 @@ TEST(PhysicalPixelsTest, IsTheFormulaWordByWordOnEverySimdTarget) {
                 const std::uint32_t pixel = exposures.pixels[i];
                 const auto block =
                     philox4x32(random_address(pixel, 5, RandomPurpose::kSample, 1), kSeed);
-                const float row = pixels.row_noise_e(pixel, 5, 1);
+                const float shared =
+                    pixels.row_noise_e(pixel, 5, 1) + pixels.column_noise_e(pixel, 5, 1);
+                const float dark_slots =
+                    static_cast<float>(exposures.open_slots[i]) * pixels.dark_factor(5);
                 const Charge charge =
                     pixels.expose_one(pixels.pattern().plane(1)[pixel], exposures.light[i],
-                                      exposures.open_slots[i], {block[0], block[1], row});
+                                      dark_slots, {block[0], block[1], shared});
                 ASSERT_EQ(electrons[i], charge.electrons)
                     << target << " sample " << i << " of " << count;
                 ASSERT_EQ(clipped[i] != 0, charge.clipped)
@@ -185,6 +193,58 @@ TEST(PhysicalPixelsTest, SharesRowNoiseWithinARowAndTap) {
     EXPECT_NE(expose(pixels, dark, 4, 0), electrons);
 }
 
+TEST(PhysicalPixelsTest, SharesColumnNoiseWithinAColumn) {
+    SensorParams params = physical({.column_temporal_noise_e = 30});
+    params.read_noise_e = 0;
+    params.shot_noise = false;
+    const PhysicalPixels pixels(params, kShape, kSeed);
+    double sum2 = 0;
+    for (std::uint32_t col = 0; col < 1024; ++col) {
+        const Exposures two{{col, 1024 * 300 + col}, {0, 0}, {1, 1}};
+        const auto electrons = expose(pixels, two, 3, 0);
+        EXPECT_EQ(electrons[0], electrons[1]);
+        EXPECT_NE(expose(pixels, two, 4, 0), electrons);
+        sum2 += std::pow(static_cast<double>(electrons[0]), 2) / 1024;
+    }
+    // 1024 columns: the deviation scatters by 1 / sqrt(2048) = 2.2 %; 5 of that.
+    EXPECT_NEAR(std::sqrt(sum2), 30, 0.11 * 30);
+}
+
+TEST(PhysicalPixelsTest, LosesChargeInProportionToItsSquare) {
+    SensorParams params = physical({.response_loss = 0.2});
+    params.read_noise_e = 0;
+    params.shot_noise = false;
+    const PhysicalPixels pixels(params, kShape, kSeed);
+    const Exposures bright{
+        {0, 1, 2}, {5, 10, 40}, {1, 1, 1}};  // a quarter, a half, beyond the well
+    const auto electrons = expose(pixels, bright);
+    EXPECT_NEAR(electrons[0], 5000 * (1 - 0.2 / 4), 0.01);
+    EXPECT_NEAR(electrons[1], 10000 * (1 - 0.2 / 2), 0.01);
+    EXPECT_NEAR(electrons[2], 20000 * (1 - 0.2), 0.01);
+}
+
+TEST(PhysicalPixelsTest, ReadsWithTheNoiseOfLowGainAboveTheLimit) {
+    SensorParams params = physical({.low_gain_read_noise_e = 50, .dual_gain_limit_e = 2000});
+    params.shot_noise = false;
+    expect_moments(flat_field(params, 2, 1), 2000, 100);
+    expect_moments(flat_field(params, 2.125F, 1), 2125, 2500);
+}
+
+TEST(PhysicalPixelsTest, TheDarkCurrentDoublesWithTheDriftOfTheTemperature) {
+    // 8 degrees in 0.4 s, 80 slots of 5 ms.
+    const PhysicalPixels pixels(physical({.temperature_drift_c_per_s = 20}), kShape, kSeed);
+    EXPECT_EQ(pixels.dark_factor(0), 1.0F);
+    EXPECT_NEAR(pixels.dark_factor(80), 2.0, 1e-6);
+    EXPECT_NEAR(pixels.dark_factor(160), 4.0, 1e-6);
+    EXPECT_EQ(pixels.dark_factor(UINT32_MAX), 0x1p30F);
+    SensorParams params =
+        physical({.dark_current_e_per_s = 20000, .temperature_drift_c_per_s = 20});
+    params.shot_noise = false;
+    params.read_noise_e = 0;
+    const PhysicalPixels warm(params, kShape, kSeed);
+    EXPECT_NEAR(expose(warm, {{7}, {0}, {3}}, 80, 0)[0], 2 * 3 * 100, 1e-3);
+}
+
 TEST(PhysicalPixelsTest, APixelHoldsAFullWellAndADeadOneNothing) {
     SensorParams params = physical({.dead_pixel_fraction = 0.2, .gain_map = {0.5}});
     params.read_noise_e = 0;
@@ -201,6 +261,8 @@ TEST(PhysicalPixelsTest, APixelHoldsAFullWellAndADeadOneNothing) {
 
 TEST(PhysicalPixelsTest, RefusesTermsOutsideTheirRange) {
     EXPECT_THROW(PhysicalPixels(physical({.prnu = -1}), kShape, 1), InputError);
+    EXPECT_THROW(PhysicalPixels(physical({.dual_gain_limit_e = 100}), kShape, 1), InputError);
+    EXPECT_THROW(PhysicalPixels(physical({.low_gain_read_noise_e = 9}), kShape, 1), InputError);
     EXPECT_THROW(PhysicalPixels(physical({.transmittance = {1, 1}}), kShape, 1), InputError);
 }
 

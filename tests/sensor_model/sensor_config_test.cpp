@@ -71,18 +71,20 @@ TEST(SensorConfigTest, RefusesKeysOfThePhysicalModeInPaperModeByNameAndMode) {
     EXPECT_THAT(message_of("mode=other"), testing::HasSubstr("physical"));
 }
 
-TEST(SensorConfigTest, ReadsEveryKeyOfThePhysicalMode) {
+TEST(SensorConfigTest, ReadsTheKeysOfNoiseAndPatternsOfThePhysicalMode) {
     const PhysicalTerms expected{.quantum_efficiency = 0.5,
                                  .dark_current_e_per_s = 2,
                                  .dark_reference_c = 25,
                                  .temperature_c = 40,
                                  .dark_doubling_c = 6,
+                                 .temperature_drift_c_per_s = 0.5,
                                  .dsnu_e = 3,
                                  .prnu = 0.01,
                                  .read_noise_spread = 0.2,
                                  .reset_noise_e = 4,
                                  .row_noise_e = {1, 2},
                                  .column_noise_e = 5,
+                                 .column_temporal_noise_e = 6,
                                  .black_level_dn = 9,
                                  .inl_dn = -1,
                                  .dnl_dn = 0.25,
@@ -100,12 +102,14 @@ TEST(SensorConfigTest, ReadsEveryKeyOfThePhysicalMode) {
                                      "dark_reference_c=25",
                                      "temperature_c=40",
                                      "dark_doubling_c=6",
+                                     "temperature_drift_c_per_s=0.5",
                                      "dsnu_e=3",
                                      "prnu=0.01",
                                      "read_noise_spread=0.2",
                                      "reset_noise_e=4",
                                      "row_noise_e=[1, 2]",
                                      "column_noise_e=5",
+                                     "column_temporal_noise_e=6",
                                      "black_level_dn=9",
                                      "inl_dn=-1",
                                      "dnl_dn=0.25",
@@ -118,6 +122,22 @@ TEST(SensorConfigTest, ReadsEveryKeyOfThePhysicalMode) {
                                      "transmittance=[1, 0.5]",
                                      "gain_map=[1, 8]"});
     EXPECT_EQ(found.mode, SensorMode::kPhysical);
+    EXPECT_EQ(found.physical, expected);
+}
+
+TEST(SensorConfigTest, ReadsTheKeysOfSharedLightAndResponseOfThePhysicalMode) {
+    const PhysicalTerms expected{.crosstalk = 0.1,
+                                 .blooming = 0.2,
+                                 .lag = 0.3,
+                                 .parasitic_light_sensitivity = 0.4,
+                                 .row_skew_slots = 0.6,
+                                 .response_loss = 0.05,
+                                 .low_gain_read_noise_e = 7,
+                                 .dual_gain_limit_e = 8};
+    const SensorParams found =
+        read({"mode=physical", "crosstalk=0.1", "blooming=0.2", "lag=0.3",
+              "parasitic_light_sensitivity=0.4", "row_skew_slots=0.6", "response_loss=0.05",
+              "low_gain_read_noise_e=7", "dual_gain_limit_e=8", "black_level_dn=0"});
     EXPECT_EQ(found.physical, expected);
 }
 

@@ -60,5 +60,12 @@ TEST(SensorParamsTest, SaturationIsThatOfTheWellOrOfTheConverterLessTheDark) {
     EXPECT_NEAR(params.saturation_e(), 1600 - 10, 1e-9);
 }
 
+TEST(SensorParamsTest, TemporalNoiseIsTheRootOfTheSumOfVariances) {
+    const SensorParams params{
+        .mode = SensorMode::kPhysical,
+        .physical = {.reset_noise_e = 4, .row_noise_e = {1, 7}, .column_temporal_noise_e = 12}};
+    EXPECT_DOUBLE_EQ(params.temporal_read_noise_e(), std::sqrt(100 + 16 + 25 + 144));
+}
+
 }  // namespace
 }  // namespace stipple

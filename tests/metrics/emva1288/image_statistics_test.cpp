@@ -46,6 +46,46 @@ TEST(ImageStatisticsTest, TellNoiseFromPatternInAStack) {
     EXPECT_NEAR(found.spatial_variance_dn2 / (899.0 / 12), 1, 5 * 0.0070);
 }
 
+TEST(ImageStatisticsTest, SplitsAPatternIntoRowsColumnsAndPixels) {
+    // 200 rows of 300 columns, 20 images; each part uniform over n values: variance (n^2 - 1) / 12.
+    constexpr std::size_t kRows = 200, kCols = 300;
+    std::mt19937 random(1);
+    std::vector<unsigned> rows(kRows), columns(kCols);
+    for (unsigned& value : rows) value = static_cast<unsigned>(random() % 20);
+    for (unsigned& value : columns) value = static_cast<unsigned>(random() % 10);
+    Image pattern(kRows * kCols);
+    for (std::size_t i = 0; i < pattern.size(); ++i)
+        pattern[i] =
+            static_cast<std::uint16_t>(rows[i / kCols] + columns[i % kCols] + random() % 6);
+    ImageStack stack;
+    for (int i = 0; i < 20; ++i) {
+        Image image = pattern;
+        for (auto& value : image) value = static_cast<std::uint16_t>(value + random() % 30);
+        stack.add(image);
+    }
+    const SpatialVariances found = stack.spatial_variances(kCols);
+    // The variance of n uniform values scatters by sqrt(0.8 / n) of itself; 4 of that.
+    EXPECT_NEAR(found.row_dn2 / (399.0 / 12), 1, 4 * 0.063);
+    EXPECT_NEAR(found.column_dn2 / (99.0 / 12), 1, 4 * 0.052);
+    // The standard divides by M - 1 and by M N - 1: rows and columns lower the part of the pixels.
+    const double pixel = 35.0 / 12 - found.row_dn2 / kRows - found.column_dn2 / kCols;
+    EXPECT_NEAR(found.pixel_dn2 / pixel, 1, 4 * 0.012);
+    const double total = stack.statistics().spatial_variance_dn2;
+    EXPECT_NEAR(found.row_dn2 + found.column_dn2 + found.pixel_dn2, total, 0.01 * total);
+}
+
+TEST(ImageStatisticsTest, SplitsByTheEquationsOfTheStandard) {
+    // Without temporal noise, of M = 3 rows and N = 4 columns, solved by hand.
+    const Image image{1, 2, 3, 4, 2, 3, 4, 5, 6, 7, 8, 9};  // 2.5, 3.5, 7.5 and 1, 2, 3, 4
+    ImageStack stack;
+    for (int i = 0; i < 3; ++i) stack.add(image);
+    const SpatialVariances found = stack.spatial_variances(4);
+    const double r = 7, c = 5.0 / 3, s2 = (56 + 15) / 11.0;
+    EXPECT_NEAR(found.pixel_dn2, 12.0 / 5 * (s2 - r - c), 1e-9);
+    EXPECT_NEAR(found.row_dn2, (12 - 4) / 5.0 * r - 3.0 / 5 * (s2 - c), 1e-9);
+    EXPECT_NEAR(found.column_dn2, (12 - 3) / 5.0 * c - 4.0 / 5 * (s2 - r), 1e-9);
+}
+
 TEST(ImageStatisticsTest, OfIdenticalImagesHaveNoNoise) {
     const Image image{0, 65535, 65535, 3};
     const ImageStatistics found = statistics({image, image, image});
