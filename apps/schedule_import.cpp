@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
 #include "report/schedule_text.h"
+#include "stream/plain_text.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -26,8 +28,23 @@ struct ImportOptions {
 };
 
 std::string check_name(const std::string& name) {
+    if (!is_plain_text(name, false)) return "has control characters, or is not UTF-8";
     if (name.size() <= kMaxNameBytes) return {};
     return fmt::format("has {} bytes; {} is the most", name.size(), kMaxNameBytes);
+}
+
+/// Of a file of that name: its first bytes, as whole characters. \throws InputError
+std::string name_of_file(const std::filesystem::path& file) {
+    std::string name = file.stem().string();
+    std::size_t bytes = std::min(name.size(), kMaxNameBytes);
+    while (bytes < name.size() && (static_cast<unsigned char>(name[bytes]) & 0xC0U) == 0x80)
+        --bytes;
+    name.resize(bytes);
+    const std::string problem = check_name(name);
+    if (!problem.empty())
+        throw InputError(file.string(),
+                         fmt::format("its name {}; name the schedule with --name", problem));
+    return name;
 }
 
 void import(const ImportOptions& options, const RunOptions& run) {
@@ -37,8 +54,7 @@ void import(const ImportOptions& options, const RunOptions& run) {
     const ExposureSchedule schedule =
         options.lengths ? lengths_schedule(volume, options.period_slots, options.volume)
                         : mask_schedule(volume, options.volume);
-    const std::string stem = std::filesystem::path(options.output).stem().string();
-    const std::string name = (options.name.empty() ? stem : options.name).substr(0, kMaxNameBytes);
+    const std::string name = options.name.empty() ? name_of_file(options.output) : options.name;
     JsonFile json(run);
     write_text_file(options.output, run.force, code_text(schedule, name));
     const ScheduleFigures figures =

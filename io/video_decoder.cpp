@@ -108,8 +108,11 @@ struct VideoDecoder::Impl {
     int packets = 0;     ///< one a frame, those that an edit list hides too
     std::uint64_t file_bytes = 0;
     std::uint64_t packets_end = 0;  ///< byte after the last packet of the video
-    double end_s =
-        0;  ///< when the last packet, of any stream if only the file has a duration, ends
+    /// When the first packet begins and the last one ends: of any stream if only the file has a
+    /// duration. FFmpeg's start of a stream may be that of a later frame where frames are
+    /// reordered.
+    double begin_s = std::numeric_limits<double>::max();
+    double end_s = std::numeric_limits<double>::lowest();
     std::string shortfall;
     std::int64_t last_tick = AV_NOPTS_VALUE;  ///< time of a frame, in units of the stream
     std::int64_t min_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
@@ -181,8 +184,9 @@ void VideoDecoder::Impl::count_packet() {
     if (packet->pts == AV_NOPTS_VALUE || (stream->duration > 0 && !of_video)) return;
     const AVStream& own = *file->streams[packet->stream_index];
     const std::int64_t first = own.start_time == AV_NOPTS_VALUE ? 0 : own.start_time;
-    end_s = std::max(
-        end_s, static_cast<double>(packet->pts + packet->duration - first) * av_q2d(own.time_base));
+    const double tick_s = av_q2d(own.time_base);
+    begin_s = std::min(begin_s, static_cast<double>(std::min(first, packet->pts)) * tick_s);
+    end_s = std::max(end_s, static_cast<double>(packet->pts + packet->duration) * tick_s);
 }
 
 /// Of the video, else of the whole file; not above 0 if unknown.
@@ -202,13 +206,14 @@ void VideoDecoder::Impl::check_end() {
                                            errors.next_frame));
     const bool counts = stream->nb_frames > 0;
     const double announced = counts ? static_cast<double>(stream->nb_frames) : announced_s();
-    const double found = counts ? packets : end_s;
-    const double one_frame = counts ? 1 : end_s / packets;
+    const double length_s = std::max(0.0, end_s - begin_s);
+    const double found = counts ? packets : length_s;
+    const double one_frame = counts ? 1 : length_s / packets;
     if (found >= announced - 1.5 * one_frame) return;
     const std::string text =
-        counts
-            ? fmt::format("ends after {} of {} frames", packets, stream->nb_frames)
-            : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, end_s, announced);
+        counts ? fmt::format("ends after {} of {} frames", packets, stream->nb_frames)
+               : fmt::format("ends after {} frames, at {:.3f} of {:.3f} s", packets, length_s,
+                             announced);
     if (found < kMinFractionOfAnnounced * announced)
         throw InputError(name, text + "; it is truncated or damaged");
     shortfall = fmt::format("{}: {}; frames may be missing", name, text);

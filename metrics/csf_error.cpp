@@ -56,8 +56,9 @@ double contrast_sensitivity(double x_cycles_per_degree, double y_cycles_per_degr
 
 CsfError::CsfError(FrameShape shape, double pixels_per_degree)
     : rows_(shape.rows), cols_(shape.cols) {
-    if (!(pixels_per_degree > 0))
-        throw InputError("pixels_per_degree", fmt::format("{} is not above 0", pixels_per_degree));
+    if (!(pixels_per_degree > 0 && std::isfinite(pixels_per_degree)))
+        throw InputError("pixels_per_degree",
+                         fmt::format("{} is not finite and above 0", pixels_per_degree));
     const auto rows = static_cast<std::size_t>(rows_);
     const int bins = cols_ / 2 + 1;
     squared_weights_.resize(rows * static_cast<std::size_t>(bins));

@@ -99,6 +99,8 @@ void bind_compare(py::module_& module) {
         .def(py::init([](int margin, std::optional<double> max_value, double peak,
                          double cd_per_unit, std::optional<std::int64_t> until, bool pu21_ssim,
                          std::optional<double> pixels_per_degree) {
+            if (until && *until < 1)
+                throw InputError("until", fmt::format("{} is not above 0", *until));
             return Comparison{.options = {.margin = margin,
                                           .max_value = max_value,
                                           .peak = peak,

@@ -1,5 +1,7 @@
 #include "python/errors.h"
 
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -30,7 +32,8 @@ std::string in_python(const std::string& message) {
         {"--fill-gaps", "fill_gaps=True"},
         {"--overrun drop", "overrun=\"drop\""},
         {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$1\")"},
-        {"--max-memory", "MaxMemory"}};
+        {"--max-memory", "MaxMemory"},
+        {"unit_cd_per_m2", "cd_per_unit"}};
     std::string text = message;
     for (const auto& [option, argument] : arguments)
         text = std::regex_replace(text, std::regex(option), argument);
@@ -39,21 +42,37 @@ std::string in_python(const std::string& message) {
 
 namespace {
 
+/// Names of files need not be UTF-8, so they are decoded as Python decodes them.
+void set_error(PyObject* kind, const std::string& message) {
+    const py::object text =
+        py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefault(message.c_str()));
+    if (text) PyErr_SetObject(kind, text.ptr());
+}
+
 void translate(std::exception_ptr thrown) {
     try {
         if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const FileError& error) {
-        PyErr_SetString(class_of(error.number()), in_python(error.what()).c_str());
+        set_error(class_of(error.number()), in_python(error.what()));
     } catch (const InputError& error) {
-        PyErr_SetString(PyExc_ValueError, in_python(error.what()).c_str());
+        set_error(PyExc_ValueError, in_python(error.what()));
     } catch (const DeviceError& error) {
-        PyErr_SetString(PyExc_OSError, in_python(error.what()).c_str());
+        set_error(PyExc_OSError, in_python(error.what()));
     } catch (const fs::filesystem_error& error) {
-        PyErr_SetString(class_of(error.code().value()), error.what());
+        set_error(class_of(error.code().value()), error.what());
     }
 }
 
 }  // namespace
+
+fs::path path_in(const py::object& value, const char* argument) {
+    try {
+        return value.cast<fs::path>();
+    } catch (const py::cast_error&) {
+        throw py::type_error(fmt::format("{}: {} is neither a text nor a path of a file", argument,
+                                         std::string(py::repr(value))));
+    }
+}
 
 void check_readable(const fs::path& file, const InputError& error) {
     if (::access(file.c_str(), R_OK) != 0) throw FileError(errno, error.what());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pybind11/pytypes.h>
+
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -14,6 +16,9 @@ namespace stipple::python {
 
 /// A message of the program as Python's users know its options: as arguments.
 [[nodiscard]] std::string in_python(const std::string& message);
+
+/// \throws TypeError naming `argument` if it is neither a text nor a path, or holds a NUL.
+[[nodiscard]] std::filesystem::path path_in(const pybind11::object& value, const char* argument);
 
 /// A file that cannot be opened or created.
 class FileError : public std::runtime_error {

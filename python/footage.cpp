@@ -20,7 +20,7 @@ namespace {
 /// A path, or nothing: then it is an array, or like one.
 std::optional<fs::path> path_of(const py::object& video) {
     if (!py::isinstance<py::str>(video) && !py::hasattr(video, "__fspath__")) return std::nullopt;
-    return video.cast<fs::path>();
+    return path_in(video, "video");
 }
 
 std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& options,
@@ -70,6 +70,8 @@ Footage::Footage(const py::object& video, const FootageOptions& options) : optio
         path_ = path->string();
         files_ = open(*path, options, warnings_);
     } else {
+        if (py::module_::import("numpy.ma").attr("is_masked")(video).cast<bool>())
+            throw InputError("video", "has masked values; give them light first: video.filled(0)");
         const auto array = py::array::ensure(video);
         if (!array) throw py::type_error("video: give an array or a path");
         array_.emplace(array, options);

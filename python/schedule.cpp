@@ -20,6 +20,8 @@
 #include "python/sensor.h"
 #include "readout/schedule_feasibility.h"
 #include "readout/schedules/code_schedule.h"
+#include "stream/plain_text.h"
+#include "stream/stream_header.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -41,7 +43,7 @@ ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
     if (!sensor.is_none())
         if (const auto timing = sensor_of(sensor).description.timing)
             addressing = timing->addressing;
-    ChosenSchedule schedule{.choice = {.schedule = name_of(name),
+    ChosenSchedule schedule{.choice = {.schedule = path_in(name, "schedule").string(),
                                        .schedule_settings = settings_of(settings),
                                        .seed = seed},
                             .shape = checked_shape(size.first, size.second, 1, "size"),
@@ -87,6 +89,9 @@ std::string text_of(const py::array_t<ExposureRow>& rows, Tile tile, int period_
                     const std::string& name, const py::object& weights) {
     if (tile.first < 1 || tile.second < 1 || rows.ndim() != 1)
         throw InputError("exposures", "give one axis, and a tile of at least 1 x 1 pixels");
+    if (name.size() > kMaxNameBytes || !is_plain_text(name, false))
+        throw InputError(
+            "name", fmt::format("give at most {} bytes without control characters", kMaxNameBytes));
     const auto pixels =
         static_cast<std::size_t>(tile.first) * static_cast<std::size_t>(tile.second);
     if (pixels > kMaxCodeSlots) throw InputError("tile", "is larger than a schedule may have");
@@ -182,7 +187,7 @@ SensorSetup set_up(const ChosenSensor& sensor, const py::object& schedule, Frame
         choice.schedule = made.choice.schedule;
         choice.schedule_settings = made.choice.schedule_settings;
     } else {
-        choice.schedule = name_of(schedule);
+        choice.schedule = path_in(schedule, "schedule").string();
     }
     SensorSetup setup = set_up_sensor(sensor.description, choice, footage, mosaic);
     if (is_made) {

@@ -47,19 +47,20 @@ std::vector<std::string> settings_of(const py::dict& settings) {
         return py::object(py::module_::import("json").attr("dumps")(value));
     };
     std::vector<std::string> texts;
-    for (const auto& [key, value] : settings)
+    for (const auto& [key, value] : settings) {
+        if (!py::isinstance<py::str>(key))
+            throw py::type_error(
+                fmt::format("key {} of a setting is no text", std::string(py::repr(key))));
         texts.push_back(
             fmt::format("{}={}", key.cast<std::string>(),
                         text_of(py::reinterpret_borrow<py::object>(value)).cast<std::string>()));
+    }
     return texts;
 }
 
-std::string name_of(const py::object& name) {
-    return name.cast<std::filesystem::path>().string();
-}
-
 ChosenSensor choose_sensor(const py::object& name, const py::dict& settings) {
-    SensorChoice choice{.sensor = name_of(name), .settings = settings_of(settings)};
+    SensorChoice choice{.sensor = path_in(name, "sensor").string(),
+                        .settings = settings_of(settings)};
     const auto read = [&] { return read_sensor_file(choice); };
     const std::filesystem::path path(choice.sensor);
     const bool is_path = path.has_parent_path() || path.has_extension();

@@ -18,9 +18,6 @@ struct ChosenSensor {
 /// "key=value" of a dict: texts as on the command line, other values as TOML writes them.
 [[nodiscard]] std::vector<std::string> settings_of(const pybind11::dict& settings);
 
-/// The text of a name or path.
-[[nodiscard]] std::string name_of(const pybind11::object& name);
-
 /// \throws InputError as read_sensor_file, FileError for a path that leads nowhere.
 [[nodiscard]] ChosenSensor choose_sensor(const pybind11::object& name,
                                          const pybind11::dict& settings);

@@ -123,9 +123,16 @@ CommandDescription described(const CLI::App& app, const std::string& before,
 void check_extension(const std::string& option, const std::string& file, const OutputName& name) {
     std::error_code error;
     if (name.rule.empty() || (fs::exists(file, error) && !fs::is_regular_file(file, error))) return;
+    const auto is_known = [&](const std::string& extension) {
+        return std::ranges::find(name.extensions, extension) != name.extensions.end();
+    };
     const std::string extension = lower_extension(file);
-    if (extension.empty() ? !name.may_have_none
-                          : std::ranges::find(name.extensions, extension) == name.extensions.end())
+    // Of ".npy" the whole name is one, of which C++ says that it has no extension.
+    const std::string whole = lower_extension("x" + fs::path(file).filename().string());
+    if (extension.empty() && !whole.empty() && is_known(whole))
+        throw UsageError(option,
+                         fmt::format("{}: is an extension only; put a name before it", file));
+    if (extension.empty() ? !name.may_have_none : !is_known(extension))
         throw UsageError(option, fmt::format("{}: {}", file, name.rule));
 }
 

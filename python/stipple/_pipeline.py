@@ -1,5 +1,6 @@
 """What a clip goes through: emulate, decode, compare; and how fast the chip reads it."""
 
+import operator
 import shutil
 import tempfile
 import weakref
@@ -21,6 +22,26 @@ Tell = Optional[Callable[[float, Optional[int]], object]]
 
 #: A row of Schedule.exposures().
 EXPOSURE = np.dtype([("row", "u2"), ("col", "u2"), ("first_slot", "u4"), ("open_slots", "u8")])
+
+
+def _rows(exposures: Any) -> npt.NDArray[np.void]:
+    """Rows of EXPOSURE; NumPy alone would cut fractions off and wrap numbers that are too large."""
+    if getattr(exposures, "dtype", None) == EXPOSURE:
+        return np.asarray(exposures)
+    ends = [np.iinfo(EXPOSURE[field]).max for field in EXPOSURE.names or ()]
+    rows = []
+    for row in exposures:
+        try:
+            numbers = tuple(operator.index(number) for number in row)
+        except TypeError:
+            numbers = ()
+        if len(numbers) != len(ends) or any(not 0 <= a <= b for a, b in zip(numbers, ends)):
+            raise ValueError(
+                f"exposures: {row!r} is not (row, col, first_slot, open_slots) in whole numbers of 0 to "
+                "2^16 - 1, 2^16 - 1, 2^32 - 1 and 2^64 - 1"
+            )
+        rows.append(numbers)
+    return np.array(rows, dtype=EXPOSURE)
 
 
 class Schedule(_stipple.Schedule):
@@ -50,7 +71,7 @@ class Schedule(_stipple.Schedule):
 
         Raises ValueError where two exposures of a pixel share a slot or an exposure is longer than the period.
         """
-        rows = np.array(exposures, dtype=EXPOSURE)
+        rows = _rows(exposures)
         # The program knows schedules as files, so this is one that goes with the object.
         folder = Path(tempfile.mkdtemp(prefix="stipple_"))
         try:

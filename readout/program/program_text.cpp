@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parsed_number.h"
+#include "stream/plain_text.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -83,6 +84,8 @@ class Parser {
         if (key == "name") {
             if (text.size() > kMaxNameBytes)
                 fail(fmt::format("the name has more than {} bytes", kMaxNameBytes));
+            if (!is_plain_text(text, false))
+                fail("the name has control characters, or is not UTF-8");
             name_ = text;
         }
         for (std::size_t i = 0; i < kFields; ++i)

@@ -16,6 +16,7 @@
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/random_codes.h"
 #include "readout/schedules/tiled_schedule.h"
+#include "stream/plain_text.h"
 
 namespace stipple {
 namespace {
@@ -261,6 +262,8 @@ NamedSchedule read_schedule(Config& config, FrameShape shape, std::uint64_t seed
         throw InputError(config.where(name.name),
                          fmt::format("has {} bytes; at most {} fit a stream", result.name.size(),
                                      kMaxNameBytes));
+    if (!is_plain_text(result.name, false))
+        throw InputError(config.where(name.name), "has control characters, or is not UTF-8");
     return result;
 }
 

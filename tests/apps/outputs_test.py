@@ -114,6 +114,8 @@ class OutputsTest(ProgramTest):
                 ("--output", "a memory image is a .mem or a .hex", ["schedule", "compile", "random", "-o", "out"]),
                 ("--output", "a diagram is a .png or a .svg", ["schedule", "show", "random", "-o", "out.pdf"])):
             self.fails(USAGE, [f"{option}: out", kind], *line)
+        for line in ([*SYNTH, ".npy"], [*emulate, ".STIPPLE"], ["schedule", "show", "random", "-o", ".png"]):
+            self.fails(USAGE, ["--output: ." + line[-1][1:], "is an extension only"], *line)
         self.succeed(*emulate, "upper.STIPPLE")
         self.succeed(*emulate, "bare")
         self.succeed(*make, "schedule", "--size", "8x8")

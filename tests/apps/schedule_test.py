@@ -183,6 +183,11 @@ class ImportTest(ProgramTest):
         self.assertIn('"AaAAaa..", "Aaaa....",', (self.folder / "b.toml").read_text())
         self.assertIn('name = "mine"', (self.folder / "b.toml").read_text())
 
+    def test_a_long_name_of_the_output_is_cut_between_two_characters(self):
+        self.write_array("masks.npy", np.ones((2, 2, 2)))
+        self.succeed("schedule", "import", "masks.npy", "-o", "x" + 40 * "ä" + ".toml")
+        self.assertIn(f'name = "x{31 * "ä"}" ', (self.folder / ("x" + 40 * "ä" + ".toml")).read_text())
+
     def refuse(self, parts, values, *arguments, dtype=np.float64):
         self.write_array("bad.npy", values, dtype)
         self.fails(INPUT, ["bad.npy", *parts] if parts else [], "schedule", "import", "bad.npy",
@@ -215,6 +220,9 @@ class ImportTest(ProgramTest):
         self.write_array("masks.npy", np.ones((2, 3, 4)))
         self.fails(INPUT, ["--period", "--lengths"], "schedule", "import", "masks.npy", "-o",
                    "x.toml", "--period", "3")
+        self.fails(INPUT, ["a\\u001b.toml", "--name"], "schedule", "import", "masks.npy", "-o", "a\x1b.toml")
+        self.fails(USAGE, ["--name", "control characters"], "schedule", "import", "masks.npy", "-o",
+                   "x.toml", "--name", "a\nb")
         content = (self.folder / "masks.npy").read_bytes()
         (self.folder / "masks.npy").write_bytes(content[:-1])
         self.fails(INPUT, ["masks.npy", "truncated"], "schedule", "import", "masks.npy", "-o",

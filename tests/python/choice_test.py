@@ -60,6 +60,29 @@ class ChoiceTest(ProgramTest):
             with self.subTest(exposures), self.assertRaisesRegex(ValueError, message):
                 stipple.Schedule.from_exposures(exposures, (1, 1), 6)
 
+    def test_rows_of_exposures_are_whole_numbers_of_their_ranges(self):
+        for row in ((0, 0, 0, 1.5), (0, 0, 0, -1), (0, 0, 0, 2**64), (0, 0, 2**32, 1), (2**16, 0, 0, 1), (0, 0),
+                    ("a", 0, 0, 1), 3):
+            with self.subTest(row), self.assertRaisesRegex(ValueError, "exposures: .* whole numbers"):
+                stipple.Schedule.from_exposures([row], (1, 1), 6)
+        rows = stipple.Schedule.from_exposures([(0, 0, 0, np.uint64(3))], (1, 1), 6).exposures()
+        self.assertEqual(rows.tolist(), [(0, 0, 0, 3)])
+        again = stipple.Schedule.from_exposures(rows, (1, 1), 6).exposures()
+        self.assertEqual(again.tolist(), rows.tolist())
+
+    def test_a_name_that_no_stream_takes_is_refused(self):
+        for name in ("x" * 65, "a\nb"):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, "name: give at most 64 bytes"):
+                stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), 6, name=name)
+
+    def test_what_is_no_name_is_a_TypeError(self):
+        for message, call in {"sensor: 3 is neither": lambda: stipple.Sensor(3),
+                              "schedule: None is neither": lambda: stipple.Schedule(None),
+                              "key 1 of a setting": lambda: stipple.Sensor("paper", {1: 2}),
+                              r"video: 'a\\x00": lambda: stipple.load("a\0")}.items():
+            with self.subTest(message), self.assertRaisesRegex(TypeError, message):
+                call()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -54,6 +54,11 @@ class CompareTest(ProgramTest):
             with self.assertWarnsRegex(UserWarning, "ends after 5 frames, before the other does"):
                 self.assertEqual(stipple.compare(*videos).ssim, same.ssim)
 
+    def test_an_argument_out_of_its_range_is_named(self):
+        for name, value in {"until": 0, "cd_per_unit": -1, "pixels_per_degree": math.inf, "peak": 0}.items():
+            with self.subTest(name), self.assertRaisesRegex(ValueError, f"^{name}: {value:g} is not"):
+                stipple.compare(self.a, self.b, **{name: value})
+
     def test_control_c_ends_it(self):
         """Without, it would take days, and so does making a stream of as much light."""
         endless = np.broadcast_to(np.float32(0.5), (10**9, 16, 16))

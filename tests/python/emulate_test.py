@@ -177,6 +177,17 @@ class EmulateTest(ProgramTest):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 stipple.emulate(**arguments)
 
+    def test_masked_values_are_refused(self):
+        light = np.ma.array(np.full((2, 4, 4), 0.5), mask=False)
+        self.assertEqual(stipple.load(light).shape, (2, 4, 4))
+        light[1, 2, 3] = np.ma.masked
+        with self.assertRaisesRegex(ValueError, "video: has masked values.*filled"):
+            stipple.load(light)
+
+    def test_a_file_whose_name_is_not_UTF_8_is_named(self):
+        with self.assertRaisesRegex(OSError, "\udcff.npy: there is no such file"):
+            stipple.load(os.fsdecode(b"\xff.npy"))
+
     def test_what_is_wrong_with_files_is_an_OSError(self):
         file = self.folder / "clip.stipple"
         stipple.emulate(light(), output=file)

@@ -77,12 +77,12 @@ ExposureSchedule read(const std::string& text) {
     Config config(folder / "code.toml", {});
     const NamedSchedule named = read_schedule(config, {.rows = 3, .cols = 3, .planes = 1}, 1);
     config.reject_unknown_keys();
-    EXPECT_EQ(named.name, "my \"own\" \\ \n code");
+    EXPECT_EQ(named.name, "my \"own\" \\ code");
     return named.schedule;
 }
 
 TEST(CodeScheduleTest, ReadsWhatItWrites) {
-    const std::string name = "my \"own\" \\ \n code";
+    const std::string name = "my \"own\" \\ code";
     for (const ExposureSchedule& schedule :
          {random_schedule(7, 9, kPaperExposureSlots, 2), gapped_schedule(3, 5, 29, 1),
           gapped_schedule(16, 12, 80, 2), interleaved_schedule(5, 7, 9, 3), full_schedule(64, 100),
@@ -91,8 +91,7 @@ TEST(CodeScheduleTest, ReadsWhatItWrites) {
 }
 
 TEST(CodeScheduleTest, WritesTwoPeriodsWhereStoresChangeSides) {
-    const ExposureSchedule schedule =
-        read(code_text(alternating_schedule(), "my \"own\" \\ \n code"));
+    const ExposureSchedule schedule = read(code_text(alternating_schedule(), "my \"own\" \\ code"));
     EXPECT_EQ(schedule.period_slots(), 12);
     for (int slot = 0; slot < 40; ++slot)
         EXPECT_EQ(count_due(schedule, slot, 0, 3, 3),

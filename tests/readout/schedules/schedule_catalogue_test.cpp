@@ -161,6 +161,8 @@ TEST(ScheduleCatalogueTest, NamesTheKeyThatIsWrong) {
     expect_parts(problem_of("full4x", {"open_slots=65"}), {"open_slots", "1..64"});
     expect_parts(problem_of("full4x", {"period_slots=65536"}), {"period_slots", "1..65535"});
     expect_parts(problem_of("full4x", {"name=" + std::string(65, 'x')}), {"name", "64"});
+    expect_parts(problem_of("full4x", {"name=a\x1b[31m"}), {"name", "control characters"});
+    expect_parts(problem_of("full4x", {"name=\xff"}), {"name", "UTF-8"});
 }
 
 /// Name, compression (period / samples), light throughput, charge stores of each file, by hand.
