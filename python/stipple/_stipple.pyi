@@ -229,7 +229,10 @@ class DecodeTask:
     def __init__(
         self, method: str, options: Mapping[str, object], fill_gaps: bool, strict: bool, until: Optional[int]
     ) -> None: ...
-    calibration: Optional[Name]
+    @property
+    def calibration(self) -> Optional[Name]: ...
+    @calibration.setter
+    def calibration(self, file: Optional[Name]) -> None: ...
 
 class Comparison:
     def __init__(

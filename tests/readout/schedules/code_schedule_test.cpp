@@ -110,15 +110,15 @@ TEST(CodeScheduleTest, RefusesToWriteWhatACodeCannotHold) {
 TEST(CodeScheduleTest, HoldsWeightsInSixteenBits) {
     // 1, 1/65535 and 0x8000 / 0xFFFF; an open slot is never rounded to 0.
     const ExposureSchedule grey = read(
-        "kind = \"code\"\nname = \"my \\\"own\\\" \\\\ \\n code\"\n"
+        "kind = \"code\"\nname = \"my \\\"own\\\" \\\\ code\"\n"
         "tile_cols = 2\nperiod_slots = 2\ncode = [\"Aa\", \".A\"]\n"
         "weights = [\"FFFF0001\", \"00008000\"]");
     const float half = 32768.0F / 65535;
     EXPECT_TRUE(std::ranges::equal(grey.weights(), std::vector<float>{1, 0, 1.0F / 65535, half}));
-    EXPECT_EQ(read(code_text(grey, "my \"own\" \\ \n code")), grey);
+    EXPECT_EQ(read(code_text(grey, "my \"own\" \\ code")), grey);
     ExposureSchedule faint = grey;
     faint.set_weights({1, 0, 1e-6F, 1});
-    EXPECT_EQ(read(code_text(faint, "my \"own\" \\ \n code")).weight(1, 0, 0), 1.0F / 65535);
+    EXPECT_EQ(read(code_text(faint, "my \"own\" \\ code")).weight(1, 0, 0), 1.0F / 65535);
     faint.set_weights({1, 0, 2, 1});
     expect_parts(message_of<InputError>([&] { return code_text(faint, "a"); }),
                  {"pixel (0, 0) slot 1", "2 is above 1"});
