@@ -27,6 +27,7 @@ struct Slice {
     float* v;
 };
 
+template <bool kWeighted>
 Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const float* step,
             float* v) {
     const std::size_t voxel = slot * m.shape.sites() + run.begin;
@@ -36,7 +37,7 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const f
             .y = &m.sum[voxel],
             .variance = &m.variance[voxel],
             .step = step + slot * pixels + run.begin % pixels,
-            .weight = m.weight.empty() ? nullptr : &m.weight[voxel],
+            .weight = kWeighted ? &m.weight[voxel] : nullptr,
             .v = v + voxel};
 }
 
@@ -91,10 +92,12 @@ void prox_chain(const Measurements& m, const SiteRun& run, const float* step, fl
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up<kChain, kWeighted>(slice(m, run, slot, step, v), sum_v, sum_step, ending[slot]);
+        add_up<kChain, kWeighted>(slice<kWeighted>(m, run, slot, step, v), sum_v, sum_step,
+                                  ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
-        distribute<kChain, kWeighted>(slice(m, run, slot, step, v), ending[slot], correction);
+        distribute<kChain, kWeighted>(slice<kWeighted>(m, run, slot, step, v), ending[slot],
+                                      correction);
 }
 
 /// Chains share no voxel, so one after the other is both at once.

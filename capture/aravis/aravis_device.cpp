@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "capture/aravis/genicam_check.h"
 #include "capture/doctor/usb_findings.h"
@@ -81,13 +83,16 @@ ArvDevice* open_device(const std::string& address) {
     return address.starts_with("gige:") ? open_gige(address, rest) : open_usb(address, rest);
 }
 
+/// The names of the entries of an enumeration; entries without a name cannot be chosen.
 std::string choices_of(ArvDevice* device, const char* feature) {
     guint count = 0;
-    const char** names = arv_device_dup_available_enumeration_feature_values_as_strings(
-        device, feature, &count, nullptr);
+    const std::unique_ptr<const char*, decltype(&g_free)> names(
+        arv_device_dup_available_enumeration_feature_values_as_strings(device, feature, &count,
+                                                                       nullptr),
+        g_free);
     std::string text;
-    for (guint i = 0; i < count; ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", names[i]);
-    g_free(names);
+    for (const char* name : std::span(names.get(), count))
+        if (name != nullptr) text += fmt::format("{}{}", text.empty() ? "" : ", ", name);
     return text;
 }
 

@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             static_cast<void>(device.read_number(name));
             try {
                 device.set(name, value);
-            } catch (const std::exception&) {
+            } catch (const InputError&) {
                 continue;  // the camera refuses it
             }
         }
