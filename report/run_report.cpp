@@ -141,6 +141,7 @@ ordered_json RunReport::Impl::data() const {
                     {"planes", shape.planes},
                     {"first_row", area.first_row},
                     {"first_col", area.first_col}};
+    json["frame"] = {{"rows", shape.rows}, {"cols", shape.cols}};
     json["light_code"] = {{"darkest", kDarkestCodedLight}, {"codes_per_stop", kCodesPerStop}};
     json["white_light"] = kWhiteLight;
     json["quality_options"] = {{"margin", options.quality.margin},

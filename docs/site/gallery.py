@@ -36,6 +36,10 @@ def png(pixels):
     return b"\x89PNG\r\n\x1a\n" + b"".join(framed)
 
 
+def enlarged(panel, factor):
+    return panel.repeat(factor, axis=0).repeat(factor, axis=1)
+
+
 def side_by_side(panels):
     gap = np.full((panels[0].shape[0], 4, 3), 255, np.uint8)
     return png(np.concatenate([part for panel in panels for part in (panel, gap)][:-1], axis=1))
@@ -76,6 +80,21 @@ class Gallery:
         return (f"![Slot {SHOWN}: truth, samples, decoded by {', '.join(methods)}](gallery/{name}.png)\n\n"
                 f"{100 * samples:.0f} % of the values are sampled; {', '.join(figures)}.\n")
 
+    def small_picture(self, methods):
+        """The same of a part of the scene that each method decodes in seconds, enlarged; every method, no samples."""
+        first, slots, rows, cols = 4, 16, 24, 32
+        top, left = ((side - part) // 2 for side, part in zip(self.truth.shape[1:3], (rows, cols)))
+        truth = self.truth[first:first + slots, top:top + rows, left:left + cols]
+        stream = self.stipple.emulate(truth, "paper", "random")
+        videos = {method: self.stipple.decode(stream, method=method) for method in methods}
+        panels = [enlarged(tone_mapped(video[SHOWN - first]), 5) for video in (truth, *videos.values())]
+        (self.folder / "gallery/methods_small.png").write_bytes(side_by_side(panels))
+        figures = (f"`{method}` {self.stipple.compare(video, truth, margin=4, max_value=2).psnr_db:.1f} dB"
+                   for method, video in videos.items())
+        return (f"\n### All methods on {cols} x {rows} pixels\n\nThe middle of the scene, {slots} slots: few enough for the "
+                f"method of the paper, `portz2013`.\n\n![Slot {SHOWN}: truth, {', '.join(methods)}]"
+                f"(gallery/methods_small.png)\n\n{', '.join(figures)}.\n")
+
     def write_tutorial(self, program, figures):
         """The pictures of docs/tutorial.md."""
         stream = self.stipple.emulate(self.truth, "paper", "random")
@@ -88,12 +107,14 @@ class Gallery:
         subprocess.run([program, "schedule", "show", "random", "--pixels", "8", "-q", "--force",
                         "-o", figures / "tutorial_schedule.png"], check=True)
 
-    def write(self, schedules, methods):
-        lines = [INTRODUCTION, "\n## Decoding methods\n\nThe schedule is `random`. The method of the paper "
-                 "is left out, since it takes minutes ([all methods](docs/decoder.md)).\n"]
+    def write(self, schedules, methods, small_methods):
+        """One picture a schedule and a method; `small_methods` on a part of the scene, none if empty."""
+        lines = [INTRODUCTION, "\n## Decoding methods\n\nThe schedule is `random` ([all methods](docs/decoder.md)).\n"]
         stream = self.stipple.emulate(self.truth, "paper", "random")
         for method in methods:
             lines.append(f"\n### {method}\n\n" + self.picture(f"method_{method}", stream, dict.fromkeys(("naive", method))))
+        if small_methods:
+            lines.append(self.small_picture(small_methods))
         lines.append("\n## Schedules\n\nEach schedule is explained on [its page](docs/schedules.md).\n")
         for schedule in schedules:
             stores = self.stipple.Schedule(schedule, size=self.truth.shape[1:3]).charge_stores

@@ -5,12 +5,18 @@
 function factsOf() {
   const facts = [];
   const run = data.runs[featuredRun];
-  if (data.videos.length) facts.push(['Frame', `${area.cols} × ${area.rows}${area.planes === 3 ? ' RGB' : ''}`],
-                                     ['Slots', `${data.slots}`]);
+  if (data.videos.length) {
+    const size = ({cols, rows}) => `${cols} × ${rows}`;
+    facts.push(['Frame', `${size(data.frame)}${area.planes === 3 ? ' RGB' : ''}`]);
+    if (area.cols < data.frame.cols || area.rows < data.frame.rows) facts.push(['Shown', size(area)]);
+    facts.push(['Slots', `${data.slots}`]);
+  }
   if (run) {
     const {schedule, slot_us: slot} = run.stream;
-    facts.push(['Slot', `${shown(slot / 1000)} ms`], ['Schedule', schedule.name],
-               ['Compression ratio', `${shown(1 / schedule.samples_per_pixel_slot, 3)} : 1`]);
+    // Of several runs these are those of the one that is shown in detail.
+    const of = data.runs.length > 1 ? `, ${run.name}` : '';
+    facts.push([`Slot${of}`, `${shown(slot / 1000)} ms`], [`Schedule${of}`, schedule.name],
+               [`Compression ratio${of}`, `${shown(1 / schedule.samples_per_pixel_slot, 3)} : 1`]);
   }
   const featured = data.videos[data.featured];
   if (featured?.quality?.psnr_db) facts.push([`PSNR, ${featured.name}`, `${featured.quality.psnr_db.toFixed(1)} dB`]);
