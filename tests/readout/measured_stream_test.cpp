@@ -82,7 +82,7 @@ TEST(MeasuredStreamTest, NamesWhatIsWrong) {
     expect_parts(problem_of(wrong),
                  {"y.npy", "1 measurements of 3 x 2", "3 masks of m.npy", "1 x 3"});
     wrong = arrays();
-    wrong.measurements.values[3] = INFINITY;
+    wrong.measurements.values[3] = HUGE_VAL;
     expect_parts(problem_of(wrong), {"y.npy", "measurement 1 pixel (0, 0)", "inf is no number"});
     wrong = arrays();
     wrong.masks.values[7] = -0.25;
