@@ -6,8 +6,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "core/error.h"
 #include "core/memory_limit.h"
@@ -85,13 +87,27 @@ FfmpegPtr<AVFormatContext> open_file(const std::string& name) {
     return opened;
 }
 
+/// FFmpeg keeps the codes of a file in its enumerations, unknown ones too, which C++ may not read
+/// as such. \returns `code`; `unspecified` for a code of `end` or more.
+template <typename Code>
+Code known(const Code& code, Code end, Code unspecified) {
+    std::underlying_type_t<Code> value{};
+    std::memcpy(&value, &code, sizeof value);
+    return value < static_cast<std::underlying_type_t<Code>>(end) ? code : unspecified;
+}
+
 /// What a frame does not declare of its colours, its container may.
+template <typename Code>
+void complete(Code& code, const Code& container, Code end, Code unspecified) {
+    code = known(code, end, unspecified);
+    if (code == unspecified) code = known(container, end, unspecified);
+}
+
 void complete_colours(AVFrame& frame, const AVCodecParameters& container) {
-    if (frame.colorspace == AVCOL_SPC_UNSPECIFIED) frame.colorspace = container.color_space;
-    if (frame.color_range == AVCOL_RANGE_UNSPECIFIED) frame.color_range = container.color_range;
-    if (frame.color_trc == AVCOL_TRC_UNSPECIFIED) frame.color_trc = container.color_trc;
-    if (frame.color_primaries == AVCOL_PRI_UNSPECIFIED)
-        frame.color_primaries = container.color_primaries;
+    complete(frame.colorspace, container.color_space, AVCOL_SPC_NB, AVCOL_SPC_UNSPECIFIED);
+    complete(frame.color_range, container.color_range, AVCOL_RANGE_NB, AVCOL_RANGE_UNSPECIFIED);
+    complete(frame.color_trc, container.color_trc, AVCOL_TRC_NB, AVCOL_TRC_UNSPECIFIED);
+    complete(frame.color_primaries, container.color_primaries, AVCOL_PRI_NB, AVCOL_PRI_UNSPECIFIED);
 }
 
 }  // namespace
