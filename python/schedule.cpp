@@ -231,9 +231,9 @@ first_slot (0 .. period_slots - 1) and open_slots, whose bit i says that the shu
 first_slot + i. An exposure is read at the end of its last open slot.)")
         .def(
             "weights", [](const ChosenSchedule& self) { return weights_of(self.made.schedule); },
-            R"(The share of its light that each pixel of the tile collects in each slot of the
-period: an array (slot, row, col), 0 where the shutter is closed and 1 where it is open without a
-grey mask. A sample is the sum of weight x light over the open slots of its exposure.)")
+            R"(An array (slot of the period, row, col) of the tile, with the share of its light that
+a pixel collects in a slot, 0 where the shutter is closed and 1 where it is open without a grey
+mask. A sample is the sum of weight x light over the open slots of its exposure.)")
         .def("check", &problem_of, py::arg("sensor") = "paper",
              "Why the sensor cannot do it: too few charge stores or too little time; or None.")
         .def("save", &save, py::arg("path"), py::arg("force") = false,
