@@ -17,7 +17,10 @@
 #include "core/memory_limit.h"
 
 #ifdef STIPPLE_MATIO
+#include <dlfcn.h>
 #include <matio.h>
+
+#include "io/late_function.h"
 #endif
 
 namespace stipple {
@@ -40,6 +43,28 @@ NpyVolume read_mat_volume(const std::string& file, const std::string& /*name*/) 
 #else
 
 namespace {
+
+void* load_matio() {
+    if (void* const library = dlopen(STIPPLE_MATIO, RTLD_NOW)) return library;
+    throw DeviceError(STIPPLE_MATIO,
+                      std::string("cannot be loaded, but .mat files need it: ") + dlerror());
+}
+
+/// A function of matio. It brings 30 other libraries with it, as HDF5 and libcurl; so it is loaded
+/// when a .mat file is read. \throws DeviceError if it cannot be loaded.
+void* matio_function(const char* name) {
+    static void* const library = load_matio();
+    if (void* const function = dlsym(library, name)) return function;
+    throw DeviceError(STIPPLE_MATIO, std::string("does not have ") + name);
+}
+
+STIPPLE_LATE_FROM(matio_function, Mat_Close);
+STIPPLE_LATE_FROM(matio_function, Mat_GetDir);
+STIPPLE_LATE_FROM(matio_function, Mat_GetVersion);
+STIPPLE_LATE_FROM(matio_function, Mat_Open);
+STIPPLE_LATE_FROM(matio_function, Mat_VarFree);
+STIPPLE_LATE_FROM(matio_function, Mat_VarRead);
+STIPPLE_LATE_FROM(matio_function, Mat_VarReadInfo);
 
 constexpr std::size_t kMaxValues = std::size_t{1} << 26U;
 

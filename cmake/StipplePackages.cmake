@@ -20,7 +20,7 @@ set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/cmake/packages/settings.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/cmake/packages/contents.cmake)
 set(CPACK_STIPPLE_SOURCE_DIR ${CMAKE_SOURCE_DIR})
-set(CPACK_STIPPLE_LATE_LIBRARIES ${FFmpeg_LINK_LIBRARIES})  # dpkg-shlibdeps does not see them
+set(CPACK_STIPPLE_LATE_LIBRARIES ${FFmpeg_LINK_LIBRARIES} ${Matio_LIBRARY})  # dpkg-shlibdeps does not see them
 
 set(stipple_about "In a coded-exposure sensor each pixel opens and closes at its own times.
 Stipple emulates such a sensor on footage, writes its packed sample stream,

@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "io/late_function.h"
+
 struct AVCodecContext;  // of FFmpeg's libraries
 struct AVFormatContext;
 struct AVFrame;
@@ -17,16 +19,8 @@ namespace stipple {
 /// they cannot be loaded.
 [[nodiscard]] void* ffmpeg_function(const char* name);
 
-/// In a source: defines an object with the name of a function of FFmpeg, in place of the linked
-/// function. It converts to the function and is called in the same way.
-// NOLINTBEGIN(bugprone-macro-parentheses): it is a name, no value
-#define STIPPLE_LATE(name)                                                                         \
-    const struct {                                                                                 \
-        using Function = decltype(::name);                                                         \
-        operator Function*() const { return reinterpret_cast<Function*>(ffmpeg_function(#name)); } \
-    } name {                                                                                       \
-    }
-// NOLINTEND(bugprone-macro-parentheses)
+/// In a source: a function of FFmpeg.
+#define STIPPLE_LATE(name) STIPPLE_LATE_FROM(ffmpeg_function, name)
 
 /// Frees objects of FFmpeg.
 struct FfmpegDeleter {
