@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 
+#include "core/begun_exposure.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
@@ -114,15 +115,13 @@ class Collector {
     [[nodiscard]] Span span_of(std::int64_t last_slot, int row, int col, int span_slots) const {
         const std::int64_t period = schedule_.period_slots();
         const std::int64_t begin = last_slot - span_slots + 1;  // 0 or more, or it were not due
-        const auto first = static_cast<std::uint32_t>(begin % period);
         const int tile_row = row % schedule_.tile_rows();
         const int tile_col = col % schedule_.tile_cols();
-        const auto exposures = schedule_.exposures(tile_row, tile_col);
-        std::size_t i = 0;
-        while (exposures[i].first_slot != first) ++i;  // the pixel is due, so it has this exposure
+        const std::size_t i = begun_exposure(schedule_, tile_row, tile_col, begin);
+        const std::uint64_t open_slots = schedule_.exposures(tile_row, tile_col)[i].open_slots;
         const bool second = schedule_.store(tile_row, tile_col, i, begin / period) != 0;
         const int open_state = Measurements::kOpen | (second ? Measurements::kSecond : 0);
-        return {exposures[i].open_slots, span_slots, static_cast<std::uint8_t>(open_state)};
+        return {open_slots, span_slots, static_cast<std::uint8_t>(open_state)};
     }
 
     const ExposureSchedule& schedule_;

@@ -1,6 +1,6 @@
 #include "readout/light_throughput.h"
 
-#include <algorithm>
+#include "core/begun_exposure.h"
 
 namespace stipple {
 namespace {
@@ -20,10 +20,8 @@ double light_slots(const ExposureSchedule& schedule, std::int64_t slot, int row,
     const std::int64_t begin = slot - pixel.span_slots + 1;
     const int tile_row = row % schedule.tile_rows();
     const int tile_col = col % schedule.tile_cols();
-    const auto exposures = schedule.exposures(tile_row, tile_col);
-    const auto first = static_cast<std::uint32_t>(begin % schedule.period_slots());
-    return schedule.light_slots(tile_row, tile_col,
-                                *std::ranges::find(exposures, first, &Exposure::first_slot));
+    const std::size_t i = begun_exposure(schedule, tile_row, tile_col, begin);
+    return schedule.light_slots(tile_row, tile_col, schedule.exposures(tile_row, tile_col)[i]);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "core/begun_exposure.h"
 #include "core/error.h"
 #include "decoder/pixel_response.h"
 #include "report/plane_code.h"
@@ -65,14 +66,12 @@ StreamSamples::StreamSamples(const StreamHeader& header, const PixelArea& area)
 
 std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, int span_slots) {
     const ExposureSchedule& schedule = header_.schedule;
-    const auto first = (last_slot - span_slots + 1) % schedule.period_slots();
-    const auto exposures =
-        schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols());
-    const auto exposure = std::ranges::find(exposures, static_cast<std::uint32_t>(first),
-                                            &Exposure::first_slot);  // it is due, so it is there
+    const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
+    const std::size_t i = begun_exposure(schedule, tile_row, tile_col, last_slot - span_slots + 1);
+    const std::uint64_t open_slots = schedule.exposures(tile_row, tile_col)[i].open_slots;
     const auto next = static_cast<std::uint16_t>(open_slots_.size());
-    const auto [kind, is_new] = kind_of_.try_emplace(exposure->open_slots, next);
-    if (is_new) open_slots_.push_back(exposure->open_slots);
+    const auto [kind, is_new] = kind_of_.try_emplace(open_slots, next);
+    if (is_new) open_slots_.push_back(open_slots);
     if (open_slots_.size() == std::numeric_limits<std::uint16_t>::max())
         throw InputError("exposure schedule",
                          "has too many kinds of exposures for a report; show a part with --crop");
