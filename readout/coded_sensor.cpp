@@ -126,7 +126,7 @@ struct CodedSensor::Impl {
     void set_up_physical(const SensorParams& params, const ExposureSchedule& schedule,
                          std::uint64_t seed);
     [[nodiscard]] std::span<const float> light_of_slot(std::span<const float> frame);
-    void find_overflow(std::span<const float> arriving, int row);
+    void find_overflow(std::span<const float> arriving, int row, Band& band);
     void leave_lag(std::uint32_t plane, Band& band);
     void expose_band(std::span<const float> frame, int first_row, Band& band);
     void collect(std::span<const float> frame, int row, Band& band);
@@ -163,19 +163,19 @@ void CodedSensor::Impl::set_up_physical(const SensorParams& params,
 
 /// The light of this slot that overflows in the pixels of one row: what comes when the well of the
 /// open store is full.
-void CodedSensor::Impl::find_overflow(std::span<const float> arriving, int row) {
+void CodedSensor::Impl::find_overflow(std::span<const float> arriving, int row, Band& band) {
     const auto cols = static_cast<std::size_t>(shape.cols);
-    std::vector<std::uint8_t> open(cols);
-    sequencer.list_open(stats.slots, row, open);
+    band.open.resize(cols);
+    sequencer.list_open(stats.slots, row, band.open);
     for (std::uint32_t plane = 0; plane < static_cast<std::uint32_t>(shape.planes); ++plane) {
         const std::size_t in_plane = static_cast<std::size_t>(row) * cols;
         const std::size_t first = plane * shape.pixels() + in_plane;
         for (std::size_t col = 0; col < cols; ++col) {
             const SiteTraits& site = physical->pattern().plane(plane)[in_plane + col];
             const float come = std::min(arriving[first + col], std::numeric_limits<float>::max());
-            const float held = light[first + col + (open[col] == 2 ? shape.sites() : 0)];
+            const float held = light[first + col + (band.open[col] == 2 ? shape.sites() : 0)];
             const float beyond = held + come - physical->full_well_light(site);
-            const bool collects = open[col] != 0 && site.responsivity_e > 0;
+            const bool collects = band.open[col] != 0 && site.responsivity_e > 0;
             overflow[first + col] = collects ? std::clamp(beyond, 0.0F, come) : 0;
         }
     }
@@ -186,7 +186,11 @@ std::span<const float> CodedSensor::Impl::light_of_slot(std::span<const float> f
     if (!slot_light) return frame;
     const auto arriving = slot_light->arriving(frame);
     if (overflow.empty()) return arriving;
-    parallel_for(0, shape.rows, [&](int row) { find_overflow(arriving, row); });
+    parallel_for(0, static_cast<int>(bands.size()), [&](int i) {
+        const int end_row = std::min((i + 1) * kBandRows, shape.rows);
+        for (int row = i * kBandRows; row < end_row; ++row)
+            find_overflow(arriving, row, bands[static_cast<std::size_t>(i)]);
+    });
     return slot_light->with_overflow(overflow);
 }
 
