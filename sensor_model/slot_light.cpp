@@ -78,6 +78,7 @@ std::span<const float> SlotLight::arriving(std::span<const float> frame) {
         delay(frame);
         frame = late_;
     }
+    if (crosstalk_ == 0 && blooming_ == 0) return frame;
     if (crosstalk_ == 0) {
         std::ranges::copy(frame, arriving_.begin());
         return arriving_;

@@ -24,8 +24,9 @@ class SlotLight {
     /// Whether the terms change the light of a slot at all.
     [[nodiscard]] static bool changes(const PhysicalTerms& terms);
 
-    /// The light of the next slot; valid until the next call. The same bits for any number of
-    /// threads. Precondition: frame.size() == shape.sites(), light >= 0 and not NaN.
+    /// The light of the next slot; valid as long as `frame`, and until the next call. The same bits
+    /// for any number of threads. Precondition: frame.size() == shape.sites(), light >= 0 and not
+    /// NaN.
     [[nodiscard]] std::span<const float> arriving(std::span<const float> frame);
 
     /// Adds to the light of this slot what overflows from the neighbours (blooming): `blooming` / 4
