@@ -19,7 +19,7 @@ std::vector<SiteCalibration> read_sites(const std::string& file, const StreamHea
 }
 
 std::string fixed_pattern_warning(const std::string& stream, const StreamHeader& header) {
-    constexpr double kLeastDb = 0.1;
+    constexpr double kMinDb = 0.1;
     const ChipOrigin chip = chip_of(header.provenance);
     const Calibration& c = header.calibration;
     const double full_scale_e = c.gain_e_per_dn * (std::exp2(c.bit_depth) - 1 - c.black_level_dn);
@@ -28,7 +28,7 @@ std::string fixed_pattern_warning(const std::string& stream, const StreamHeader&
                               chip.column_noise_e * chip.column_noise_e;
     const double cost_db =
         10 * std::log10(1 + pattern_e2 / (half_e + c.read_noise_e * c.read_noise_e));
-    if (!(cost_db >= kLeastDb)) return {};
+    if (!(cost_db >= kMinDb)) return {};
     return fmt::format(
         "{}: the pixels of this chip differ (PRNU {:.2g} %, offsets {:.2g} e); without "
         "--calibration a sample at half of saturation loses {:.1f} dB of its SNR (stipple "

@@ -35,15 +35,15 @@ struct SiteMap {
     float max;
 };
 
-constexpr float kMost = 1e12F;
+constexpr float kMaxMagnitude = 1e12F;
 constexpr std::array<SiteMap, 7> kMaps{{
     {"gain", &SiteCalibration::gain, 1e-6F, 1e6F},
-    {"gain variance", &SiteCalibration::gain_variance, 0, kMost},
+    {"gain variance", &SiteCalibration::gain_variance, 0, kMaxMagnitude},
     {"offset", &SiteCalibration::offset_dn, -1e6F, 1e6F},
-    {"offset variance", &SiteCalibration::offset_variance_dn2, 0, kMost},
-    {"dark current", &SiteCalibration::dark_dn_per_s, -kMost, kMost},
-    {"dark current variance", &SiteCalibration::dark_variance, 0, kMost},
-    {"readout noise variance", &SiteCalibration::readout_noise_dn2, 0, kMost},
+    {"offset variance", &SiteCalibration::offset_variance_dn2, 0, kMaxMagnitude},
+    {"dark current", &SiteCalibration::dark_dn_per_s, -kMaxMagnitude, kMaxMagnitude},
+    {"dark current variance", &SiteCalibration::dark_variance, 0, kMaxMagnitude},
+    {"readout noise variance", &SiteCalibration::readout_noise_dn2, 0, kMaxMagnitude},
 }};
 constexpr std::size_t kSiteBytes = kMaps.size() * sizeof(float) + 1;  // and the defect
 

@@ -26,10 +26,10 @@ constexpr std::string_view kTakeHalf = "take it at about half of saturation";
 
 void require_samples(const FieldSamples& field, std::string_view name) {
     const std::uint64_t fewest = field.exposures().empty() ? 0 : field.fewest();
-    if (fewest < kFewestFieldSamples)
+    if (fewest < kMinFieldSamples)
         throw InputError(name, fmt::format("has too few frames: {} samples of a pixel, and a "
                                            "calibration needs at least {}",
-                                           fewest, kFewestFieldSamples));
+                                           fewest, kMinFieldSamples));
 }
 
 std::size_t times_of(const std::vector<FieldExposure>& exposures, std::size_t site) {
@@ -88,18 +88,18 @@ std::vector<FieldExposure> flat_exposures(const CalibrationSeries& series,
                                           const FieldExposure& dark) {
     require_samples(series.flat, series.flat_name);
     std::vector<FieldExposure> flat;
-    double least = 1;
+    double min_saturated = 1;
     for (const auto& [time, sums] : series.flat.exposures()) {
         const double saturated =
             static_cast<double>(sums.saturated) / static_cast<double>(sums.samples);
-        least = std::min(least, saturated);
+        min_saturated = std::min(min_saturated, saturated);
         if (saturated > kMaxSaturated) continue;
         flat.push_back(field_exposure(time, sums, series.header));
         if (!series.well_known) require_shot_noise(series, dark, flat.back());
     }
     if (flat.empty())
         fail_saturated(series, fmt::format("{:.2g} % of the samples are at full scale or full well",
-                                           100 * least));
+                                           100 * min_saturated));
     for (std::size_t site = 0; site < series.header.shape.sites(); ++site)
         if (times_of(flat, site) == 0)
             fail_saturated(series, "some pixels have no exposure that is short enough");

@@ -21,8 +21,8 @@ struct CalibrationSeries {
     bool dark_current = true;  ///< false: it is 0, and one exposure time in the dark is enough
 };
 
-/// Fewest samples of a site in the dark, and in uniform light.
-inline constexpr std::uint64_t kFewestFieldSamples = 8;
+/// Min number of samples of a site in the dark, and in uniform light.
+inline constexpr std::uint64_t kMinFieldSamples = 8;
 
 /// A calibration, and what makes the sites differ: means over the planes.
 struct ChipEstimate {
@@ -39,7 +39,7 @@ struct ChipEstimate {
 /// correction, relative to its mean over the sites of one colour; all shrunk by their measurement
 /// variances. Sites are defects if their gain is below 0.1 or above 10 times the mean, or if they
 /// are saturated in the dark.
-/// \throws InputError naming the series: fewer than kFewestFieldSamples samples of a site; only one
+/// \throws InputError naming the series: fewer than kMinFieldSamples samples of a site; only one
 /// exposure time in the dark; more than 0.135 % of the dark samples are DN 0; more than 1 % of the
 /// flat samples saturate at every exposure time; the flat series is no brighter than the dark one.
 [[nodiscard]] ChipEstimate estimate_chip(const CalibrationSeries& series);

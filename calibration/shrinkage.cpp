@@ -11,7 +11,7 @@ namespace {
 constexpr double kOutlierSigmas = 6;
 constexpr double kDeviationOfMedian = 1.4826;  ///< standard deviation / median abs deviation
 constexpr double kLineSigmas = 3;
-constexpr int kFewestLines = 8;  ///< fewer do not tell their variance
+constexpr int kMinLines = 8;  ///< fewer do not tell their variance
 
 /// Precondition: there is a value.
 double median(std::vector<double> values) {
@@ -49,7 +49,7 @@ Lines lines_of(const std::vector<double>& residual, const std::vector<bool>& use
         between += lines.mean[line] * lines.mean[line];
         error += std::max(squares[line] / n - lines.mean[line] * lines.mean[line], 0.0) / (n - 1);
     }
-    if (measured < kFewestLines) return lines;
+    if (measured < kMinLines) return lines;
     between /= measured - 1;
     lines.error_variance = error / measured;
     const double excess = between - lines.error_variance;

@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kNoiseFreeElectrons = 1e6;
 constexpr double kMaxWellElectrons = 1e12;
-constexpr double kLeastDn = 1;
-constexpr double kMostDn = 65534;
+constexpr double kMinDn = 1;
+constexpr double kMaxDn = 65534;
 
 void check_sizes(const MeasuredArrays& arrays) {
     const NpyVolume& y = arrays.measurements;
@@ -45,8 +45,8 @@ void for_each_pixel(const ExposureSchedule& schedule, const Visit& visit) {
 }
 
 struct Range {
-    double least = 0;
-    double most = 0;
+    double min = 0;
+    double max = 0;
 };
 
 /// Of 0 and the measurements of pixels with an exposure. \throws InputError.
@@ -60,11 +60,11 @@ Range range_of(const MeasuredArrays& arrays, const ExposureSchedule& schedule) {
                 throw InputError(
                     arrays.measurement_file,
                     fmt::format("measurement {} pixel ({}, {}): {} is no number", m, row, col, y));
-            range = {std::min(range.least, y), std::max(range.most, y)};
+            range = {std::min(range.min, y), std::max(range.max, y)};
         }
     });
-    if (!(range.most > 0)) throw InputError(arrays.measurement_file, "no measurement is above 0");
-    if (!std::isfinite(range.most - range.least))
+    if (!(range.max > 0)) throw InputError(arrays.measurement_file, "no measurement is above 0");
+    if (!std::isfinite(range.max - range.min))
         throw InputError(arrays.measurement_file, "measurements are too far apart");
     return range;
 }
@@ -76,13 +76,13 @@ struct Scale {
 
     [[nodiscard]] std::uint16_t dn(double value) const {
         const double exact = std::round(zero_dn + dn_per_value * value);
-        return static_cast<std::uint16_t>(std::clamp(exact, kLeastDn, kMostDn));
+        return static_cast<std::uint16_t>(std::clamp(exact, kMinDn, kMaxDn));
     }
 };
 
 Scale scale_of(const Range& range) {
-    const double dn_per_value = (kMostDn - kLeastDn) / (range.most - range.least);
-    return {.zero_dn = kLeastDn - range.least * dn_per_value, .dn_per_value = dn_per_value};
+    const double dn_per_value = (kMaxDn - kMinDn) / (range.max - range.min);
+    return {.zero_dn = kMinDn - range.min * dn_per_value, .dn_per_value = dn_per_value};
 }
 
 Calibration calibration_of(const MeasuredArrays& arrays, const Scale& scale, double light) {
