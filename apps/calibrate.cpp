@@ -13,6 +13,7 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/settings.h"
+#include "apps/calibrate_scene.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -47,6 +48,7 @@ struct CalibrateOptions {
     std::vector<std::string> dark;
     std::vector<std::string> flat;
     bool no_dark_current = false;
+    SceneArguments scene;
     std::string output;
 };
 
@@ -234,10 +236,40 @@ std::string text_of(const std::string& file, const ChipEstimate& estimate, doubl
         rounded(std::sqrt(std::max(estimate.readout_noise_dn2.mean, 0.0))), estimate.defects);
 }
 
+void write(PendingOutput& output, const ChipCalibration& calibration) {
+    const auto bytes = encode_chip_calibration(calibration);
+    write_text(output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// Root mean square distance of the gains to 1.
+double gain_spread_of(const ChipCalibration& calibration) {
+    double sum = 0;
+    for (const SiteCalibration& site : calibration.sites)
+        sum += std::pow(static_cast<double>(site.gain) - 1, 2);
+    return std::sqrt(sum / static_cast<double>(calibration.sites.size()));
+}
+
+/// The gains from a stream of any scene.
+void write_scene_gains(const CalibrateOptions& options, const RunOptions& run, JsonFile& json,
+                       PendingOutput& output) {
+    const ChipCalibration calibration = calibrate_by_scene(options.scene, run);
+    write(output, calibration);
+    const FrameShape shape = calibration.shape;
+    const double spread = gain_spread_of(calibration);
+    json.write({{"rows", shape.rows},
+                {"cols", shape.cols},
+                {"planes", shape.planes},
+                {"gain", {{"mean", 1}, {"pixels", spread}}}});
+    run.say(fmt::format("{}: {} x {} pixels from the scene of {}\n  gain          1 +- {}",
+                        options.output, shape.cols, shape.rows, options.scene.stream,
+                        rounded(spread)));
+}
+
 void calibrate(const CalibrateOptions& options, const RunOptions& run) {
     JsonFile json(run);
     PendingOutput output(options.output, run.force);
     say_leftover(options.output);
+    if (!options.scene.stream.empty()) return write_scene_gains(options, run, json, output);
     const Fields fields = !options.series.empty() ? read_series(options, run)
                           : !options.dark.empty() ? read_streams(options, run)
                                                   : emulate_series(options, run);
@@ -249,8 +281,7 @@ void calibrate(const CalibrateOptions& options, const RunOptions& run) {
                                            .well_known = fields.well_known,
                                            .dark_current = !options.no_dark_current});
     estimate.calibration.chip = fields.chip;
-    const auto bytes = encode_chip_calibration(estimate.calibration);
-    write_text(output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write(output, estimate.calibration);
     const double gain_error = gain_error_of(estimate.calibration);
     json.write(json_of(estimate, gain_error));
     run.say(text_of(options.output, estimate, gain_error));
@@ -259,9 +290,15 @@ void calibrate(const CalibrateOptions& options, const RunOptions& run) {
 /// One source of samples, and what belongs to it.
 void check_sources(const Command& command, const CalibrateOptions& options) {
     const int sources = (options.sensor.sensor.empty() ? 0 : 1) + (options.series.empty() ? 0 : 1) +
-                        (options.dark.empty() && options.flat.empty() ? 0 : 1);
+                        (options.dark.empty() && options.flat.empty() ? 0 : 1) +
+                        (options.scene.stream.empty() ? 0 : 1);
     if (sources != 1)
-        throw UsageError("--sensor", "one of --sensor, --series, and --dark with --flat is needed");
+        throw UsageError("--sensor",
+                         "one of --sensor, --series, --scene, and --dark with --flat is needed");
+    if (options.scene.stream.empty())
+        command.refuse({"--method", "--prnu"}, "is of --scene; add that or leave this out");
+    else
+        command.refuse({"--no-dark-current"}, "is of series without light; leave it out");
     if (options.dark.empty() != options.flat.empty())
         throw UsageError(options.dark.empty() ? "--dark" : "--flat",
                          "streams without light and of uniform light are both needed");
@@ -322,6 +359,7 @@ void add_calibrate(Command& app, Action& action) {
         app.add_command("calibrate", "Gain, offset, dark current and defects of each pixel");
     const auto options = std::make_shared<CalibrateOptions>();
     add_sources(command, *options);
+    add_scene_arguments(command, options->scene);
     command.add_flag("--no-dark-current", options->no_dark_current,
                      "take the dark current for 0: one exposure time without light is enough");
     command.add_option("-o,--output", options->output, "calibration, for \"stipple decode\"")
@@ -334,6 +372,7 @@ void add_calibrate(Command& app, Action& action) {
         "  stipple calibrate --sensor t6 --size 128x128 -o t6.stcal\n"
         "  stipple calibrate --dark dark.stipple --flat flat.stipple -o chip.stcal\n"
         "  stipple calibrate --series camera/emva1288_data.txt -o camera.stcal\n"
+        "  stipple calibrate --scene clip.stipple -o clip.stcal\n"
         "  stipple decode clip.stipple -o decoded --calibration t6.stcal");
     set_action(command, action, options, calibrate,
                [command, options] { check_sources(command, *options); });

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "calibration/scene_gain.h"
 #include "core/error.h"
+#include "decoder/decode_options.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"
@@ -33,10 +35,18 @@ std::string cell(const FluxVideo& video, const SensorParams& sensor, DecodeMetho
                        seconds);
 }
 
+/// The gains that the clip itself gives.
+std::vector<SiteCalibration> sites_of_scene(const FluxVideo& video, const SensorParams& sensor) {
+    const TemporaryFolder folder;
+    const auto file = folder / "clip.stipple";
+    write_recording(video, schedule_of("random", video.shape()), sensor, file);
+    return scene_calibration(file, DecodeOptions{}, sensor.physical.prnu)->sites;
+}
+
 void print_table(const FluxVideo& video) {
     fmt::print(
-        "| sensor | method | no fixed pattern | not calibrated | 25 flats | 100 flats |\n"
-        "|---|---|---|---|---|---|\n");
+        "| sensor | method | no fixed pattern | not calibrated | scene | 25 flats | 100 flats |\n"
+        "|---|---|---|---|---|---|---|\n");
     for (const std::string name : {"t6", "grasshopper"}) {
         const SensorParams sensor = sensor_of(name);
         const auto sites = [&](int images) {
@@ -44,12 +54,13 @@ void print_table(const FluxVideo& video) {
                 .calibration.sites;
         };
         const std::vector<SiteCalibration> few = sites(25), many = sites(100);
+        const std::vector<SiteCalibration> scene = sites_of_scene(video, sensor);
         for (const std::string method : {"fast", "best"}) {
             const DecodeMethod decoding = decode_method_from_name(method);
-            fmt::print("| `{}` | `{}` | {} | {} | {} | {} |\n", name, method,
+            fmt::print("| `{}` | `{}` | {} | {} | {} | {} | {} |\n", name, method,
                        cell(video, without_fixed_pattern(sensor), decoding, {}),
-                       cell(video, sensor, decoding, {}), cell(video, sensor, decoding, few),
-                       cell(video, sensor, decoding, many));
+                       cell(video, sensor, decoding, {}), cell(video, sensor, decoding, scene),
+                       cell(video, sensor, decoding, few), cell(video, sensor, decoding, many));
             std::fflush(stdout);  // rows take a while
         }
     }

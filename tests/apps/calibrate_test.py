@@ -101,6 +101,20 @@ class CalibrateTest(ProgramTest):
         self.fails(INPUT, ["paper.stipple: is of another sensor"], "calibrate", "--dark", "none.stipple",
                    "--flat", "paper.stipple", "-o", "other.stcal")
 
+    def test_the_scene_itself_tells_gains(self):
+        self.emulate()
+        self.succeed("calibrate", "--scene", "clip.stipple", "--method", "fast", "-o", "scene.stcal")
+        self.calibrate()
+        known, found = self.gains("chip.stcal"), self.gains("scene.stcal")
+        sound = known > 0.5
+        self.assertGreater(np.corrcoef(known[sound], found[sound])[0, 1], 0.25)  # by chance 0.04
+        error = self.decoded_error()
+        self.assertLess(self.decoded_error("--calibration", "scene.stcal"), error)
+        self.write_stream("paper.stipple", rows=24, cols=32)
+        self.fails(INPUT, ["paper.stipple: ", "--prnu"], "calibrate", "--scene", "paper.stipple", "-o", "x.stcal")
+        self.fails(USAGE, ["--prnu"], "calibrate", *SENSOR, "--size", SIZE, "--prnu", 0.1, "-o", "x.stcal")
+        self.fails(USAGE, ["--sensor"], "calibrate", *SENSOR, "--size", SIZE, "--scene", "clip.stipple", "-o", "x.stcal")
+
     def test_images_are_a_series(self):
         random = np.random.default_rng(3)
         gain = 1 + 0.05 * random.standard_normal((12, 16))

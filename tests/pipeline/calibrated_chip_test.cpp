@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include "calibration/scene_gain.h"
+#include "decoder/decode_options.h"
 #include "scenes/scene.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"
+#include "tests/support/footage_folder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -41,6 +44,25 @@ TEST(CalibratedChipTest, AHundredFlatsUndoTheFixedPattern) {
     RecordProperty("calibrated_db", std::to_string(calibrated));
     EXPECT_GT(calibrated, equal - 0.3);
     EXPECT_LT(uncalibrated, equal - 0.6);
+}
+
+TEST(CalibratedChipTest, FootageItselfGainsBackHalfOfWhatUnequalGainsCost) {
+    const auto video = luminance_clip("mouse250_a");
+    if (!video) GTEST_SKIP() << "no footage mouse250_a in " << footage_folder();
+    const SensorParams sensor = sensor_of("t6");
+    const TemporaryFolder folder;
+    const auto file = folder / "clip.stipple";
+    write_recording(*video, schedule_of("random", video->shape()), sensor, file);
+    const auto chip = scene_calibration(file, DecodeOptions{}, sensor.physical.prnu);
+    ASSERT_TRUE(chip.has_value());
+    const double equal = psnr(*video, without_fixed_pattern(sensor), {});
+    const double uncalibrated = psnr(*video, sensor, {});
+    const double calibrated = psnr(*video, sensor, chip->sites);
+    RecordProperty("equal_db", std::to_string(equal));
+    RecordProperty("uncalibrated_db", std::to_string(uncalibrated));
+    RecordProperty("calibrated_db", std::to_string(calibrated));
+    EXPECT_GT(calibrated, (equal + uncalibrated) / 2);
+    EXPECT_LT(uncalibrated, equal - 0.5);
 }
 
 }  // namespace
