@@ -29,8 +29,11 @@ function axis(title, more = {}) {
   };
 }
 
+/** With ticks at whole slots only: by their distance Chart.js also chooses the width of bars. */
 function slotAxis() {
-  return axis('time, slots', {type: 'linear', min: 0, max: data.slots, offset: false});
+  const slots = axis('time, slots', {type: 'linear', min: 0, max: data.slots, offset: false});
+  slots.ticks.precision = 0;
+  return slots;
 }
 
 /** A line of values that hold for a whole slot each: `points` are [slot, value]. */

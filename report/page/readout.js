@@ -74,7 +74,7 @@ function setUpReadout() {
   if (data.runs.length === 0) return;
   element('load').hidden = false;
   fillSelect(element('load-run'), data.runs.map((run, value) => ({value, text: run.name})), loadRun);
-  element('load-run').parentElement.hidden = data.runs.length < 2;
+  element('load-run').closest('.bar').hidden = data.runs.length < 2;
   element('load-run').addEventListener('change', (event) => {
     loadRun = Number(event.target.value);
     showLoads();

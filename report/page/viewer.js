@@ -64,6 +64,14 @@ function showCrosshair() {
   cross.style.top = `${((state.pixel.row + 0.5) / area.rows) * 100 - (size * area.cols) / area.rows / 2}%`;
 }
 
+/** Two pictures that are the same are shown as one. */
+function showOneOrTwo() {
+  const one = state.a === state.b;
+  element('name-b').hidden = one;
+  element('divider').hidden = one;
+  element('divider-keys').hidden = one;
+}
+
 /** Place of a pointer in the stage, as fractions of its sides. */
 function placeOf(event) {
   const box = element('stage').getBoundingClientRect();
@@ -95,6 +103,7 @@ let playing = null;
 
 function togglePlay() {
   const button = element('play');
+  if (button.disabled) return;
   if (playing) clearInterval(playing);
   playing = playing ? null : setInterval(() => chooseSlot((state.slot + data.picture_step) % data.slots), 100);
   button.setAttribute('aria-pressed', playing !== null);
@@ -125,12 +134,16 @@ function setUpViewer() {
     fillSelect(element(`view-${side}`), views.map((view) => ({value: view.id, text: view.name})));
   }
   element('slot').max = data.slots - 1;
+  element('slot').disabled = data.slots === 1;
+  element('play').disabled = data.slots <= data.picture_step; // a single picture
+  element('slot-keys').hidden = data.slots === 1;
   choose(firstChoice());
   listenToPointer();
   listenToControls();
   whenever(['slot', 'stops', 'a'], () => drawSide('a'));
   whenever(['slot', 'stops', 'b'], () => drawSide('b'));
   whenever(['a', 'b'], showNames);
+  whenever(['a', 'b'], showOneOrTwo);
   whenever(['a', 'b', 'stops'], showScale);
   whenever(['divider'], showDivider);
   whenever(['slot'], showSlot);

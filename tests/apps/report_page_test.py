@@ -172,6 +172,39 @@ class ReportPageTest(BrowserTest):
         self.assertFalse(self.element("plane").is_displayed())
         self.assertTrue(self.element("load").is_displayed())
 
+    def test_a_single_picture_is_shown_once(self):
+        self.open_page("random.stipple", "--method", "naive")  # one video, no truth
+        for name in ("divider", "name-b", "divider-keys"):
+            self.assertFalse(self.element(name).is_displayed(), name)
+        self.assertTrue(self.element("play").is_enabled())
+        Select(self.element("view-b")).select_by_visible_text("samples, random")
+        for name in ("divider", "name-b", "divider-keys"):
+            self.assertTrue(self.element(name).is_displayed(), name)
+
+    def test_a_single_slot_cannot_be_played_and_fills_its_charts(self):
+        self.succeed("synth", "pan", "-o", "still.npy", "--frames", 1, "--size", f"{COLS}x{ROWS}")
+        self.succeed("emulate", "still.npy", "-o", "still.stipple")
+        self.open_page("still.stipple", "--truth", "still.npy", "--method", "naive")
+        for name in ("play", "slot"):
+            self.assertFalse(self.element(name).is_enabled(), name)
+        self.press(Keys.SPACE)
+        self.assertTrue(self.script("return playing === null"))
+        self.assertFalse(self.element("slot-keys").is_displayed())
+        if self.script("return typeof Chart === 'undefined'"):
+            self.skipTest("the build has no Chart.js (libjs-chart.js)")
+        bar, slot = self.script("const {chart} = charts.get('load-chart'), {x} = chart.scales;"
+                                "return [chart.getDatasetMeta(1).data[0].width,"
+                                "x.getPixelForValue(1) - x.getPixelForValue(0)]")
+        self.assertAlmostEqual(bar / slot, 0.9, delta=0.05)  # its categoryPercentage
+
+    def test_nothing_is_left_free_for_a_choice_of_one_run(self):
+        for streams, choice in ((["random.stipple"], False), (["random.stipple", "full4x.stipple"], True)):
+            self.open_page(*streams, "--method", "naive", "--force")
+            self.assertEqual(self.element("load-run").is_displayed(), choice)
+            gap = self.script("const box = (s) => document.querySelector(s).getBoundingClientRect();"
+                              "return box('#load .chart').top - box('#load-heading').bottom")
+            self.assertEqual(gap > 30, choice, gap)
+
     def test_hostile_names_run_nothing(self):
         name = "<img src=x onerror=window.hit=1>.stipple"
         (self.folder / "random.stipple").rename(self.folder / name)
