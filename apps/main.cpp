@@ -27,7 +27,7 @@
 namespace stipple {
 namespace {
 
-enum ExitCode { kOk = 0, kInput = 1, kUsage = 2, kDevice = 3, kSignal = 128 };
+enum ExitCode { kOk = 0, kInput = 1, kUsage = 2, kDevice = 3, kSignal = 128, kNoReader = 141 };
 
 constexpr auto kExamples =
     "Examples:\n"
@@ -38,7 +38,7 @@ constexpr auto kExamples =
     "  stipple compare decoded scene --max-value 2       how good it is\n"
     "\"stipple help SUBCOMMAND\" says more. Exit codes: 0 done, 1 an input cannot be used,\n"
     "2 wrong command line, 3 an output or device failed, 130 and 143 stopped by Ctrl-C or SIGTERM\n"
-    "(outputs are then complete files of fewer frames).";
+    "(outputs are then complete files of fewer frames), 141 nobody reads standard output.";
 
 constexpr std::string_view kNoThread =
     "no further thread can be started; end other programs, or raise the limit (ulimit -u)";
@@ -117,6 +117,11 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail(kDevice, kNoMemory);
     } catch (const std::system_error& e) {
+        // Of standard output, as of `stipple list keys | head -1`: as if SIGPIPE had ended it.
+        if (e.code() == std::errc::broken_pipe) {
+            say_what_is_left();
+            return kNoReader;
+        }
         const bool no_thread = e.code() == std::errc::resource_unavailable_try_again;
         return fail(kDevice, no_thread ? kNoThread : e.what());
     } catch (const std::exception& e) {

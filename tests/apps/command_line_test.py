@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import signal
 import struct
 import subprocess
 import termios
@@ -63,6 +64,16 @@ class CommandLineTest(ProgramTest):
                 done = self.start_program(line, stdout=full)
                 self.assertIn("No space left", done.communicate()[1])
             self.assertEqual(done.returncode, DEVICE)
+
+    def test_a_reader_that_has_gone_ends_it_quietly(self):
+        stream = self.write_stream()
+        for line in (["list", "keys"], ["list", "keys", "--json", "-"], ["--help"], ["info", stream]):
+            reader, writer = os.pipe()
+            os.close(reader)
+            with open(writer, "w", encoding="utf-8") as pipe:
+                done = self.start_program(*line, stdout=pipe)
+            self.assertEqual(done.communicate()[1], "", line)
+            self.assertIn(done.returncode, (128 + signal.SIGPIPE, -signal.SIGPIPE), line)  # a shell's $? is 141
 
     def test_version(self):
         self.assertRegex(self.succeed("--version"), r"^stipple \d+\.\d+\.\d+\n$")
