@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/arguments/footage.h"
+#include "apps/file_start.h"
 #include "apps/info_calibration.h"
 #include "apps/info_footage.h"
 #include "apps/info_recording.h"
@@ -74,13 +75,13 @@ void info_stream(const std::string& file, const RunOptions& run) {
     run.say(fmt::format("condition    {}{}", condition_of(reader.report()), leftover_text(file)));
 }
 
-/// What may be a stream: by its extension, or because it has no other or is no file (a pipe).
+/// What may be a stream: by its extension, or because it is no file (a pipe).
 bool may_be_stream(const std::string& file) {
     const std::filesystem::path path(file);
     std::error_code error;
     const auto kind = std::filesystem::status(path, error).type();
     return path.extension() == ".stipple" || path.extension() == ".strec" ||
-           !path.has_extension() || kind != std::filesystem::file_type::regular;
+           kind != std::filesystem::file_type::regular;
 }
 
 void info(const InfoOptions& options, const RunOptions& run) {
@@ -94,9 +95,11 @@ void info(const InfoOptions& options, const RunOptions& run) {
     if (const SettingsKind kind = settings_kind(file); kind != SettingsKind::kNone)
         return info_settings(kind, file, run);
     if (may_be_stream(file)) return info_stream(file, run);
-    throw InputError(file,
-                     "is nothing that stipple reads: no sample stream, recording, calibration, "
-                     "footage, sensor, schedule or scene; frames without a header need --raw");
+    throw InputError(
+        file, fmt::format("is nothing that stipple reads: it is {}, no sample stream, recording, "
+                          "calibration, footage, sensor, schedule or scene; frames without a "
+                          "header need --raw",
+                          kind_by_start(file)));
 }
 
 }  // namespace

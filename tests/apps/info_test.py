@@ -87,6 +87,18 @@ class InfoTest(CameraFilesTest):
                     "8x6:mono12p:black=64:hz=1000")
         self.fails(INPUT, ["a.bin: is nothing that stipple reads", "--raw"], "info", "a.bin")
 
+    def test_unknown_files_are_named_by_their_first_bytes(self):
+        for content, kind in ((b"", "an empty file"), (b"\n <!DOCTYPE HTML>\n<html>", "a web page (HTML)"),
+                              (b"time,light\r\n0,1\r\n", 'text that begins "time,light"'),
+                              (("\u00b5 " * 50).encode(), 'text that begins "\u00b5 \u00b5'),
+                              (b"PK\3\4" + bytes(80), "a ZIP archive"),
+                              (b"\x89\0\x1b" + bytes(80), "the bytes 89 00 1b 00 00 00 00 00")):
+            for name in ("a.dat", "noextension"):
+                self.write(name, content)
+                said = self.fails(INPUT, [f"{name}: is nothing that stipple reads: it is ", kind,
+                                          "no sample stream"], "info", name)
+                self.assertEqual(said.count("\n"), 1, said)
+
     def test_damage_ends_it_after_what_was_found(self):
         self.write("a.y4m", b"YUV4MPEG2 W8 H6 F25:1 Cmono\n" + 2 * (b"FRAME\n" + bytes(48)) + b"FRAME\n" + bytes(9))
         done = self.run_program("info", "a.y4m")
