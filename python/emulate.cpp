@@ -71,6 +71,7 @@ py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::obje
 std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
                                     const std::optional<std::filesystem::path>& output, bool force,
                                     const py::object& tell) {
+    if (output) check_name(*output, "a sample stream", ".stipple");
     warn(mosaic_warning(setup, footage.filter()));
     std::unique_ptr<StreamFile> stream;
     if (output) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -37,6 +38,12 @@ void check_readable(const std::filesystem::path& file, const InputError& error);
 
 /// \throws FileError with the text of `error` if `file` is there already, or its folder is not.
 void check_creatable(const std::filesystem::path& file, const InputError& error);
+
+/// A new file of one kind: "a sample stream" has the extension ".stipple" or none.
+/// \throws InputError naming `file` and the rule if it has another one, or is only an extension.
+/// Pipes, devices and folders that are there are left to who creates the file.
+void check_name(const std::filesystem::path& file, std::string_view kind,
+                std::string_view extension);
 
 /// The value of `read()`, which reads `file`. \throws FileError where it cannot be opened.
 template <typename Read>

@@ -96,6 +96,7 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
 
 py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path& file, bool force,
                     const py::object& tell) {
+    check_name(file, "a sample stream", ".stipple");
     std::unique_ptr<LiveSetup> camera;
     FootageOrigin origin;
     {

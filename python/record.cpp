@@ -49,6 +49,7 @@ py::dict recording_dict(const std::string& file, const CameraRecording& recordin
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,
                      const py::object& tell) {
+    check_name(file, "a recording", ".strec");
     SessionWarnings warnings;
     std::unique_ptr<CameraRecorder> recorder;
     {
@@ -81,6 +82,7 @@ RecordingFile record(const CameraTask& task, const fs::path& file, bool force,
 
 std::unique_ptr<StreamFile> record_coded(const CameraTask& task, const fs::path& file, bool force,
                                          const py::object& tell) {
+    check_name(file, "a sample stream", ".stipple");
     std::unique_ptr<CodedRecorder> recorder;
     {
         const py::gil_scoped_release released;

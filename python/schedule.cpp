@@ -55,6 +55,7 @@ ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
 }
 
 void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
+    check_name(file, "a schedule", ".toml");
     creating(file, [&] {
         PendingOutput pending(file, force);
         const std::string text = code_text(schedule.made.schedule, schedule.made.name);

@@ -131,6 +131,7 @@ py::array StreamFile::samples(std::int64_t slot) {
 }
 
 void StreamFile::save(const fs::path& file, bool force) const {
+    check_name(file, "a sample stream", ".stipple");
     creating(file, [&] {
         PendingOutput pending(file, force);
         OutputFile output(pending.partial(), file.string());

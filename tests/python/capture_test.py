@@ -71,6 +71,11 @@ class RecordTest(CameraTest):
                          [frame.payload.tobytes() for frame in recording])
         self.assertEqual(recording.features, program.features)
 
+    def test_a_recording_has_no_name_of_another_kind_of_file(self):
+        self.write_dn()
+        with self.assertRaisesRegex(ValueError, "clip.mp4: a recording is a .strec, or has a name without extension"):
+            self.record("clip.mp4")
+
     def test_settings_of_a_file_come_before_those_of_the_call(self):
         self.write_dn()
         (self.folder / "camera.toml").write_text('PixelFormat = "Mono8"\nAcquisitionFrameRate = 100\n')

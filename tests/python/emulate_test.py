@@ -188,6 +188,18 @@ class EmulateTest(ProgramTest):
         with self.assertRaisesRegex(OSError, "\udcff.npy: there is no such file"):
             stipple.load(os.fsdecode(b"\xff.npy"))
 
+    def test_an_output_has_no_name_of_another_kind_of_file(self):
+        stream = stipple.emulate(light())
+        schedule = stipple.Schedule("random")
+        for create, name in ((lambda file: stipple.emulate(light(), output=file), "x.mp4"), (stream.save, "x.npy"),
+                             (lambda file: stipple.emulate(light(), output=file, force=True), ".stipple"),
+                             (schedule.save, "x.stipple")):
+            with self.assertRaisesRegex(ValueError, f"{name}: .* extension"):
+                create(self.folder / name)
+            self.assertFalse((self.folder / name).exists())
+        stipple.emulate(light(), output=self.folder / "plain")
+        stream.save(self.folder / "X.STIPPLE")
+
     def test_what_is_wrong_with_files_is_an_OSError(self):
         file = self.folder / "clip.stipple"
         stipple.emulate(light(), output=file)
