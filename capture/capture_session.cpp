@@ -41,11 +41,12 @@ struct CaptureSession::Impl {
 
     Clock::time_point last_sign;             ///< start, or the last frame that was no repeat
     nanoseconds silence{};                   ///< time of waiting in vain since then
-    nanoseconds period_before{};             ///< of the epoch before
+    nanoseconds period_before{};             ///< of the last epoch that showed one
     std::optional<FrameRecord> first_frame;  ///< of this epoch
     std::optional<FrameRecord> last_frame;
 
     void take_over(std::unique_ptr<Camera> opened);
+    [[nodiscard]] std::optional<nanoseconds> measured_period() const;
     [[nodiscard]] nanoseconds period() const;
     [[nodiscard]] std::optional<nanoseconds> stall_timeout() const;
     [[nodiscard]] SessionEvent begin_outage(std::string reason);
@@ -72,14 +73,18 @@ void CaptureSession::Impl::take_over(std::unique_ptr<Camera> opened) {
     first_frame.reset();
 }
 
-/// As measured in this epoch, else as set; 0 if neither is known.
-nanoseconds CaptureSession::Impl::period() const {
-    if (!first_frame || !last_frame || last_frame->id <= first_frame->id)
-        return nominal_period(description);
+/// Of this epoch.
+std::optional<nanoseconds> CaptureSession::Impl::measured_period() const {
+    if (!first_frame || !last_frame || last_frame->id <= first_frame->id) return std::nullopt;
     const auto frames = static_cast<std::int64_t>(last_frame->id - first_frame->id);
     return nanoseconds(
         std::max<std::int64_t>(0, last_frame->host_monotonic_ns - first_frame->host_monotonic_ns) /
         frames);
+}
+
+/// As measured in this epoch, else as set; 0 if neither is known.
+nanoseconds CaptureSession::Impl::period() const {
+    return measured_period().value_or(nominal_period(description));
 }
 
 /// How long the camera may be silent; empty: for ever.
@@ -97,7 +102,11 @@ SessionEvent CaptureSession::Impl::begin_outage(std::string reason) {
         return DeviceLost{std::move(reason)};
     }
     drop_repeat(repeats.take_doubtful());
-    period_before = period();
+    // A camera that was lost again after one frame or none has shown no period.
+    if (const auto measured = measured_period())
+        period_before = *measured;
+    else if (period_before.count() == 0)
+        period_before = nominal_period(description);
     losses.end_epoch(*camera, Clock::now());
     std::erase_if(reopeners, [](const auto& old) { return old->is_done(); });
     reopeners.push_back(std::make_unique<CameraReopener>(std::move(camera), open));

@@ -244,6 +244,21 @@ TEST(CaptureSessionTest, FramesOfAnOutageAreEstimatedFromTheFramePeriod) {
     EXPECT_EQ(lost(session, GapCause::kReconnect), 49U);
 }
 
+TEST(CaptureSessionTest, ACameraThatIsLostTwiceKeepsThePeriodOfItsFrames) {
+    CaptureSession session(plays({{arrives(scripted_frame(7, 0)), arrives(scripted_frame(8, 10)),
+                                   is_lost("unplugged")},
+                                  {is_lost("unplugged again")},
+                                  {arrives(scripted_frame(1, 500))}}),
+                           {});
+    for (int i = 0; i < 2; ++i) static_cast<void>(next_record(session));
+    for (int i = 0; i < 2; ++i) {
+        static_cast<void>(wait_for<Outage>(session));
+        static_cast<void>(wait_for<Recovery>(session));
+    }
+    EXPECT_EQ(next_record(session).lost_before, 48U);  // 490 ms / 10 ms - 1
+    EXPECT_EQ(session.totals().outages, 2U);
+}
+
 TEST(CaptureSessionTest, ASlowCameraIsNotTakenForASilentOne) {
     CameraDescription camera;
     camera.features["AcquisitionFrameRate"] = "0.01";  // five periods: 500 s
