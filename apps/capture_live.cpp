@@ -151,7 +151,8 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     }
     if (put_in_place(recorder, emulation)) say_kept(arguments.output.c_str());
     if (preview) preview->finish(say_slow_preview);
-    if (!emulation.failure && emulation.end && emulation.end->bad_file)
+    const auto& end = emulation.end;
+    if (!emulation.failure && end && (end->bad_file || !end->at_end))
         say_kept(arguments.output.c_str());
     throw_early_end(emulation, address);
     tell({emulation, recorder, camera}, arguments, preview.get(), json, run);

@@ -84,7 +84,7 @@ void check_end(const CameraRecording& recording, const std::string& file,
                const std::string& address) {
     if (!recording.kept) throw_if_stopped();
     const auto& lost = recording.lost;
-    if (recording.kept && (recording.failure || (lost && lost->bad_file)))
+    if (recording.kept && (recording.failure || (lost && (lost->bad_file || !lost->at_end))))
         say_kept(file.c_str(), [&] { return counted(recording.end.frames, "frame"); });
     throw_early_end(recording, address);
 }

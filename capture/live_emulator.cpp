@@ -46,7 +46,7 @@ LiveEmulation LiveEmulator::run(const ProgressCallback& progress) {
             if (camera_.next(frame, kPollInterval))
                 take(frame);
             else
-                result_.end = camera_.end();
+                end(camera_.end());
         }
     } catch (...) {
         result_.failure = std::current_exception();
@@ -55,6 +55,11 @@ LiveEmulation LiveEmulator::run(const ProgressCallback& progress) {
         passed_s > 0)
         result_.slots_per_second = static_cast<double>(recorder_.stats().slots - 1) / passed_s;
     return std::move(result_);
+}
+
+void LiveEmulator::end(std::optional<DeviceLost> lost) {
+    if (lost && !lost->at_end && !lost->bad_file) lost->reason = "camera lost: " + lost->reason;
+    result_.end = std::move(lost);
 }
 
 /// As many of the slots before a frame as are in proportion to the frames: what a camera or a clock

@@ -75,6 +75,7 @@ class LiveEmulator {
     [[nodiscard]] LiveEmulation run(const ProgressCallback& progress);
 
   private:
+    void end(std::optional<DeviceLost> lost);
     void take(const CapturedFrame& frame);
     [[nodiscard]] std::uint64_t lost_to_hold(std::uint64_t lost);
     void hold_missing(const FrameRecord& record);

@@ -64,10 +64,12 @@ class CaptureRecordTest(ProgramTest):
 
     def until_frames(self, recorder, frames):
         """Waits until the hidden file under way holds so many frames."""
-        size = frames * 64 * 48 * 2
+        self.until_size(recorder, ".strec", frames * 64 * 48 * 2)
+
+    def until_size(self, recorder, extension, size):
         deadline = time.monotonic() + 60
         while recorder.poll() is None and time.monotonic() < deadline:
-            parts = [name for name in os.listdir(self.folder) if name.endswith(".strec")]
+            parts = [name for name in os.listdir(self.folder) if name.endswith(extension)]
             if any((self.folder / name).stat().st_size > size for name in parts):
                 return
             time.sleep(0.01)
@@ -133,7 +135,19 @@ class CaptureRecordTest(ProgramTest):
         errors = recorder.communicate(timeout=60)[1]
         self.assertEqual(recorder.returncode, DEVICE, errors)
         self.assertIn("camera lost", errors)
+        self.assertRegex(errors, r"clip.strec: \d+ frames kept")
         self.assertGreaterEqual(len(records_of(self.folder / "clip.strec")), 5)
+
+    def test_a_camera_that_is_gone_for_good_ends_live(self):
+        camera = self.serve()
+        live = self.start_program("capture", "live", self.address, "-o", "live.stipple", "--no-reconnect")
+        self.until_size(live, ".stipple", 20_000)
+        camera.kill()
+        errors = live.communicate(timeout=60)[1]
+        self.assertEqual(live.returncode, DEVICE, errors)
+        self.assertIn(f"{self.address}: camera lost: ", errors)
+        self.assertIn("live.stipple: what was written before is kept", errors)
+        self.assertTrue(self.figures("info", "live.stipple")["complete"])
 
     def test_a_camera_that_comes_back_is_recorded_on(self):
         camera = self.serve()

@@ -61,7 +61,7 @@ TEST_F(LiveEmulatorTest, EachFrameIsASlot) {
     EXPECT_EQ(result.latencies.count(), 8U);
     EXPECT_EQ(result.held_slots, 0U);
     ASSERT_TRUE(result.end);
-    EXPECT_EQ(result.end->reason, "unplugged");
+    EXPECT_EQ(result.end->reason, "camera lost: unplugged");
     EXPECT_FALSE(result.failure);
     StreamReader reader(folder_ / "live.stipple");
     std::vector<SamplePacket> recorded;
