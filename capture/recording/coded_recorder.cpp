@@ -10,6 +10,7 @@
 #include "capture/serve/coded_payload.h"
 #include "capture/setting_value.h"
 #include "core/error.h"
+#include "core/gap_limit.h"
 #include "io/pending_output.h"
 #include "stream/packet_order.h"
 #include "stream/stream_writer.h"
@@ -22,8 +23,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPollInterval{100};
 /// A camera that sends nothing for so long has come to its end.
 constexpr std::chrono::seconds kSilence{3};
-/// A longer gap than this is no loss but another stream.
-constexpr std::int64_t kMaxMissing = 1'000'000;
 
 CodedHeader header_of(const CameraDescription& camera) {
     constexpr auto kFeature = "CodedStreamHeader";
@@ -62,7 +61,9 @@ struct CodedRecorder::Impl {
 
     [[nodiscard]] bool run(const ProgressCallback& progress);
     void take(const CapturedFrame& frame);
+    [[nodiscard]] bool is_too_far(std::int64_t slot) const;
     void drop_before(StreamPosition next);
+    void drop_rest();
     void write(const SamplePacket& packet);
 
     std::unique_ptr<Camera> camera;
@@ -107,9 +108,17 @@ void CodedRecorder::Impl::take(const CapturedFrame& frame) {
     }
 }
 
-/// Writes dropped packets for what is missing before `next`.
+/// More slots before `slot` are missing than are in proportion to those that came.
+bool CodedRecorder::Impl::is_too_far(std::int64_t slot) const {
+    const std::int64_t missing = result.missing_slots + slot - order.expected().slot;
+    const std::int64_t present = result.slots - result.missing_slots;
+    return missing > max_missing_slots(present, header.stream.shape);
+}
+
+/// Writes dropped packets for what is missing before `next`. A gap that is too long is no loss but
+/// another stream.
 void CodedRecorder::Impl::drop_before(StreamPosition next) {
-    if (next.slot - order.expected().slot > kMaxMissing)
+    if (is_too_far(next.slot))
         throw InputError("the coded stream",
                          fmt::format("jumps from slot {} to {}", order.expected().slot, next.slot));
     while (order.expected() < next) {
@@ -118,6 +127,16 @@ void CodedRecorder::Impl::drop_before(StreamPosition next) {
         if (at.row == 0) ++result.missing_slots;
         write({at.slot, at.row, end - at.row, SamplePacket::kDropped, {}});
     }
+}
+
+/// The slots that the camera has announced and not sent.
+void CodedRecorder::Impl::drop_rest() {
+    if (!slots || result.slots == 0) return;
+    if (is_too_far(*slots))
+        result.lost = DeviceLost{
+            fmt::format("nothing came after slot {} of {}", order.expected().slot, *slots)};
+    else
+        drop_before({*slots, 0});
 }
 
 void CodedRecorder::Impl::write(const SamplePacket& packet) {
@@ -143,7 +162,7 @@ CodedRecording CodedRecorder::record(const ProgressCallback& progress) {
     try {
         const bool to_the_end = impl.run(progress);
         impl.camera->stop();
-        if (to_the_end && impl.slots && result.slots > 0) impl.drop_before({*impl.slots, 0});
+        if (to_the_end) impl.drop_rest();
         if (result.slots > 0) impl.writer.finish();
     } catch (...) {
         result.failure = std::current_exception();

@@ -4,6 +4,7 @@
 
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
+#include "core/gap_limit.h"
 #include "tests/capture/scripted_camera.h"
 #include "tests/stream/stream_files.h"
 #include "tests/support/temporary_folder.h"
@@ -86,11 +87,27 @@ TEST_F(CodedRecorderTest, TheLimitEndsItBeforeTheSource) {
 }
 
 TEST_F(CodedRecorderTest, AStreamThatJumpsTooFarIsKeptUpToThere) {
-    const CodedRecording recording = record({slot(0), slot(5'000'000)});
+    const CodedRecording recording = record({slot(0), slot(5'000)});
     EXPECT_EQ(slots_, std::nullopt);
     EXPECT_THROW(std::rethrow_exception(recording.failure), InputError);
     EXPECT_TRUE(recording.kept);
     EXPECT_EQ(recording.slots, 1);
+}
+
+TEST_F(CodedRecorderTest, AGapInProportionToTheSlotsThatCameIsFilled) {
+    const std::int64_t most = max_missing_slots(2, header_.shape);
+    const CodedRecording recording = record({slot(0), slot(1), slot(most + 2)});
+    EXPECT_FALSE(recording.failure);
+    EXPECT_EQ(recording.missing_slots, most);
+    EXPECT_EQ(recording.slots, most + 3);
+}
+
+TEST_F(CodedRecorderTest, ACameraThatSendsLittleOfWhatItAnnouncesIsLost) {
+    const CodedRecording recording = record({slot(0), slot(1)}, {}, "900000");
+    ASSERT_TRUE(recording.lost);
+    EXPECT_EQ(recording.lost->reason, "nothing came after slot 2 of 900000");
+    EXPECT_EQ(recording.slots, 2);
+    EXPECT_EQ(recorded().size(), 2U);  // and an end marker
 }
 
 TEST_F(CodedRecorderTest, WithoutASlotThereIsNoFile) {
