@@ -22,8 +22,11 @@ emva1288::CameraFigures configured_figures(const SensorParams& params) {
     f.dsnu_column_e = terms.column_noise_e;
     f.dsnu_pixel_e = std::hypot(terms.dsnu_e, std::sqrt(share * (1 - share)) * hot_e);
     f.dsnu_e = std::hypot(f.dsnu_pixel_e, f.dsnu_column_e);
+    // The high-pass keeps 20 / 25 of the variance of columns; the figure is relative to 24 / 25.
+    f.dsnu_high_pass_e = std::hypot(f.dsnu_pixel_e, std::sqrt(20.0 / 24) * f.dsnu_column_e);
     f.prnu = std::sqrt((1 + terms.prnu * terms.prnu) / alive - 1);
     f.prnu_pixel = f.prnu;
+    f.prnu_high_pass = f.prnu;
     f.snr_max = std::sqrt(f.saturation_e);
     const double noise2_e2 =
         f.dark_noise_e * f.dark_noise_e + params.gain_e_per_dn() * params.gain_e_per_dn() / 12;

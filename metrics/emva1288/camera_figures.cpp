@@ -129,6 +129,8 @@ void set_non_uniformity(CameraFigures& f, const GroupStatistics& bright,
     f.dsnu_row_e = deviation(dark.split.row_dn2) / k;
     f.dsnu_column_e = deviation(dark.split.column_dn2) / k;
     f.dsnu_pixel_e = deviation(dark.split.pixel_dn2) / k;
+    f.dsnu_high_pass_e = deviation(dark.high_pass_dn2) / k;
+    f.prnu_high_pass = deviation(bright.high_pass_dn2 - dark.high_pass_dn2) / signal;
     f.prnu =
         deviation(bright.images.spatial_variance_dn2 - dark.images.spatial_variance_dn2) / signal;
     f.prnu_row = deviation(bright.split.row_dn2 - dark.split.row_dn2) / signal;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct GroupStatistics {
     ImageStatistics images;
     SpatialVariances split = {};  ///< of stacks of more than two images, with 3 rows and columns
     double zero_fraction = 0;
+    /// Of stacks: spatial variance without shading. NaN for images smaller than 5 x 5.
+    double high_pass_dn2 = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Evaluates a series; `statistics` has the statistics of its groups in their order.

@@ -47,6 +47,13 @@ ImageStatistics ImageStack::statistics() const {
             .spatial_variance_dn2 = spread / (pixels - 1) - temporal / images};
 }
 
+std::vector<double> ImageStack::mean_image() const {
+    const auto images = static_cast<double>(means_.size());
+    std::vector<double> mean;
+    for (const std::uint64_t sum : sum_) mean.push_back(static_cast<double>(sum) / images);
+    return mean;
+}
+
 SpatialVariances ImageStack::spatial_variances(int cols) const {
     const auto columns = static_cast<std::size_t>(cols);
     const std::size_t rows = sum_.size() / columns;

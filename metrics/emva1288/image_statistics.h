@@ -38,6 +38,9 @@ class ImageStack {
     /// Precondition: at least two images.
     [[nodiscard]] ImageStatistics statistics() const;
 
+    /// The mean of each pixel over the images, in DN. Precondition: at least one image.
+    [[nodiscard]] std::vector<double> mean_image() const;
+
     /// With M rows and N columns, s^2 the spatial variance of `statistics`, r and c the variances
     /// of the row means and of the column means of m, minus temporal / L N and temporal / L M:
     ///

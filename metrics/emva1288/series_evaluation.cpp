@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "metrics/emva1288/high_pass.h"
 
 namespace stipple::emva1288 {
 namespace {
@@ -21,9 +22,15 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
         values += std::ssize(image.dn);
     }
     const bool has_split = group.files.size() > 2 && series.rows > 2 && series.cols > 2;
-    return {.images = stack.statistics(),
-            .split = has_split ? stack.spatial_variances(series.cols) : SpatialVariances{},
-            .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};
+    GroupStatistics found{
+        .images = stack.statistics(),
+        .split = has_split ? stack.spatial_variances(series.cols) : SpatialVariances{},
+        .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};
+    if (group.files.size() > 2)
+        found.high_pass_dn2 =
+            high_pass_variance({series.rows, series.cols, stack.mean_image()}) -
+            found.images.temporal_variance_dn2 / static_cast<double>(group.files.size());
+    return found;
 }
 
 }  // namespace

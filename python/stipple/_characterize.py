@@ -29,7 +29,8 @@ def characterize(
 
     "measured" and "configured" are dicts of the figures, as they are evaluated from the images and as they
     follow from the sensor's parameters: gain_dn_per_e, quantum_efficiency, dark_noise_e, saturation_e, dsnu_e
-    and prnu (also of rows, columns and pixels: dsnu_row_e, prnu_row ...), snr_max, sensitivity_threshold_p (photons), dynamic_range, linearity_error. "photon_transfer" is an
+    and prnu (also of rows, columns and pixels, and without shading: dsnu_row_e, prnu_high_pass ...), snr_max,
+    sensitivity_threshold_p (photons), dynamic_range, linearity_error. "photon_transfer" is an
     array (exposure, 3) of photons per pixel, mean in DN and temporal variance in DN^2, without those of dark
     images; "saturation_point" is its row of the largest variance.
 
