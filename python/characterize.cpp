@@ -45,6 +45,13 @@ py::dict figures_dict(const CameraFigures& figures) {
     return dict;
 }
 
+py::dict histogram_dict(const emva1288::DeviationHistogram& histogram) {
+    return py::dict("first"_a = histogram.first, "width"_a = histogram.width,
+                    "pixels"_a = histogram.pixels, "normal"_a = histogram.normal,
+                    "accumulated_width"_a = histogram.accumulated_width,
+                    "at_least"_a = histogram.at_least);
+}
+
 /// The keys of "characterize" in docs/cli.md.
 py::dict evaluation_dict(const Evaluation& evaluation,
                          const std::optional<CameraFigures>& configured) {
@@ -61,6 +68,8 @@ py::dict evaluation_dict(const Evaluation& evaluation,
             *value++ = number;
     dict["photon_transfer"] = points;
     dict["saturation_point"] = evaluation.saturation;
+    dict["dark_deviations"] = histogram_dict(evaluation.dark_deviations);
+    dict["bright_deviations"] = histogram_dict(evaluation.bright_deviations);
     return dict;
 }
 

@@ -48,6 +48,15 @@ nlohmann::ordered_json figures_json(const CameraFigures& figures) {
     return json;
 }
 
+nlohmann::ordered_json histogram_json(const emva1288::DeviationHistogram& histogram) {
+    return {{"first", histogram.first},
+            {"width", histogram.width},
+            {"pixels", histogram.pixels},
+            {"normal", histogram.normal},
+            {"accumulated_width", histogram.accumulated_width},
+            {"at_least", histogram.at_least}};
+}
+
 std::string row_text(const Row& row, const CameraReport& report) {
     const double measured = report.evaluation.figures.*row.figure;
     std::string text = fmt::format("{:<22}{:>12.4g}", row.name, measured * row.scale);
@@ -64,8 +73,8 @@ std::string row_text(const Row& row, const CameraReport& report) {
 }  // namespace
 
 nlohmann::ordered_json camera_json(const CameraReport& report) {
-    const auto& [figures, transfer, saturation, dark_mean, dark_variance, zero_fraction] =
-        report.evaluation;
+    const auto& [figures, transfer, saturation, dark_mean, dark_variance, zero_fraction,
+                 dark_deviations, bright_deviations] = report.evaluation;
     nlohmann::ordered_json json{{"measured", figures_json(figures)}};
     if (report.configured) json["configured"] = figures_json(*report.configured);
     json["dark_mean_dn"] = dark_mean;
@@ -77,6 +86,8 @@ nlohmann::ordered_json camera_json(const CameraReport& report) {
         points.push_back({point.photons, point.mean_dn, point.variance_dn2});
     json["photon_transfer"] = points;
     json["saturation_point"] = saturation;
+    json["dark_deviations"] = histogram_json(dark_deviations);
+    json["bright_deviations"] = histogram_json(bright_deviations);
     return json;
 }
 

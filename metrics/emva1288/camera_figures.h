@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/emva1288_figures.h"
+#include "metrics/emva1288/deviation_histogram.h"
+#include "metrics/emva1288/high_pass.h"
 #include "metrics/emva1288/image_statistics.h"
 #include "metrics/emva1288/series.h"
 
@@ -27,6 +29,8 @@ struct Evaluation {
     /// Fraction of the values of the dark stack that are 0. If it is large, the black level clips
     /// the noise, and all figures are biased.
     double dark_zero_fraction = 0;
+    DeviationHistogram dark_deviations;    ///< of the mean dark image, DN
+    DeviationHistogram bright_deviations;  ///< of bright - dark, after the high-pass, by its mean
 };
 
 /// Statistics of one group of images, and the fraction of its values that are 0.
@@ -36,6 +40,7 @@ struct GroupStatistics {
     double zero_fraction = 0;
     /// Of stacks: spatial variance without shading. NaN for images smaller than 5 x 5.
     double high_pass_dn2 = std::numeric_limits<double>::quiet_NaN();
+    PixelMap mean_image = {};  ///< of stacks, DN
 };
 
 /// Evaluates a series; `statistics` has the statistics of its groups in their order.

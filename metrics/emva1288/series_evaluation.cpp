@@ -26,10 +26,12 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
         .images = stack.statistics(),
         .split = has_split ? stack.spatial_variances(series.cols) : SpatialVariances{},
         .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};
-    if (group.files.size() > 2)
+    if (group.files.size() > 2) {
+        found.mean_image = {series.rows, series.cols, stack.mean_image()};
         found.high_pass_dn2 =
-            high_pass_variance({series.rows, series.cols, stack.mean_image()}) -
+            high_pass_variance(found.mean_image) -
             found.images.temporal_variance_dn2 / static_cast<double>(group.files.size());
+    }
     return found;
 }
 

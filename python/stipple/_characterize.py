@@ -32,7 +32,8 @@ def characterize(
     and prnu (also of rows, columns and pixels, and without shading: dsnu_row_e, prnu_high_pass ...), snr_max,
     sensitivity_threshold_p (photons), dynamic_range, linearity_error. "photon_transfer" is an
     array (exposure, 3) of photons per pixel, mean in DN and temporal variance in DN^2, without those of dark
-    images; "saturation_point" is its row of the largest variance.
+    images; "saturation_point" is its row of the largest variance. "dark_deviations" (DN) and
+    "bright_deviations" (of the mean signal) are histograms of defects, with the keys of `characterize --json`.
 
     Raises ValueError for a sensor that cannot be evaluated. A black level that cuts the noise off is a
     UserWarning, and "biased" is True.
