@@ -22,8 +22,9 @@ TEST(VividErrorsTest, FramesThatTheDriverDropsAreGapsOfTheSequence) {
     std::uint64_t last = frame_from(*camera).record.wire_id;
     int gaps = 0;
     for (int i = 0; i < 200 && gaps < 3; ++i) {
+        // vivid numbers frames by its clock: on a slow machine it may give a number twice.
         const std::uint64_t id = frame_from(*camera).record.wire_id;
-        ASSERT_GT(id, last);
+        ASSERT_GE(id, last);
         gaps += id > last + 1 ? 1 : 0;
         last = id;
     }
@@ -48,7 +49,6 @@ TEST(VividErrorsTest, SequenceNumbersWrap) {
     std::uint64_t last = frame_from(*camera).record.wire_id;
     EXPECT_GT(last, kHalf);
     for (int i = 0; i < 300 && last > kHalf; ++i) {
-        // vivid numbers frames by its clock: on a slow machine it may give a number twice.
         const std::uint64_t id = frame_from(*camera).record.wire_id;
         ASSERT_LT((id - last) % camera->wire_id_period(), 1000);
         last = id;
