@@ -8,7 +8,6 @@
 
 #include "apps/arguments/camera.h"
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
@@ -26,6 +25,7 @@
 #include "capture/live_origin.h"
 #include "capture/rate_warning.h"
 #include "io/disk_sync.h"
+#include "io/output_names.h"
 
 namespace stipple {
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "apps/arguments/camera.h"
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
@@ -24,6 +23,7 @@
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"
+#include "io/output_names.h"
 #include "report/json_figures.h"
 
 namespace stipple {

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -16,6 +15,7 @@
 #include "core/error.h"
 #include "core/fault_list.h"
 #include "io/frame_writer.h"
+#include "io/output_names.h"
 
 namespace stipple {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
-#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
 #include "apps/report/difference_output.h"
 #include "apps/report/json_file.h"
@@ -24,6 +23,7 @@
 #include "core/error.h"
 #include "core/shape_difference.h"
 #include "io/footage_files.h"
+#include "io/output_names.h"
 #include "io/pending_output.h"
 #include "metrics/video_quality.h"
 #include "report/quality_metrics.h"

@@ -2,12 +2,12 @@
 #include <string>
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/settings.h"
 #include "apps/arguments/video_output.h"
 #include "apps/decode_file.h"
 #include "apps/subcommands.h"
 #include "decoder/reconstruct.h"
+#include "io/output_names.h"
 
 namespace stipple {
 namespace {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "apps/arguments/footage.h"
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
@@ -26,6 +25,7 @@
 #include "core/joined.h"
 #include "decoder/motion/late_opencv.h"
 #include "io/frame_writer.h"
+#include "io/output_names.h"
 #include "readout/footage_origin.h"
 #include "readout/timing/waveform_file.h"
 

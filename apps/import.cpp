@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "apps/mat_volume.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "io/output_names.h"
 #include "readout/measured_stream.h"
 
 namespace stipple {

@@ -7,12 +7,12 @@
 #include <string>
 #include <system_error>
 
-#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recovery.h"
 #include "core/error.h"
+#include "io/output_names.h"
 #include "io/partial_output.h"
 
 namespace stipple {

@@ -10,7 +10,6 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
-#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
 #include "apps/report/camera_file.h"
 #include "apps/report/json_file.h"
@@ -26,6 +25,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "io/output_names.h"
 #include "report/run_report.h"
 #include "report/stream_text.h"
 

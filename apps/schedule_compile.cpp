@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/report/text_file.h"
 #include "apps/subcommands.h"
+#include "io/output_names.h"
 #include "readout/program/program_text.h"
 
 namespace stipple {

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/report/schedule_chart.h"
 #include "apps/subcommands.h"
+#include "io/output_names.h"
 #include "report/schedule_text.h"
 
 namespace stipple {

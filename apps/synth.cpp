@@ -6,7 +6,6 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
-#include "apps/arguments/output_names.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -14,6 +13,7 @@
 #include "apps/report/progress.h"
 #include "apps/subcommands.h"
 #include "io/frame_writer.h"
+#include "io/output_names.h"
 #include "io/video_reader.h"
 #include "scenes/scene.h"
 

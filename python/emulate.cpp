@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "io/disk_sync.h"
+#include "io/output_names.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/emulation.h"
@@ -71,7 +72,7 @@ py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::obje
 std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
                                     const std::optional<std::filesystem::path>& output, bool force,
                                     const py::object& tell) {
-    if (output) check_name(*output, "a sample stream", ".stipple");
+    if (output) check_name(*output, kStreamName);
     warn(mosaic_warning(setup, footage.filter()));
     std::unique_ptr<StreamFile> stream;
     if (output) {

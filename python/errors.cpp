@@ -7,10 +7,8 @@
 #include <cerrno>
 #include <regex>
 #include <string>
-#include <string_view>
 #include <utility>
 
-#include "io/footage_files.h"
 #include "io/partial_output.h"
 #include "python/bindings.h"
 
@@ -76,14 +74,9 @@ fs::path path_in(const py::object& value, const char* argument) {
     }
 }
 
-void check_name(const fs::path& file, std::string_view kind, std::string_view extension) {
-    std::error_code unknown;
-    if (fs::exists(file, unknown) && !fs::is_regular_file(file, unknown)) return;
-    if (!file.has_extension() && lower_extension("x" + file.filename().string()) == extension)
-        throw InputError(file.string(), "is an extension only; put a name before it");
-    if (file.has_extension() && lower_extension(file) != extension)
-        throw InputError(file.string(), fmt::format("{} is a {}, or has a name without extension",
-                                                    kind, extension));
+void check_name(const fs::path& file, const OutputName& name) {
+    if (const std::string problem = name_problem(file, name); !problem.empty())
+        throw InputError(file.string(), problem);
 }
 
 void check_readable(const fs::path& file, const InputError& error) {

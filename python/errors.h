@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "io/output_names.h"
 
 /// Errors in Python: InputError is a ValueError, DeviceError an OSError, both with their texts.
 /// What is wrong with a file before its content counts is an OSError too, of the class that `open`
@@ -39,11 +39,8 @@ void check_readable(const std::filesystem::path& file, const InputError& error);
 /// \throws FileError with the text of `error` if `file` is there already, or its folder is not.
 void check_creatable(const std::filesystem::path& file, const InputError& error);
 
-/// A new file of one kind: "a sample stream" has the extension ".stipple" or none.
-/// \throws InputError naming `file` and the rule if it has another one, or is only an extension.
-/// Pipes, devices and folders that are there are left to who creates the file.
-void check_name(const std::filesystem::path& file, std::string_view kind,
-                std::string_view extension);
+/// \throws InputError naming `file` and its problem as a name of `name`, as `name_problem`.
+void check_name(const std::filesystem::path& file, const OutputName& name);
 
 /// The value of `read()`, which reads `file`. \throws FileError where it cannot be opened.
 template <typename Read>

@@ -13,6 +13,7 @@
 #include "capture/rate_warning.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
+#include "io/output_names.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/camera.h"
@@ -96,7 +97,7 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
 
 py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path& file, bool force,
                     const py::object& tell) {
-    check_name(file, "a sample stream", ".stipple");
+    check_name(file, kStreamName);
     std::unique_ptr<LiveSetup> camera;
     FootageOrigin origin;
     {

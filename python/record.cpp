@@ -9,6 +9,7 @@
 #include "capture/capture_end.h"
 #include "capture/open_camera.h"
 #include "core/error.h"
+#include "io/output_names.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/camera.h"
@@ -49,7 +50,7 @@ py::dict recording_dict(const std::string& file, const CameraRecording& recordin
 
 RecordingFile record(const CameraTask& task, const fs::path& file, bool force,
                      const py::object& tell) {
-    check_name(file, "a recording", ".strec");
+    check_name(file, kRecordingName);
     SessionWarnings warnings;
     std::unique_ptr<CameraRecorder> recorder;
     {
@@ -82,7 +83,7 @@ RecordingFile record(const CameraTask& task, const fs::path& file, bool force,
 
 std::unique_ptr<StreamFile> record_coded(const CameraTask& task, const fs::path& file, bool force,
                                          const py::object& tell) {
-    check_name(file, "a sample stream", ".stipple");
+    check_name(file, kStreamName);
     std::unique_ptr<CodedRecorder> recorder;
     {
         const py::gil_scoped_release released;

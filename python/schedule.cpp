@@ -14,6 +14,7 @@
 #include "core/light.h"
 #include "core/memory_limit.h"
 #include "io/output_file.h"
+#include "io/output_names.h"
 #include "io/pending_output.h"
 #include "python/bindings.h"
 #include "python/errors.h"
@@ -55,7 +56,7 @@ ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
 }
 
 void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
-    check_name(file, "a schedule", ".toml");
+    check_name(file, kScheduleName);
     creating(file, [&] {
         PendingOutput pending(file, force);
         const std::string text = code_text(schedule.made.schedule, schedule.made.name);

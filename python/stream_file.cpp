@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/output_file.h"
+#include "io/output_names.h"
 #include "io/pending_output.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
@@ -131,7 +132,7 @@ py::array StreamFile::samples(std::int64_t slot) {
 }
 
 void StreamFile::save(const fs::path& file, bool force) const {
-    check_name(file, "a sample stream", ".stipple");
+    check_name(file, kStreamName);
     creating(file, [&] {
         PendingOutput pending(file, force);
         OutputFile output(pending.partial(), file.string());

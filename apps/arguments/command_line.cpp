@@ -14,7 +14,6 @@
 #include "apps/standard_error.h"
 #include "capture/recording/replay_camera.h"
 #include "core/suggestion.h"
-#include "io/footage_files.h"
 
 namespace stipple {
 namespace {
@@ -121,19 +120,8 @@ CommandDescription described(const CLI::App& app, const std::string& before,
 }  // namespace
 
 void check_extension(const std::string& option, const std::string& file, const OutputName& name) {
-    std::error_code error;
-    if (name.rule.empty() || (fs::exists(file, error) && !fs::is_regular_file(file, error))) return;
-    const auto is_known = [&](const std::string& extension) {
-        return std::ranges::find(name.extensions, extension) != name.extensions.end();
-    };
-    const std::string extension = lower_extension(file);
-    // Of ".npy" the whole name is one, of which C++ says that it has no extension.
-    const std::string whole = lower_extension("x" + fs::path(file).filename().string());
-    if (extension.empty() && !whole.empty() && is_known(whole))
-        throw UsageError(option,
-                         fmt::format("{}: is an extension only; put a name before it", file));
-    if (extension.empty() ? !name.may_have_none : !is_known(extension))
-        throw UsageError(option, fmt::format("{}: {}", file, name.rule));
+    if (const std::string problem = name_problem(file, name); !problem.empty())
+        throw UsageError(option, fmt::format("{}: {}", file, problem));
 }
 
 CommandOption& CommandOption::type_name(const std::string& name) {

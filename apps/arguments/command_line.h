@@ -13,6 +13,7 @@
 
 #include "apps/arguments/command_description.h"
 #include "core/named_value.h"
+#include "io/output_names.h"
 
 namespace CLI {
 class App;
@@ -38,13 +39,6 @@ class UsageError : public std::runtime_error {
 
   private:
     std::string option_;
-};
-
-/// The names that an output may have: any, or those with one of the extensions.
-struct OutputName {
-    std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
-    std::array<std::string_view, 5> extensions = {};  ///< in lower case; names may be in upper case
-    bool may_have_none = true;
 };
 
 /// \throws UsageError naming `option` if `file` has no name of `name`. An existing folder, pipe or

@@ -1,8 +1,8 @@
 #include "apps/arguments/preview.h"
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "core/geometry.h"
+#include "io/output_names.h"
 #include "io/pending_output.h"
 
 namespace stipple {

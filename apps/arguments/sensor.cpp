@@ -1,8 +1,8 @@
 #include "apps/arguments/sensor.h"
 
 #include "apps/arguments/checks.h"
-#include "apps/arguments/output_names.h"
 #include "core/error.h"
+#include "io/output_names.h"
 
 namespace stipple {
 

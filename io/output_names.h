@@ -1,10 +1,22 @@
 #pragma once
 
-#include "apps/arguments/command_line.h"
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace stipple {
 
-// Names that the outputs of the commands may have.
+/// The names that an output may have: any, or those with one of the extensions.
+struct OutputName {
+    std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
+    std::array<std::string_view, 5> extensions = {};  ///< in lower case; names may be in upper case
+    bool may_have_none = true;
+};
+
+/// What is wrong with `file` as a name of `name`, or an empty text. An existing folder, pipe or
+/// device may have any name.
+[[nodiscard]] std::string name_problem(const std::filesystem::path& file, const OutputName& name);
 
 constexpr OutputName kStreamName{"a sample stream is a .stipple, or has a name without extension",
                                  {".stipple"}};
