@@ -162,23 +162,19 @@ void set_figures(Evaluation& evaluation, const GroupStatistics& bright, const Gr
 
 /// The values of the mean of so many images lie on a grid of 1 / images, those of the high-pass on
 /// one of 1 / 25 of that.
-void set_deviations(Evaluation& evaluation, const Series& series, const GroupStatistics& bright,
+void set_deviations(Evaluation& evaluation, const GroupStatistics& bright,
                     const GroupStatistics& dark) {
-    const auto images_of = [&](bool is_dark) {
-        const auto group = std::ranges::find_if(series.groups, [&](const ImageGroup& g) {
-            return g.dark == is_dark && g.files.size() > 2;
-        });
-        return static_cast<double>(group->files.size());
+    const auto grid_of = [](const GroupStatistics& group) {
+        return 1 / static_cast<double>(group.count);
     };
     if (dark.mean_image.values.empty() || bright.mean_image.values.empty()) return;
-    evaluation.dark_deviations = deviation_histogram(dark.mean_image.values, 1 / images_of(true));
+    evaluation.dark_deviations = deviation_histogram(dark.mean_image.values, grid_of(dark));
     const double signal = bright.images.mean_dn - dark.images.mean_dn;
     PixelMap difference = bright.mean_image;
     for (std::size_t i = 0; i < difference.values.size(); ++i)
         difference.values[i] = (difference.values[i] - dark.mean_image.values[i]) / signal;
-    evaluation.bright_deviations =
-        deviation_histogram(high_pass(difference).values,
-                            1 / (kHighPassSize * kHighPassSize * images_of(false) * signal));
+    evaluation.bright_deviations = deviation_histogram(
+        high_pass(difference).values, grid_of(bright) / (kHighPassSize * kHighPassSize * signal));
 }
 
 }  // namespace
@@ -195,7 +191,7 @@ Evaluation evaluate(const Series& series, const Statistics& statistics, const st
     evaluation.dark_variance_dn2 = dark.images.temporal_variance_dn2;
     evaluation.dark_zero_fraction = dark.zero_fraction;
     set_figures(evaluation, bright, dark, where);
-    set_deviations(evaluation, series, bright, dark);
+    set_deviations(evaluation, bright, dark);
     return evaluation;
 }
 

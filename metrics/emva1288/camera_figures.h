@@ -35,6 +35,7 @@ struct Evaluation {
 
 /// Statistics of one group of images, and the fraction of its values that are 0.
 struct GroupStatistics {
+    std::size_t count = 0;  ///< of images
     ImageStatistics images;
     SpatialVariances split = {};  ///< of stacks of more than two images, with 3 rows and columns
     double zero_fraction = 0;

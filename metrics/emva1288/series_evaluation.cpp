@@ -23,6 +23,7 @@ GroupStatistics statistics_of(const ImageGroup& group, const Series& series,
     }
     const bool has_split = group.files.size() > 2 && series.rows > 2 && series.cols > 2;
     GroupStatistics found{
+        .count = group.files.size(),
         .images = stack.statistics(),
         .split = has_split ? stack.spatial_variances(series.cols) : SpatialVariances{},
         .zero_fraction = static_cast<double>(zeros) / static_cast<double>(values)};

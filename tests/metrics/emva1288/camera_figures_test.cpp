@@ -32,7 +32,8 @@ struct Camera {
                                  .photons = photons,
                                  .dark = photons == 0,
                                  .files = std::vector<std::string>(images, "a.png")});
-        statistics.push_back({.images = {.mean_dn = kBlack + kGain * signal,
+        statistics.push_back({.count = images,
+                              .images = {.mean_dn = kBlack + kGain * signal,
                                          .temporal_variance_dn2 = kGain * kGain * noise2 + 1.0 / 12,
                                          .spatial_variance_dn2 = kGain * kGain * spread2},
                               .zero_fraction = 0});
