@@ -165,7 +165,8 @@ void add_streams(const std::vector<std::string>& files, const StreamHeader& chip
             collector.add(packet);
             progress.advance();
         }
-        if (!undamaged(reader.report())) say_warning(file + damage_text(reader.report()));
+        if (!undamaged(reader.report()))
+            say_warning(fmt::format("{}: {}", file, damage_text(reader.report())));
     }
 }
 

@@ -1,15 +1,19 @@
 #include "apps/calibrate_scene.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "apps/arguments/checks.h"
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
+#include "apps/standard_error.h"
 #include "calibration/scene_gain.h"
 #include "core/error.h"
 #include "core/named_value.h"
 #include "decoder/decode_method.h"
 #include "readout/provenance.h"
+#include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
@@ -33,21 +37,23 @@ void add_scene_arguments(Command& command, SceneArguments& arguments) {
 }
 
 ChipCalibration calibrate_by_scene(const SceneArguments& arguments, const RunOptions& run) {
-    const StreamReader reader(arguments.stream);
-    const ChipOrigin chip = chip_of(reader.header().provenance);
+    StreamReader decoded(arguments.stream), samples(arguments.stream);
+    const ChipOrigin chip = chip_of(decoded.header().provenance);
     const double prnu = arguments.prnu > 0 ? arguments.prnu : chip.prnu;
     if (!(prnu > 0))
         throw InputError(arguments.stream,
                          "does not tell how much the gains of the chip differ; give its PRNU with "
                          "--prnu (the data sheet has it)");
-    Progress progress(run, "decoding", reader.slots());
+    Progress progress(run, "decoding", decoded.slots());
     auto calibration =
-        scene_calibration(arguments.stream, {.method = decode_method_from_name(arguments.method)},
+        scene_calibration(decoded, samples, {.method = decode_method_from_name(arguments.method)},
                           prnu, [&](double slots) {
                               progress.reach(slots);
                               return stop_signal() == 0;
                           });
     if (!calibration) throw Interrupted{};
+    if (!undamaged(decoded.report()))
+        say_warning(fmt::format("{}: {}", arguments.stream, damage_text(decoded.report())));
     if (chip.name.size() <= kMaxNameBytes) calibration->chip.name = chip.name;
     calibration->chip.device_id = chip.device_id;
     return std::move(*calibration);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "calibration/field_exposure.h"
+#include "calibration/robust_scale.h"
 #include "core/begun_exposure.h"
 #include "core/colour_filter.h"
 #include "core/error.h"
@@ -13,14 +15,12 @@
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "stream/stream_reader.h"
 
 namespace stipple {
 namespace {
 
 /// Standard deviation of decoded light, relative to it: sets the weights of the samples only.
 constexpr double kLightError = 0.1;
-constexpr double kDeviationOfMedian = 1.4826;  ///< standard deviation / median abs deviation
 /// Gains farther from 1 are taken for this: the light was decoded wrongly.
 constexpr double kMaxDeviations = 6;
 constexpr double kUsedRange = 0.8;  ///< of the range of the samples
@@ -29,12 +29,6 @@ constexpr std::uint16_t kLargestDn = 65535;
 constexpr double kPriorSamples = 4;
 constexpr double kMinNoise = 1e-6;  ///< of that which the weights expect: samples may be exact
 constexpr int kRadius = 3;          ///< pixels
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// The sites of a light group that the scene has shown: their gains and the variances of these.
 struct Gains {
@@ -100,12 +94,9 @@ std::vector<double> local_means(const Gains& gains, FrameShape shape) {
 /// variances are scaled to explain the scatter that `prnu` leaves.
 void shrink(const Gains& gains, double prnu, FrameShape shape,
             std::vector<SiteCalibration>& sites) {
-    std::vector<double> deviation = local_means(gains, shape), distance = deviation;
-    for (std::size_t i = 0; i < deviation.size(); ++i) {
-        deviation[i] = gains.gain[i] - deviation[i];
-        distance[i] = std::abs(deviation[i]);
-    }
-    const double scatter = kDeviationOfMedian * median(distance);
+    std::vector<double> deviation = local_means(gains, shape);
+    for (std::size_t i = 0; i < deviation.size(); ++i) deviation[i] = gains.gain[i] - deviation[i];
+    const double scatter = robust_deviation(deviation);
     const double pattern = prnu * prnu;
     const double error = std::max(scatter * scatter - pattern, pattern / 5);
     const double scale = error / median(gains.variance);
@@ -222,19 +213,19 @@ ChipCalibration SceneGain::estimate(double prnu) const {
     return calibration;
 }
 
-std::optional<ChipCalibration> scene_calibration(const std::filesystem::path& stream,
+std::optional<ChipCalibration> scene_calibration(StreamReader& decoded, StreamReader& samples,
                                                  const DecodeOptions& options, double prnu,
                                                  const ProgressCallback& progress) {
-    StreamReader decoded(stream), read(stream);
-    SceneGain gains(read.header(), stream.string());
+    SceneGain gains(samples.header(), samples.name());
     SamplePacket packet;
-    bool more = read.next(packet);
+    bool more = samples.next(packet);
     bool stopped = false;
     decode(
         decoded, options,
         [&](std::int64_t slot, std::span<const float> frame) {
             gains.add_frame(frame);
-            for (; more && packet.slot <= slot; more = read.next(packet)) gains.add_samples(packet);
+            for (; more && packet.slot <= slot; more = samples.next(packet))
+                gains.add_samples(packet);
             return true;
         },
         [&](double slots) { return !(stopped = stopped || !progress(slots)); });

@@ -1,19 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calibration/chip_calibration.h"
-#include "calibration/field_exposure.h"
 #include "decoder/decode_options.h"
 #include "decoder/pixel_response.h"
 #include "decoder/progress_callback.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
+#include "stream/stream_reader.h"
 
 namespace stipple {
 
@@ -65,9 +64,9 @@ class SceneGain {
 
 /// Decodes a stream and estimates the gains of its chip from it, as SceneGain. \returns nothing if
 /// `progress`, in slots, has stopped it. \throws InputError as StreamReader, `decode` and
-/// SceneGain. Precondition: prnu > 0.
+/// SceneGain. Preconditions: two readers of one stream, of which nothing has been read; prnu > 0.
 [[nodiscard]] std::optional<ChipCalibration> scene_calibration(
-    const std::filesystem::path& stream, const DecodeOptions& options, double prnu,
+    StreamReader& decoded, StreamReader& samples, const DecodeOptions& options, double prnu,
     const ProgressCallback& progress = [](double) { return true; });
 
 }  // namespace stipple

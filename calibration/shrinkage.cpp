@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "calibration/robust_scale.h"
 #include "core/index.h"
 
 namespace stipple {
 namespace {
 
 constexpr double kOutlierSigmas = 6;
-constexpr double kDeviationOfMedian = 1.4826;  ///< standard deviation / median abs deviation
 constexpr double kLineSigmas = 3;
 constexpr int kMinLines = 8;  ///< fewer do not tell their variance
-
-/// Precondition: there is a value.
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Mean residual of each line, and how much of its variance is that of the quantity.
 struct Lines {
@@ -81,8 +75,8 @@ std::vector<bool> inliers(const EstimateMap& map) {
         if (std::isfinite(map.variance[i])) measured.push_back(map.value[i]);
     if (measured.empty()) return used;
     const double centre = median(measured);
-    for (double& value : measured) value = std::abs(value - centre);
-    const double deviation = kDeviationOfMedian * median(std::move(measured));
+    for (double& value : measured) value -= centre;
+    const double deviation = robust_deviation(std::move(measured));
     for (std::size_t i = 0; i < used.size(); ++i) {
         // Where most pixels are exactly equal, their own error still is.
         const double sigma = std::max(deviation, std::sqrt(map.variance[i]));

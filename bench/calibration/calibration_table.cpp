@@ -12,6 +12,7 @@
 #include "calibration/scene_gain.h"
 #include "core/error.h"
 #include "decoder/decode_options.h"
+#include "stream/stream_reader.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"
@@ -40,7 +41,8 @@ std::vector<SiteCalibration> sites_of_scene(const FluxVideo& video, const Sensor
     const TemporaryFolder folder;
     const auto file = folder / "clip.stipple";
     write_recording(video, schedule_of("random", video.shape()), sensor, file);
-    return scene_calibration(file, DecodeOptions{}, sensor.physical.prnu)->sites;
+    StreamReader decoded(file), samples(file);
+    return scene_calibration(decoded, samples, DecodeOptions{}, sensor.physical.prnu)->sites;
 }
 
 void print_table(const FluxVideo& video) {

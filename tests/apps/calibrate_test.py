@@ -110,6 +110,12 @@ class CalibrateTest(ProgramTest):
         self.assertGreater(np.corrcoef(known[sound], found[sound])[0, 1], 0.25)  # by chance 0.04
         error = self.decoded_error()
         self.assertLess(self.decoded_error("--calibration", "scene.stcal"), error)
+        with open(f"{self.folder}/clip.stipple", "r+b") as stream:
+            stream.seek(stream.seek(0, 2) // 2)
+            stream.write(b"damage")
+        done = self.run_program("calibrate", "--scene", "clip.stipple", "--method", "naive", "-o", "damaged.stcal")
+        self.assertIn("clip.stipple: the stream is damaged", done.stderr)
+        self.assertEqual(done.returncode, 0)
         self.write_stream("paper.stipple", rows=24, cols=32)
         self.fails(INPUT, ["paper.stipple: ", "--prnu"], "calibrate", "--scene", "paper.stipple", "-o", "x.stcal")
         self.fails(USAGE, ["--prnu"], "calibrate", *SENSOR, "--size", SIZE, "--prnu", 0.1, "-o", "x.stcal")

@@ -3,6 +3,7 @@
 #include "calibration/scene_gain.h"
 #include "decoder/decode_options.h"
 #include "scenes/scene.h"
+#include "stream/stream_reader.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/footage_folder.h"
@@ -53,7 +54,8 @@ TEST(CalibratedChipTest, FootageItselfGainsBackHalfOfWhatUnequalGainsCost) {
     const TemporaryFolder folder;
     const auto file = folder / "clip.stipple";
     write_recording(*video, schedule_of("random", video->shape()), sensor, file);
-    const auto chip = scene_calibration(file, DecodeOptions{}, sensor.physical.prnu);
+    StreamReader decoded(file), samples(file);
+    const auto chip = scene_calibration(decoded, samples, DecodeOptions{}, sensor.physical.prnu);
     ASSERT_TRUE(chip.has_value());
     const double equal = psnr(*video, without_fixed_pattern(sensor), {});
     const double uncalibrated = psnr(*video, sensor, {});
