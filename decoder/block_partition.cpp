@@ -31,6 +31,10 @@ HaloRange slot_range(std::int64_t core_begin, std::int64_t slots, std::int64_t h
             .end = std::min(core_end + halo, slots)};
 }
 
+std::int64_t block_count(std::int64_t slots) {
+    return slots <= 0 ? 0 : 1 + std::max<std::int64_t>(slots - kRestSlots - 1, 0) / kCoreSlots;
+}
+
 std::vector<Tile> frame_tiles(FrameShape shape, std::int64_t max_core_sites) {
     std::int64_t down = 1;
     std::int64_t across = 1;

@@ -32,6 +32,14 @@ inline constexpr std::int64_t kRestSlots = 16;
 [[nodiscard]] HaloRange slot_range(std::int64_t core_begin, std::int64_t slots,
                                    std::int64_t halo = kHaloSlots);
 
+/// The number of blocks of a stream with `slots` slots, which are decoded independently.
+[[nodiscard]] std::int64_t block_count(std::int64_t slots);
+
+/// The first slot of the core of block `number`.
+[[nodiscard]] inline std::int64_t block_begin(std::int64_t number) {
+    return number * kCoreSlots;
+}
+
 /// Tiles of a frame, in rows and columns.
 struct Tile {
     HaloRange rows;

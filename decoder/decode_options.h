@@ -17,6 +17,9 @@ struct DecodeOptions {
     Portz2013Options portz2013 = {};
     StageSink stages = {};
     bool fill_gaps = false;  ///< decode missing slots, whatever their number
+    /// The first frame, where a block begins (block_begin); those before are not decoded. The
+    /// others have the same bits as without.
+    std::int64_t first_slot = 0;
 };
 
 /// The method with the options of `config`, whose keys are those of docs/decoder_options.md for

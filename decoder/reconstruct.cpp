@@ -23,8 +23,9 @@ namespace {
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
-    PacketBuffer(StreamReader& reader, const DecodeOptions& options)
-        : reader_(reader), options_(options), counts_(reader.header()) {}
+    /// Packets of slots below `first_slot` are read and left out.
+    PacketBuffer(StreamReader& reader, const DecodeOptions& options, std::int64_t first_slot)
+        : reader_(reader), options_(options), counts_(reader.header()), first_slot_(first_slot) {}
 
     /// Reads on until every packet of slots below `slot` is here, or the stream ends.
     void read_up_to(std::int64_t slot) {
@@ -37,6 +38,7 @@ class PacketBuffer {
                 reach(packet.slot);
                 ++slots_;
             }
+            if (packet.slot < first_slot_) continue;
             counts_.add(packet);
             packets_.push_back(std::move(packet));
         }
@@ -70,6 +72,7 @@ class PacketBuffer {
     StreamReader& reader_;
     const DecodeOptions& options_;
     SaturatedSamples counts_;
+    std::int64_t first_slot_;
     bool ended_ = false;
     std::int64_t slots_ = 0;
     std::int64_t present_ = 0;  ///< slots of these with a packet
@@ -235,14 +238,16 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
                     const ProgressCallback& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
-    PacketBuffer buffer(reader, options);
-    DecodeReport report;
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
+    const std::int64_t first_packet = std::max<std::int64_t>(options.first_slot - halo, 0);
+    PacketBuffer buffer(reader, options, first_packet);
+    DecodeReport report;
+    std::int64_t next = options.first_slot;
     for (bool more = true; more;) {
-        buffer.read_up_to(report.slots + kCoreSlots + std::max(kRestSlots, halo));
-        const HaloRange slots = slot_range(report.slots, buffer.slots(), halo);
+        buffer.read_up_to(next + kCoreSlots + std::max(kRestSlots, halo));
+        const HaloRange slots = slot_range(next, buffer.slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
-        check_proportion(reader, options, slots.core_end, buffer.counts().samples());
+        check_proportion(reader, options, slots.core_end - first_packet, buffer.counts().samples());
         check_block(reader, options, slots);
         buffer.drop_below(slots.begin);
         const auto block_progress = [&](double fraction) {
@@ -251,11 +256,10 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
         };
         const Block video = decode_slots(header, buffer.packets(), options, slots, block_progress);
         if (!video) break;
-        for (int slot = 0; slot < video->slots() && more; ++slot) {
-            more = sink(report.slots, video->frame(slot));
-            ++report.slots;
-        }
+        for (int slot = 0; slot < video->slots() && more; ++slot)
+            more = sink(next++, video->frame(slot));
     }
+    report.slots = next - options.first_slot;
     report.voxels = static_cast<std::uint64_t>(report.slots) * decoded_shape(header).sites();
     report.samples = buffer.counts().samples();
     report.saturated_samples = buffer.counts().saturated();

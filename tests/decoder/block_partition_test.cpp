@@ -11,8 +11,9 @@ namespace {
 
 TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
     for (std::int64_t slots = 1; slots < 300; ++slots) {
-        std::int64_t done = 0;
+        std::int64_t done = 0, blocks = 0;
         while (done < slots) {
+            ASSERT_EQ(done, block_begin(blocks++));
             const HaloRange s = slot_range(done, slots);
             ASSERT_EQ(s.core_begin, done);
             ASSERT_GT(s.core_end, s.core_begin);
@@ -22,7 +23,9 @@ TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
             done = s.core_end;
         }
         ASSERT_EQ(done, slots);
+        ASSERT_EQ(blocks, block_count(slots));
     }
+    EXPECT_EQ(block_count(0), 0);
 }
 
 TEST(BlockPartitionTest, ABlockIsTheSameWhateverFollowsIt) {

@@ -7,7 +7,9 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/parallel.h"
+#include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
 #include "decoder/naive/nearest_samples.h"
 #include "stream/stream_writer.h"
@@ -108,6 +110,29 @@ TEST_F(ReconstructTest, GivesTheSameBitsForAnyNumberOfThreads) {
             return decode_all(file, method, shape);
         };
         EXPECT_EQ(decoded(1), decoded(2));
+    }
+}
+
+TEST_F(ReconstructTest, AnyBlockCanBeTheFirst) {
+    const FrameShape shape{24, 30, 1};
+    const std::int64_t slots = 150;
+    const auto file = write(disc(slots, shape), random_schedule(24, 30, kPaperExposureSlots, 1));
+    for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+        const auto all = decode_all(file, method, shape);
+        for (std::int64_t block = 0; block < block_count(slots); ++block) {
+            StreamReader reader(file);
+            std::int64_t next = block_begin(block);
+            const DecodeReport report = decode(
+                reader, {.method = method, .first_slot = next},
+                [&](std::int64_t slot, std::span<const float> frame) {
+                    EXPECT_EQ(slot, next++);
+                    const auto whole = std::span(all).subspan(index(slot) * shape.sites());
+                    EXPECT_TRUE(std::ranges::equal(frame, whole.first(shape.sites()))) << slot;
+                    return true;
+                });
+            EXPECT_EQ(next, slots);
+            EXPECT_EQ(report.slots, slots - block_begin(block));
+        }
     }
 }
 
