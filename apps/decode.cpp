@@ -1,3 +1,5 @@
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -5,7 +7,9 @@
 #include "apps/arguments/settings.h"
 #include "apps/arguments/video_output.h"
 #include "apps/decode_file.h"
+#include "apps/decode_part.h"
 #include "apps/subcommands.h"
+#include "core/parsed_number.h"
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
 
@@ -37,6 +41,46 @@ void add_reading(Command& command, DecodeArguments& arguments, std::string& chec
                   "of it; =fix decodes with the shift")
         .type_name("[=fix]")
         .one_of({"true", "fix"});
+}
+
+/// \throws UsageError.
+PartOfWork parsed_part(const std::string& text) {
+    constexpr std::int64_t kMaxParts = 1'000'000;
+    const std::size_t slash = text.find('/');
+    const auto number = parsed_number<std::int64_t>(text.substr(0, slash));
+    const auto count = parsed_number<std::int64_t>(
+        slash == std::string::npos ? std::string() : text.substr(slash + 1));
+    if (!number || !count || *number < 1 || *number > *count || *count > kMaxParts)
+        throw UsageError("--part", "is a number and how many there are, such as 1/16 to 16/16");
+    return {.number = *number, .count = *count};
+}
+
+void add_part(Command& command, DecodeArguments& arguments) {
+    command
+        .add_parsed(
+            "--part", [&arguments](const std::string& text) { arguments.part = parsed_part(text); },
+            "decode part I of N into windows of the folder OUT; those that are there are kept "
+            "(docs/scaling.md)")
+        .type_name("I/N");
+}
+
+/// Windows are .npy files, and "join" makes what else is wanted of them.
+void check_part(const Command& command, const DecodeArguments& arguments) {
+    command.refuse({"--until", "--follow", "--stages", "--check-schedule"},
+                   "has no effect on a part; leave out one of them");
+    command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd", "--images",
+                    "--samples", "--full-scale", "--pixel-um"},
+                   "is an option of \"stipple join\", which makes the video of all parts");
+    const std::filesystem::path output(arguments.output);
+    if (output.has_extension() && !std::filesystem::is_directory(output))
+        throw UsageError("--output", "with --part it is a folder, and has no extension");
+}
+
+void decode_all_or_part(const DecodeArguments& arguments, const RunOptions& run) {
+    if (arguments.part.count > 0)
+        decode_part(arguments, run);
+    else
+        decode_file(arguments, run);
 }
 
 }  // namespace
@@ -74,6 +118,7 @@ void add_decode(Command& app, Action& action) {
         .input();
     const auto check_schedule = std::make_shared<std::string>();
     add_reading(command, *options, *check_schedule);
+    add_part(command, *options);
     add_video_arguments(command, options->video, options->images);
     add_threads(command, action.options);
     command.footer(
@@ -84,14 +129,18 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o clean --calibration chip.stcal\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
+        "  stipple decode film.stipple -o windows --part 3/16\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
-    set_action(command, action, options, decode_file, [command, options, check_schedule] {
+    set_action(command, action, options, decode_all_or_part, [command, options, check_schedule] {
         if (!check_schedule->empty())
             options->check_schedule =
                 *check_schedule == "fix" ? CheckSchedule::kFixShift : CheckSchedule::kRefuseShift;
         if (!options->follow)
             command.refuse({"--timeout"}, "needs --follow; add it, or leave this out");
-        check_video_arguments(command, options->video, options->images, options->output);
+        if (options->part.count > 0)
+            check_part(command, *options);
+        else
+            check_video_arguments(command, options->video, options->images, options->output);
     });
 }
 

@@ -1,7 +1,6 @@
 #include "apps/decode_file.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +11,7 @@
 #include <string_view>
 
 #include "apps/decode_schedule.h"
-#include "apps/fixed_pattern.h"
+#include "apps/decode_setup.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -20,7 +19,6 @@
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
 #include "apps/standard_error.h"
-#include "core/config.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
@@ -32,26 +30,6 @@
 
 namespace stipple {
 namespace {
-
-DecodeOptions options_of(const DecodeArguments& arguments) {
-    const DecodeMethod method = decode_method_from_name(arguments.method);
-    if (!arguments.stages.empty() && method != DecodeMethod::kPortz2013)
-        throw InputError("--stages",
-                         fmt::format("method {} has none; portz2013 has", arguments.method));
-    Config config = arguments.options.empty()
-                        ? Config(arguments.settings, "decoder")
-                        : Config(arguments.options, arguments.settings, "decoder");
-    DecodeOptions options = read_decode_options(method, config);
-    options.fill_gaps = arguments.fill_gaps;
-    return options;
-}
-
-/// The most memory of this process that has lain in RAM at a time.
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // kilobytes on Linux
-}
 
 StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
                          GrowingFile& growing) {
@@ -68,14 +46,6 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
-}
-
-/// Uses the calibration of the chip, or says what it costs that there is none.
-void calibrate(StreamReader& reader, const DecodeArguments& arguments) {
-    if (arguments.calibration.empty())
-        say_warning(fixed_pattern_warning(arguments.stream, reader.header()));
-    else
-        reader.use_sites(read_sites(arguments.calibration, reader.header()));
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -108,13 +78,6 @@ nlohmann::ordered_json light_levels_json(const LightLevels& levels) {
 std::string light_levels_text(const LightLevels& levels) {
     return fmt::format("PQ: MaxCLL {:.0f}, MaxFALL {:.0f} cd/m2, {:.2g} % of the values clipped",
                        levels.max_cll, levels.max_fall, 100 * levels.clipped_fraction);
-}
-
-/// What packets of a wrong size may mean.
-std::string_view schedule_hint(const StreamReport& report) {
-    return report.undue_packets == 0
-               ? ""
-               : "\n  the chip may have run another schedule: --check-schedule looks for it";
 }
 
 /// A run of the command: opened by the constructor, then `run`, then `tell`.
@@ -153,7 +116,7 @@ class DecodeRun {
 DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       run_(run),
-      options_(options_of(arguments)),
+      options_(read_decode_setup(arguments).options),
       growing_(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; }),
       json_(run),
       check_(check_schedule()),

@@ -17,6 +17,12 @@ enum class CheckSchedule : std::uint8_t {
     kFixShift      ///< they are decoded with this shift
 };
 
+/// A share of the work: `number` of `count`, which begin at 1.
+struct PartOfWork {
+    std::int64_t number = 0;
+    std::int64_t count = 0;  ///< 0: all in one run
+};
+
 /// The arguments of `stipple decode`.
 struct DecodeArguments {
     std::string stream;
@@ -28,6 +34,7 @@ struct DecodeArguments {
     bool strict = false;
     bool fill_gaps = false;
     std::int64_t until = 0;   ///< frames wanted; 0: all
+    PartOfWork part;          ///< of the windows of the stream
     bool follow = false;      ///< the stream is still being written
     double timeout_s = 10;    ///< with `follow`: without growth
     std::string calibration;  ///< file of the chip's calibration; empty: none

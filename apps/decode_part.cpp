@@ -1,0 +1,207 @@
+#include "apps/decode_part.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/decode_setup.h"
+#include "apps/interrupt.h"
+#include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/window_folder.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "decoder/measurements.h"
+#include "decoder/reconstruct.h"
+#include "io/frame_writer.h"
+#include "readout/footage_origin.h"
+#include "stream/stream_figures.h"
+
+namespace stipple {
+namespace {
+
+constexpr auto kGoOn = "complete windows are kept, and the same command goes on";
+
+/// Windows [begin, end).
+struct WindowRange {
+    std::int64_t begin = 0;
+    std::int64_t end = 0;
+};
+
+WindowRange range_of(const PartOfWork& part, std::int64_t windows) {
+    return {windows * (part.number - 1) / part.count, windows * part.number / part.count};
+}
+
+/// Consecutive numbers together.
+std::vector<WindowRange> ranges_of(const std::vector<std::int64_t>& numbers) {
+    std::vector<WindowRange> ranges;
+    for (const std::int64_t number : numbers)
+        if (!ranges.empty() && ranges.back().end == number)
+            ++ranges.back().end;
+        else
+            ranges.push_back({number, number + 1});
+    return ranges;
+}
+
+std::string sha256_of(const std::string& file) {
+    return origin_of(file, {}, [] { throw_if_stopped(); }).sha256;
+}
+
+/// The slots of a stream, by its index or else by its packets.
+std::int64_t slots_of(const std::string& file) {
+    StreamReader reader(file, ReadPolicy::kCounts);
+    if (!reader.slots())
+        for (SamplePacket packet; reader.next(packet);) throw_if_stopped();
+    const std::int64_t slots = reader.slots().value_or(reader.report().slots);
+    if (slots == 0) throw InputError(file, "holds no slot to decode");
+    return slots;
+}
+
+WindowIdentity identity_of(const DecodeArguments& arguments, const DecodeSetup& setup) {
+    if (!std::filesystem::is_regular_file(arguments.stream))
+        throw InputError(arguments.stream, "--part needs a file, which is read more than once");
+    const StreamHeader header = StreamReader(arguments.stream).header();
+    const std::string& calibration = arguments.calibration;
+    return {.stream_bytes = std::filesystem::file_size(arguments.stream),
+            .stream_sha256 = sha256_of(arguments.stream),
+            .method = arguments.method,
+            .options = setup.given,
+            .calibration_sha256 = calibration.empty() ? "" : sha256_of(calibration),
+            .fill_gaps = arguments.fill_gaps,
+            .slots = slots_of(arguments.stream),
+            .shape = decoded_shape(header),
+            .slot_us = header.slot_us};
+}
+
+/// A run of the command: opened by the constructor, then `run`, then `tell`.
+class PartRun {
+  public:
+    PartRun(const DecodeArguments& arguments, const RunOptions& run);
+    /// Decodes the windows that are missing. \throws Interrupted, InputError, DeviceError.
+    void run();
+    /// Writes figures and result. \throws InputError if the stream is damaged.
+    void tell();
+
+  private:
+    void decode_windows(const WindowRange& windows, Progress& progress);
+    [[nodiscard]] std::int64_t slots_of_range(const WindowRange& windows) const;
+    [[nodiscard]] double voxels_per_second() const;
+
+    const DecodeArguments& arguments_;
+    const RunOptions& run_;
+    DecodeSetup setup_;
+    JsonFile json_;
+    WindowFolder folder_;
+    WindowRange windows_;
+    std::vector<std::int64_t> missing_;
+    std::int64_t slots_ = 0;  ///< decoded in this run
+    double seconds_ = 0;
+    StreamReport read_;
+};
+
+PartRun::PartRun(const DecodeArguments& arguments, const RunOptions& run)
+    : arguments_(arguments),
+      run_(run),
+      setup_(read_decode_setup(arguments)),
+      json_(run),
+      folder_(arguments.output, identity_of(arguments, setup_)),
+      windows_(range_of(arguments.part, folder_.count())) {
+    if (!run.force)
+        missing_ = folder_.missing(windows_.begin, windows_.end);
+    else
+        for (std::int64_t number = windows_.begin; number < windows_.end; ++number)
+            missing_.push_back(number);
+}
+
+void PartRun::run() {
+    const std::vector<WindowRange> ranges = ranges_of(missing_);
+    std::int64_t total = 0;
+    for (const WindowRange& range : ranges) total += slots_of_range(range);
+    const auto start = std::chrono::steady_clock::now();
+    Progress progress(run_, "decoding", total);
+    for (const WindowRange& range : ranges) decode_windows(range, progress);
+    seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::int64_t PartRun::slots_of_range(const WindowRange& windows) const {
+    return folder_.end_slot(windows.end - 1) - folder_.begin_slot(windows.begin);
+}
+
+void PartRun::decode_windows(const WindowRange& windows, Progress& progress) {
+    StreamReader reader(arguments_.stream,
+                        arguments_.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
+    calibrate(reader, arguments_);
+    DecodeOptions options = setup_.options;
+    options.first_slot = folder_.begin_slot(windows.begin);
+    const std::int64_t before = slots_;
+    std::int64_t number = windows.begin;
+    std::optional<FrameWriter> window;
+    const auto take = [&](std::int64_t slot, std::span<const float> frame) {
+        if (!window) {
+            folder_.remove_leftovers(number);
+            window.emplace(folder_.window(number), folder_.identity().shape,
+                           FrameWriterOptions{.force = true});
+        }
+        window->write(frame);
+        ++slots_;
+        if (slot + 1 < folder_.end_slot(number)) return true;
+        window->finish();
+        window.reset();
+        return ++number < windows.end && stop_signal() == 0;
+    };
+    const auto reached = [&](double slots) {
+        progress.reach(
+            static_cast<double>(before) + slots - static_cast<double>(options.first_slot), slots_);
+        return stop_signal() == 0;
+    };
+    decode(reader, options, take, reached);
+    read_ = reader.report();
+    if (number == windows.end) return;
+    throw_if_stopped(kGoOn);
+    throw InputError(arguments_.stream, "has changed while it was decoded");
+}
+
+double PartRun::voxels_per_second() const {
+    const auto sites = static_cast<double>(folder_.identity().shape.sites());
+    return slots_ == 0 ? 0 : static_cast<double>(slots_) * sites / seconds_;
+}
+
+void PartRun::tell() {
+    const std::int64_t windows = windows_.end - windows_.begin;
+    const auto decoded = static_cast<std::int64_t>(missing_.size());
+    json_.write({{"method", arguments_.method},
+                 {"seconds", seconds_},
+                 {"part", arguments_.part.number},
+                 {"parts", arguments_.part.count},
+                 {"windows", windows},
+                 {"windows_decoded", decoded},
+                 {"slots", slots_},
+                 {"voxels", static_cast<std::uint64_t>(slots_) * folder_.identity().shape.sites()},
+                 {"voxels_per_second", voxels_per_second()},
+                 {"peak_memory_bytes", peak_memory_bytes()},
+                 {"threads", thread_count()}});
+    run_.say(fmt::format("{}: part {} of {}, {} of {} decoded, {} kept, method {}, {} s",
+                         arguments_.output, arguments_.part.number, arguments_.part.count, decoded,
+                         counted(windows, "window"), windows - decoded, arguments_.method,
+                         rounded(seconds_)));
+    read_.tail_bytes = 0;  // it may read beyond the part, not to the end
+    if (const auto text = decoded_damage_text(read_, schedule_hint(read_)); !text.empty())
+        throw InputError(arguments_.stream, text);
+}
+
+}  // namespace
+
+void decode_part(const DecodeArguments& arguments, const RunOptions& run) {
+    PartRun decoding(arguments, run);
+    decoding.run();
+    decoding.tell();
+}
+
+}  // namespace stipple

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// All that determines the frames of a decoded stream.
+struct WindowIdentity {
+    std::uint64_t stream_bytes = 0;
+    std::string stream_sha256;
+    std::string method;
+    std::string options;             ///< lines of TOML; empty: the defaults
+    std::string calibration_sha256;  ///< empty: without
+    bool fill_gaps = false;
+    std::int64_t slots = 0;
+    FrameShape shape = {};  ///< of the decoded frames
+    double slot_us = 0;
+};
+
+/// A folder with a decoded stream in windows, each a complete file `window_000000.npy` or absent.
+/// The windows are the blocks that the decoder decodes independently. `decoding.json` holds the
+/// identity, so that no window of another decoding gets into the folder.
+class WindowFolder {
+  public:
+    /// Makes the folder if it is missing. Several processes may do so at the same time.
+    /// \throws InputError if it holds the windows of another decoding, or anything else;
+    /// DeviceError if it cannot be written.
+    WindowFolder(std::filesystem::path folder, const WindowIdentity& identity);
+    /// Opens the folder of a decoding. \throws InputError if it is none, or of another version.
+    explicit WindowFolder(std::filesystem::path folder);
+
+    [[nodiscard]] const WindowIdentity& identity() const { return identity_; }
+    /// Number of windows.
+    [[nodiscard]] std::int64_t count() const;
+    /// The file of a window, 0..count() - 1.
+    [[nodiscard]] std::filesystem::path window(std::int64_t number) const;
+    /// The slots of a window: [begin_slot, end_slot).
+    [[nodiscard]] std::int64_t begin_slot(std::int64_t number) const;
+    [[nodiscard]] std::int64_t end_slot(std::int64_t number) const;
+    /// Whether the window is there, with all of its frames.
+    [[nodiscard]] bool holds(std::int64_t number) const;
+    /// Windows that are not there, of [begin, end).
+    [[nodiscard]] std::vector<std::int64_t> missing(std::int64_t begin, std::int64_t end) const;
+    /// Removes what killed runs have left of a window.
+    void remove_leftovers(std::int64_t number) const;
+
+  private:
+    std::filesystem::path folder_;
+    WindowIdentity identity_;
+};
+
+}  // namespace stipple
