@@ -1,0 +1,215 @@
+#include "apps/explore_space.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "core/error.h"
+#include "core/input_file.h"
+#include "core/toml_keys.h"
+#include "scenes/scene.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kMaxCount = 10'000;
+
+/// Axes that every space has, slowest first; those with a default may be left out.
+struct NamedAxis {
+    std::string_view name;
+    const char* fallback;
+};
+constexpr std::array<NamedAxis, 5> kNamedAxes{{{"footage", "pan"},
+                                               {"sensor", nullptr},
+                                               {"schedule", "random"},
+                                               {"method", "fast"},
+                                               {"seed", "1"}}};
+
+/// Reads the tables of a space; messages name the file and the key.
+class SpaceReader {
+  public:
+    explicit SpaceReader(std::string file) : file_(std::move(file)) {}
+
+    [[nodiscard]] Space read(const toml::table& tables) const;
+
+  private:
+    [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
+        throw InputError(fmt::format("{}: {}", file_, key), problem);
+    }
+    [[nodiscard]] std::string text(const std::string& key, const toml::node& node) const;
+    [[nodiscard]] std::vector<std::string> values(const std::string& key,
+                                                  const toml::node& node) const;
+    [[nodiscard]] std::vector<std::string> range(const std::string& key,
+                                                 const toml::table& table) const;
+    [[nodiscard]] int whole(const toml::table& table, const std::string& key, int fallback,
+                            int max) const;
+    void check_keys(const toml::table& table, const std::string& section,
+                    const std::vector<std::string_view>& known) const;
+
+    std::string file_;
+};
+
+/// A value as TOML, but a text without quotes.
+std::string SpaceReader::text(const std::string& key, const toml::node& node) const {
+    if (const auto* word = node.as_string()) return word->get();
+    if (node.is_table() || node.is_date() || node.is_time() || node.is_date_time())
+        fail(key, "has a value that is no number, text, boolean or list");
+    std::ostringstream text;
+    if (const auto* list = node.as_array())
+        text << toml::toml_formatter(*list);
+    else if (const auto number = node.value<std::int64_t>(); number && node.is_integer())
+        text << *number;
+    else if (const auto real = node.value<double>(); real && node.is_floating_point())
+        text << fmt::format("{}", *real);
+    else
+        text << (node.value_or(false) ? "true" : "false");
+    return text.str();
+}
+
+std::vector<std::string> SpaceReader::range(const std::string& key,
+                                            const toml::table& table) const {
+    check_keys(table, key, {"from", "to", "count", "log"});
+    const auto from = table["from"].value<double>();
+    const auto to = table["to"].value<double>();
+    const auto count = table["count"].value<std::int64_t>();
+    const bool log = table["log"].value_or(false);
+    if (!from || !to || !count || *count < 2 || *count > kMaxCount || !std::isfinite(*from) ||
+        !std::isfinite(*to) || (log && (*from <= 0 || *to <= 0)))
+        fail(key,
+             "is no range such as { from = 10, to = 1000, count = 5, log = true }; count is 2 to "
+             "10000, and the ends of a log range are above 0");
+    const bool whole = table["from"].is_integer() && table["to"].is_integer();
+    std::vector<std::string> values;
+    for (std::int64_t i = 0; i < *count; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(*count - 1);
+        double value = log ? *from * std::pow(*to / *from, t) : *from + (*to - *from) * t;
+        if (whole) value = std::round(value);
+        std::string number = fmt::format("{:.6g}", value);
+        if (whole) number = fmt::format("{:.0f}", value);
+        if (values.empty() || values.back() != number) values.push_back(std::move(number));
+    }
+    return values;
+}
+
+std::vector<std::string> SpaceReader::values(const std::string& key, const toml::node& node) const {
+    if (const auto* table = node.as_table()) return range(key, *table);
+    const auto* list = node.as_array();
+    if (list == nullptr) return {text(key, node)};
+    if (list->empty()) fail(key, "is an empty list; give at least one value, or leave it out");
+    std::vector<std::string> values;
+    for (const toml::node& item : *list) values.push_back(text(key, item));
+    return values;
+}
+
+int SpaceReader::whole(const toml::table& table, const std::string& key, int fallback,
+                       int max) const {
+    const toml::node* node = table.get(key.substr(key.find('.') + 1));
+    if (node == nullptr) return fallback;
+    const auto number = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+    if (!number || *number < 1 || *number > max)
+        fail(key, fmt::format("is no whole number of 1 to {}", max));
+    return static_cast<int>(*number);
+}
+
+void SpaceReader::check_keys(const toml::table& table, const std::string& section,
+                             const std::vector<std::string_view>& known) const {
+    for (const auto& [key, node] : table)
+        if (std::ranges::find(known, key.str()) == known.end())
+            fail(section + (section.empty() ? "" : ".") + std::string(key.str()),
+                 "is unknown here; see docs/explore.md");
+}
+
+Space SpaceReader::read(const toml::table& tables) const {
+    check_keys(tables, "", {"axes", "set", "clip", "readout"});
+    const toml::table none;
+    const auto section = [&](const std::string& name) -> const toml::table& {
+        const toml::node* node = tables.get(name);
+        if (node != nullptr && !node->is_table()) fail(name, "is no section");
+        return node == nullptr ? none : *node->as_table();
+    };
+    const toml::table& axes = section("axes");
+    check_keys(axes, "axes", {"footage", "sensor", "schedule", "method", "seed"});
+    Space space;
+    for (const auto& [name, fallback] : kNamedAxes) {
+        const toml::node* node = axes.get(name);
+        if (node == nullptr && fallback == nullptr)
+            fail("axes.sensor",
+                 "is missing; name a sensor of \"stipple list sensors\", or several");
+        space.axes.push_back({std::string(name), node == nullptr
+                                                     ? std::vector<std::string>{fallback}
+                                                     : values("axes." + std::string(name), *node)});
+    }
+    for (const auto& [key, node] : section("set")) {
+        const std::string name(key.str());
+        if (!name.starts_with("sensor.") && !name.starts_with("schedule.") &&
+            !name.starts_with("decoder."))
+            fail("set." + name,
+                 "begins neither with sensor. nor schedule. nor decoder.; put it "
+                 "into quotes: \"sensor.bit_depth\" = [8, 10]");
+        space.axes.push_back({name, values("set." + name, node)});
+    }
+    const toml::table& clip = section("clip");
+    check_keys(clip, "clip", {"frames", "rows", "cols", "planes"});
+    space.frames = whole(clip, "clip.frames", space.frames, SceneOptions::kMaxSlots);
+    space.scene.rows = whole(clip, "clip.rows", space.scene.rows, SceneOptions::kMaxSide);
+    space.scene.cols = whole(clip, "clip.cols", space.scene.cols, SceneOptions::kMaxSide);
+    space.scene.planes = whole(clip, "clip.planes", space.scene.planes, 3);
+    const toml::table& readout = section("readout");
+    check_keys(readout, "readout", {"rows", "cols"});
+    space.readout.rows = whole(readout, "readout.rows", 0, kMaxFrameSide);
+    space.readout.cols = whole(readout, "readout.cols", 0, kMaxFrameSide);
+    if ((space.readout.rows == 0) != (space.readout.cols == 0))
+        fail("readout", "needs both rows and cols");
+    return space;
+}
+
+}  // namespace
+
+std::uint64_t Space::size() const {
+    double points = 1;  // exact as far as it matters
+    for (const SpaceAxis& axis : axes) points *= static_cast<double>(axis.values.size());
+    return static_cast<std::uint64_t>(std::min(points, 1e18));
+}
+
+SpacePoint Space::point(std::uint64_t number) const {
+    SpacePoint values(axes.size());
+    for (std::size_t i = axes.size(); i-- > 0;) {
+        values[i] = axes[i].values[number % axes[i].values.size()];
+        number /= axes[i].values.size();
+    }
+    return values;
+}
+
+const std::string& Space::value(const SpacePoint& point, std::string_view name) const {
+    const auto axis = std::ranges::find(axes, name, &SpaceAxis::name);
+    return point[static_cast<std::size_t>(axis - axes.begin())];
+}
+
+Space read_space(const std::filesystem::path& file) {
+    const auto bytes = read_file(file);
+    const std::string text(bytes.begin(), bytes.end());
+    if (const std::size_t line = line_of_long_key(text); line != 0)
+        throw InputError(fmt::format("{}:{}", file.string(), line),
+                         fmt::format("a key has more than {} parts", kMaxKeyParts));
+    toml::table tables;
+    try {
+        tables = toml::parse(text, file.string());
+    } catch (const toml::parse_error& e) {
+        throw InputError(fmt::format("{}:{}", file.string(), e.source().begin.line),
+                         std::string(e.description()));
+    }
+    Space space = SpaceReader(file.string()).read(tables);
+    if (space.size() > Space::kMaxPoints)
+        throw InputError(file.string(),
+                         fmt::format("has {} points, more than {}; give fewer values", space.size(),
+                                     Space::kMaxPoints));
+    return space;
+}
+
+}  // namespace stipple

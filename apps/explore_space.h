@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// The values that one property of a trial takes.
+struct SpaceAxis {
+    std::string name;  ///< "sensor", "schedule", "footage", "method", "seed", or a key of --set
+    std::vector<std::string> values;
+};
+
+/// A choice of one value of each axis, in their order.
+using SpacePoint = std::vector<std::string>;
+
+/// All trials of `stipple explore`: each value of each axis with each of the others
+/// (docs/explore.md).
+struct Space {
+    static constexpr std::uint64_t kMaxPoints = 100'000;
+
+    std::vector<SpaceAxis> axes;  ///< footage, sensor, schedule, method, seed, then the keys
+    int frames = 32;              ///< slots of each trial, at most
+    FrameShape scene{.rows = 48, .cols = 64, .planes = 1};  ///< of embedded scenes
+    /// The window whose readout is timed; 0: that of the clip.
+    FrameShape readout{.rows = 0, .cols = 0, .planes = 1};
+
+    [[nodiscard]] std::uint64_t size() const;
+    /// Point `number` of size(); the last axis changes fastest.
+    [[nodiscard]] SpacePoint point(std::uint64_t number) const;
+    /// The value of the axis `name`, which there is.
+    [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const;
+};
+
+/// \throws InputError naming the file and the fault: no TOML, no sensor, an unknown key, a value of
+/// a wrong type, or more than kMaxPoints points.
+[[nodiscard]] Space read_space(const std::filesystem::path& file);
+
+}  // namespace stipple

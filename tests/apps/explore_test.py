@@ -1,0 +1,157 @@
+"""Tables of many trials."""
+
+import csv
+import signal
+import time
+import unittest
+
+import numpy as np
+from program import INPUT, STOPPED, ProgramTest
+
+SPACE = """
+[axes]
+sensor = ["paper", "lux1310"]
+schedule = ["random", "full1x"]
+method = "naive"
+[clip]
+frames = 16
+rows = 32
+cols = 32
+"""
+
+
+class ExploreTest(ProgramTest):
+    def write_space(self, text=SPACE):
+        (self.folder / "space.toml").write_text(text)
+        return "space.toml"
+
+    def explore(self, text=SPACE, *more):
+        return self.figures("explore", self.write_space(text), "-o", "results", *more)
+
+    def rows(self):
+        with open(self.folder / "results" / "table.csv", newline="") as table:
+            return list(csv.DictReader(table))
+
+    def test_each_combination_is_a_row_with_the_figures_of_the_commands(self):
+        self.assertEqual(self.explore(), {"points": 4, "run": 4, "known": 0, "failed": 0})
+        rows = self.rows()
+        self.assertEqual([(row["sensor"], row["schedule"]) for row in rows],
+                         [(sensor, schedule) for sensor in ("paper", "lux1310")
+                          for schedule in ("random", "full1x")])
+        self.succeed("synth", "pan", "-o", "colour.npy", "--frames", 16, "--size", "32x32")
+        light = self.array("colour.npy")
+        self.write_array("light.npy", light @ np.float32([0.2126, 0.7152, 0.0722]))
+        # The scene in grey is the luminance of that in colour, up to rounding.
+        emulated = self.figures("emulate", "light.npy", "-o", "clip.stipple")
+        self.succeed("decode", "clip.stipple", "-o", "decoded.npy", "--method", "naive")
+        quality = self.figures("compare", "decoded.npy", "light.npy", "--max-value", 2, "--margin", 4)
+        self.assertAlmostEqual(float(rows[0]["light_throughput"]), emulated["light_throughput"], places=6)
+        self.assertAlmostEqual(float(rows[0]["psnr_db"]), quality["psnr_db"], delta=0.1)
+        self.assertAlmostEqual(float(rows[0]["pu21_psnr_db"]), quality["pu21_psnr_db"], delta=0.1)
+        # Paper: slots of 5 ms; 2000 e in one slot, against 10 e and steps of 2000 / 255 e in eight.
+        self.assertEqual((float(rows[0]["slots_per_second"]), rows[0]["limited_by"]), (200, "slot"))
+        noise_e = np.hypot(10, 2000 / 255 / np.sqrt(12))
+        self.assertAlmostEqual(float(rows[0]["dynamic_range_stops"]), np.log2(2000 / (noise_e / 8)), places=6)
+        self.assertEqual(rows[0]["energy_uj_per_slot"], "")
+        self.assertEqual((rows[3]["limited_by"], float(rows[3]["slots_per_second"])), ("slot", 2000))
+
+    def test_rate_and_energy_are_those_of_the_window_that_is_read(self):
+        self.explore(SPACE + "[set]\n\"sensor.slot_us\" = 100\n[readout]\nrows = 1024\ncols = 1280\n")
+        for row in self.rows()[2:]:
+            timing = self.figures("timing", "--sensor", "lux1310", "--schedule", row["schedule"], "--seed", 1)
+            self.assertAlmostEqual(float(row["slots_per_second"]), timing["coded_readout_hz"], places=6)
+            self.assertEqual(row["limited_by"], timing["limited_by"])
+            self.assertAlmostEqual(float(row["energy_uj_per_slot"]), timing["slot_energy_uj"], places=6)
+
+    def test_a_second_run_does_only_what_is_new(self):
+        self.explore()
+        table = (self.folder / "results" / "table.csv").read_bytes()
+        self.assertEqual(self.explore(), {"points": 4, "run": 0, "known": 4, "failed": 0})
+        self.assertEqual((self.folder / "results" / "table.csv").read_bytes(), table)
+        more = SPACE.replace('["paper", "lux1310"]', '["paper", "ideal"]')
+        self.assertEqual(self.explore(more), {"points": 4, "run": 2, "known": 2, "failed": 0})
+        other = SPACE.replace("frames = 16", "frames = 20")
+        self.assertEqual(self.explore(other)["known"], 0)
+        self.assertEqual(self.explore(SPACE, "--force")["run"], 4)
+        trial = sorted((self.folder / "results" / "trials").iterdir())[0]
+        trial.write_text(trial.read_text()[:100])
+        self.explore(SPACE.replace("16", "20"))
+        self.assertLessEqual(self.explore()["run"], 1)
+
+    def test_changed_footage_is_run_again(self):
+        space = SPACE.replace("[axes]", '[axes]\nfootage = "light.npy"')
+        self.write_flat("light.npy", slots=20)
+        self.assertEqual(self.explore(space)["run"], 4)
+        self.write_flat("light.npy", slots=20, light=0.3)
+        self.assertEqual(self.explore(space)["run"], 4)
+        self.assertEqual(self.explore(space)["run"], 0)
+
+    def test_lists_and_ranges_of_keys(self):
+        space = SPACE.replace('["paper", "lux1310"]', '"paper"').replace('["random", "full1x"]', '"random"') + """
+[set]
+"schedule.exposure_slots" = [[1], [1, 2, 4]]
+"sensor.photons_per_unit" = { from = 10, to = 1000, count = 3, log = true }
+"sensor.read_noise_e" = { from = 0.5, to = 1.5, count = 3 }
+"""
+        self.assertEqual(self.explore(space)["run"], 18)
+        rows = self.rows()
+        self.assertEqual([row["sensor.photons_per_unit"] for row in rows[0:9:3]], ["10", "100", "1000"])
+        self.assertEqual([row["sensor.read_noise_e"] for row in rows[:3]], ["0.5", "1", "1.5"])
+        # A length of exposure twice as long adds a stop.
+        stops = [float(row["dynamic_range_stops"]) for row in rows]
+        self.assertAlmostEqual(stops[9] - stops[0], 2, places=9)
+
+    def test_a_point_that_fails_is_a_row(self):
+        space = SPACE.replace('"lux1310"', '"nosuch", "paper"') + '[set]\n"sensor.bit_depth" = [8, 99]\n'
+        figures = self.explore(space)
+        self.assertEqual((figures["points"], figures["failed"], figures["run"]), (12, 8, 2))
+        rows = self.rows()
+        self.assertIn("bit_depth", rows[1]["problem"])
+        self.assertIn("nosuch", next(row["problem"] for row in rows if row["sensor"] == "nosuch"))
+        self.assertEqual((rows[1]["psnr_db"], rows[0]["problem"]), ("", ""))
+
+    def test_a_stopped_run_goes_on(self):
+        space = self.write_space(SPACE.replace("frames = 16", "frames = 64") + "[set]\n"
+                                 '"sensor.read_noise_e" = { from = 1, to = 100, count = 100 }\n')
+        stored = 0
+        for which in (signal.SIGKILL, signal.SIGINT):
+            program = self.start_program("explore", space, "-o", "results", "--quiet", "--no-sync")
+            deadline = time.monotonic() + 60
+            while (program.poll() is None and time.monotonic() < deadline
+                   and len(list(self.folder.glob("results/trials/*.json"))) < stored + 5):
+                time.sleep(0.001)
+            program.send_signal(which)
+            program.communicate(timeout=60)
+            self.assertIn(program.returncode, (-signal.SIGKILL, STOPPED, 0))
+            stored = len(list(self.folder.glob("results/trials/*.json")))
+        self.assertEqual(len(self.rows()), stored)
+
+    def test_bad_spaces_are_refused_before_anything_is_written(self):
+        for text, part in [("", "axes.sensor: is missing"), ("[axes]\nsensor = []", "is an empty list"),
+                           ("[axes", "space.toml:1"), ("axes = 3", "is no section"),
+                           ('[axes]\nsensor = "paper"\nlens = 1', "axes.lens: is unknown"),
+                           ('[axes]\nsensor = "paper"\n[set]\nsensor.bit_depth = 8', "put it into quotes"),
+                           ('[axes]\nsensor = "paper"\n[clip]\nframes = 0', "clip.frames"),
+                           ('[axes]\nsensor = "paper"\nseed = { from = 1 }', "is no range such as"),
+                           ('[axes]\nsensor = "paper"\nseed = { from = 0, to = 9, count = 3, log = true }',
+                            "is no range"),
+                           ('[axes]\nsensor = 1979-05-27', "no number, text"),
+                           (".".join("a" * 40) + " = 1", "space.toml:1: a key has more than 32")]:
+            with self.subTest(text):
+                self.fails(INPUT, [part], "explore", self.write_space(text), "-o", "results")
+        seeds = "{ from = 1, to = 1000, count = 1000 }"
+        self.write_space(f'[axes]\nsensor = "paper"\nseed = {seeds}\n[set]\n"sensor.read_noise_e" = {seeds}\n'
+                         f'"sensor.slot_us" = {seeds}\n')
+        self.fails(INPUT, ["has 1000000000 points"], "explore", "space.toml", "-o", "results")
+
+    def test_results_of_another_version_or_another_folder_are_refused(self):
+        self.explore()
+        (self.folder / "results" / "version.txt").write_text("0.0.1\n")
+        self.fails(INPUT, ["results of another version"], "explore", "space.toml", "-o", "results")
+        (self.folder / "letters").mkdir()
+        (self.folder / "letters" / "a.txt").touch()
+        self.fails(INPUT, ["is no folder of results"], "explore", "space.toml", "-o", "letters")
+
+
+if __name__ == "__main__":
+    unittest.main()
