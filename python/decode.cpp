@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
+#include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
@@ -86,7 +87,9 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
     const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;
     auto frames = std::make_unique<std::vector<float>>();
     if (known) {
-        const std::uint64_t values = static_cast<std::uint64_t>(*slots) * shape.sites();
+        const std::int64_t frame_count =
+            std::max<std::int64_t>(*slots - task.options.first_slot, 0);
+        const std::uint64_t values = static_cast<std::uint64_t>(frame_count) * shape.sites();
         check_memory(values * sizeof(float), stream.name(), "the decoded video");
         frames->reserve(values);
     }
@@ -107,7 +110,12 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
 void bind_decode(py::module_& module) {
     py::class_<DecodeTask>(module, "DecodeTask")
         .def(py::init(&decode_task))
-        .def_readwrite("calibration", &DecodeTask::calibration);
+        .def_readwrite("calibration", &DecodeTask::calibration)
+        .def("begin_at_block", [](DecodeTask& task, std::int64_t number) {
+            task.options.first_slot = block_begin(number);
+        });
+    module.def("decode_blocks", &block_count);
+    module.def("block_begin", &block_begin);
     module.def("decode", &decode_stream);
     module.def("decode_methods", [] {
         std::vector<std::string> names;
