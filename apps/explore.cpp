@@ -21,6 +21,7 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "io/disk_sync.h"
+#include "io/partial_output.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -83,6 +84,8 @@ Results::Results(fs::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     if (fs::create_directory(folder_ / "trials", error)) sync_to_disk(folder_);
     if (error) throw DeviceError(folder_.string(), "cannot be written: " + error.message());
+    for (const PartialOutput& partial : partial_outputs(folder_ / "trials"))
+        if (!partial.running()) fs::remove(partial.path, error);  // of a killed run
 }
 
 fs::path Results::path(const std::string& identity, std::string_view extension) const {
@@ -135,6 +138,7 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_field(const ordered_json& value) {
     if (value.is_null()) return {};
+    if (value.is_number_float()) return fmt::format("{:.12g}", value.get<double>());
     return value.is_string() ? csv_field(value.get<std::string>()) : value.dump();
 }
 
@@ -234,7 +238,7 @@ void explore(const ExploreArguments& arguments, const RunOptions& run) {
     const std::uint64_t points = exploration.space().size();
     run.say(fmt::format("{}: {}", arguments.space, counted(points, "point")));
     {
-        Progress progress(run, "exploring", static_cast<std::int64_t>(points));
+        Progress progress(run, "exploring", static_cast<std::int64_t>(points), "point");
         exploration.run(progress);
     }
     exploration.write_table();

@@ -40,8 +40,13 @@ std::size_t terminal_columns() {
 
 }  // namespace
 
-Progress::Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total)
-    : task_(std::move(task)), total_(total), terminal_(can_show_bar()), start_(Clock::now()) {
+Progress::Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total,
+                   std::string unit)
+    : task_(std::move(task)),
+      unit_(std::move(unit)),
+      total_(total),
+      terminal_(can_show_bar()),
+      start_(Clock::now()) {
     if (!run.quiet) display_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
 }
 
@@ -85,7 +90,7 @@ std::string Progress::line(std::size_t columns) const {
     const std::int64_t complete = complete_;
     const bool known = total_ && *total_ >= complete;
     const std::string counter =
-        known ? fmt::format("{}/{} frames", complete, *total_) : counted(complete, "frame");
+        known ? fmt::format("{}/{} {}s", complete, *total_, unit_) : counted(complete, unit_);
     const std::string noted = counter + note_behind();
     const std::string text = noted + pace();
     const std::size_t length = task_.size() + 1 + text.size();
@@ -110,7 +115,7 @@ std::string Progress::pace() const {
     const double done = done_;
     if (done <= 0) return {};
     const double rate = done / done_at_s_;
-    std::string text = fmt::format(", {} frames/s", rounded(rate));
+    std::string text = fmt::format(", {} {}s/s", rounded(rate), unit_);
     if (!total_) return text;
     const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();
     if (left_s < 0) return text;  // this step takes longer than those before it

@@ -17,8 +17,9 @@ namespace stipple {
 /// bursts, with long work between them.
 class Progress {
   public:
-    /// `task` as in "emulating". `total` frames, if known.
-    Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total);
+    /// `task` as in "emulating". `total` frames or what else `unit` names, if known.
+    Progress(const RunOptions& run, std::string task, std::optional<std::int64_t> total,
+             std::string unit = "frame");
     /// Takes the bar away.
     ~Progress();
     Progress(const Progress&) = delete;
@@ -49,6 +50,7 @@ class Progress {
     [[nodiscard]] std::string pace() const;
 
     std::string task_;
+    std::string unit_;  ///< one of them
     std::optional<std::int64_t> total_;
     bool terminal_;
     Clock::time_point start_;

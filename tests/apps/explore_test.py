@@ -1,6 +1,7 @@
 """Tables of many trials."""
 
 import csv
+import os
 import signal
 import time
 import unittest
@@ -118,13 +119,15 @@ class ExploreTest(ProgramTest):
             program = self.start_program("explore", space, "-o", "results", "--quiet", "--no-sync")
             deadline = time.monotonic() + 60
             while (program.poll() is None and time.monotonic() < deadline
-                   and len(list(self.folder.glob("results/trials/*.json"))) < stored + 5):
+                   and len(list(self.folder.glob("results/trials/[!.]*.json"))) < stored + 5):
                 time.sleep(0.001)
             program.send_signal(which)
             program.communicate(timeout=60)
             self.assertIn(program.returncode, (-signal.SIGKILL, STOPPED, 0))
-            stored = len(list(self.folder.glob("results/trials/*.json")))
+            stored = len(list(self.folder.glob("results/trials/[!.]*.json")))
         self.assertEqual(len(self.rows()), stored)
+        hidden = [name for name in os.listdir(self.folder / "results" / "trials") if name.startswith(".")]
+        self.assertEqual(hidden, [])
 
     def test_bad_spaces_are_refused_before_anything_is_written(self):
         for text, part in [("", "axes.sensor: is missing"), ("[axes]\nsensor = []", "is an empty list"),
