@@ -22,6 +22,17 @@ using std::chrono::nanoseconds;
 
 constexpr int kStallPeriods = 5;
 
+/// Whether the device's clock was set back between two frames, by more than its stamps scatter. The
+/// stamp of an incomplete frame may be among what is missing.
+bool is_set_back(const FrameRecord& before, const FrameRecord& after, nanoseconds period) {
+    const auto has_stamp = [](const FrameRecord& frame) {
+        return frame.status == FrameStatus::kComplete &&
+               frame.stamp_source == StampSource::kDeviceClock;
+    };
+    return has_stamp(before) && has_stamp(after) && after.device_ns < before.device_ns &&
+           before.device_ns - after.device_ns >= period.count();
+}
+
 }  // namespace
 
 struct CaptureSession::Impl {
@@ -156,16 +167,18 @@ void CaptureSession::Impl::count_lost(GapCause cause, std::uint64_t frames) {
 
 void CaptureSession::Impl::number(FrameRecord& record) {
     std::uint64_t lost = 0;
+    bool begins_epoch = false;
     if (reconnected) {
         note_reconnection(record);
     } else if (!last_frame) {
         lost = lost_at_start(record);
-    } else if (first_frame && record.layout != layout) {
-        ++epoch;
+    } else {
+        begins_epoch =
+            first_frame && (record.layout != layout || is_set_back(*last_frame, record, period()));
     }
     layout = record.layout;
     const FrameIds::Step step = ids.next(record.wire_id);
-    if (step.restarted) ++epoch;
+    if (begins_epoch || step.restarted) ++epoch;
     record.id = step.id;
     record.epoch = epoch;
     lost += step.lost;

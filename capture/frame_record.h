@@ -56,7 +56,7 @@ enum class StampSource : std::uint8_t {
 struct FrameRecord {
     std::uint64_t id = 0;           ///< unwrapped; 0 is the first frame that the session knows of
     std::uint64_t wire_id = 0;      ///< as the device sent it
-    std::uint32_t epoch = 0;        ///< grows with each reconnection and each change of the layout
+    std::uint32_t epoch = 0;        ///< grows as docs/recording_format.md says
     std::uint64_t lost_before = 0;  ///< frames missing since the one before, or since the start
     GapCause cause = GapCause::kNone;
     FrameStatus status = FrameStatus::kComplete;

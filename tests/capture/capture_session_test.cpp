@@ -199,6 +199,21 @@ TEST(CaptureSessionTest, AnotherLayoutBeginsAnEpoch) {
     EXPECT_EQ(session.layout().width, 8);
 }
 
+TEST(CaptureSessionTest, AClockThatIsSetBackBeginsAnEpochAndScatterOfStampsDoesNot) {
+    std::deque<ScriptedStep> script;
+    for (const int device_ms : {900, 910, 909, 920, 0, 10}) {
+        const auto count = static_cast<std::int64_t>(script.size());
+        CapturedFrame frame = scripted_frame(static_cast<std::uint64_t>(count) + 1, 10 * count);
+        frame.record.stamp_source = StampSource::kDeviceClock;
+        frame.record.device_ns = device_ms * 1'000'000;
+        script.push_back(arrives(frame));
+    }
+    CaptureSession session(plays({script}), {});
+    for (const std::uint32_t epoch : {0U, 0U, 0U, 0U, 1U, 1U})
+        EXPECT_EQ(next_record(session).epoch, epoch);
+    EXPECT_EQ(session.totals().outages, 0U);
+}
+
 TEST(CaptureSessionTest, ACameraThatFallsSilentIsOpenedAnew) {
     CaptureSession session(plays({frames({100, 101, 102}), frames({1, 2})}), {.stall = 20ms});
     for (int i = 0; i < 3; ++i) static_cast<void>(next_record(session));
