@@ -24,10 +24,7 @@ class CMakeBuild(build_ext):
                             "-DSTIPPLE_PYTHON=ON", "-DSTIPPLE_TESTS=OFF", "-DSTIPPLE_BENCH=OFF"], cwd=ROOT, check=True)
         subprocess.run(["cmake", "--build", BUILD, "--target", "stipple_python"], check=True)
         package = Path(self.build_lib) / "stipple"
-        package.mkdir(parents=True, exist_ok=True)
-        for file in (*BUILD.glob("python/stipple/*"), BUILD / "libstipple_opencv.so"):
-            shutil.copy(file, package)
-        shutil.copytree(ROOT / "config", package / "config", dirs_exist_ok=True)
+        shutil.copytree(BUILD / "python/stipple", package, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
 
 
 setup(version=VERSION, packages=["stipple"], package_dir={"": "python"},

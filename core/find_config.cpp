@@ -19,9 +19,7 @@ std::vector<fs::path> config_folders() {
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
     for (const fs::path& own : own_folders()) {
         folders.push_back((own / "../share/stipple/config").lexically_normal());
-        folders.push_back((own / "../../config").lexically_normal());  // build/release/stipple
-        folders.push_back(own / "config");                             // the Python package
-        if (lies_in(own, STIPPLE_BUILD_DIR)) folders.emplace_back(STIPPLE_SOURCE_CONFIG_DIR);
+        folders.push_back(own / "config");  // a build folder, the Python package
     }
     folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);
     return folders;

@@ -23,11 +23,4 @@ std::vector<fs::path> own_folders() {
     return folders;
 }
 
-bool lies_in(const fs::path& folder, const fs::path& above) {
-    std::error_code error;
-    const fs::path way =
-        fs::weakly_canonical(folder, error).lexically_relative(fs::weakly_canonical(above, error));
-    return !way.empty() && *way.begin() != "..";
-}
-
 }  // namespace stipple

@@ -19,7 +19,6 @@ void* load(const char* function) {
     for (const fs::path& own : own_folders()) {
         folders.push_back(own);
         folders.push_back(own / STIPPLE_LIBRARY_FROM_PROGRAM);
-        if (lies_in(own, STIPPLE_BUILD_DIR)) folders.emplace_back(STIPPLE_BUILD_DIR);
     }
     folders.emplace_back(STIPPLE_LIBRARY_DIR);
     std::string why;

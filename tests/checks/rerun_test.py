@@ -90,6 +90,20 @@ class RunTestsTest(unittest.TestCase):
             self.assertEqual(self.run_tests()[0], ["check"], name)
         self.assertEqual(self.run_tests("--all")[0], ["check", "test_one", "test_two"])
 
+    def test_what_passed_in_one_folder_does_not_run_again_in_another(self):
+        self.entry("test_one", reads="golden/one")
+        self.write("golden/one/a", "text")
+        self.configure()
+        self.assertEqual(self.run_tests()[0], ["test_one"])
+        moved = self.root.with_name("a_longer_name")
+        shutil.move(self.root, moved)
+        shutil.rmtree(moved / "build")
+        self.root = moved
+        self.configure()
+        self.assertEqual(self.run_tests()[0], [])
+        self.write("golden/one/a", "other")
+        self.assertEqual(self.run_tests()[0], ["test_one"])
+
     def test_what_failed_or_was_skipped_in_part_runs_again(self):
         self.entry("passes")
         self.entry("fails", status=1)
