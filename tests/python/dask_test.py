@@ -13,8 +13,9 @@ from program import ProgramTest
 class PickledTasks:
     """The part of a Dask client that is used. Tasks and results cross a border of processes, as bytes."""
 
-    def __init__(self):
+    def __init__(self, second=None):
         self.pool = ThreadPoolExecutor(2)
+        self.second = second  # what the second worker tells of itself, where it differs
 
     def submit(self, function, *arguments, pure):
         assert not pure
@@ -28,6 +29,10 @@ class PickledTasks:
 
     def gather(self, futures):
         return [pickle.loads(future.result()) for future in futures]
+
+    def run(self, function, *, on_error):
+        assert on_error == "return"
+        return {"tcp://first:1": function(), "tcp://second:2": self.second or function()}
 
 
 class DaskTest(ProgramTest):
@@ -51,6 +56,17 @@ class DaskTest(ProgramTest):
         np.testing.assert_array_equal(result, stipple.decode(clip, "fast", {"rounds": 1}))
         with self.assertRaisesRegex(ValueError, "iteration"):
             stipple.dask.decode(clip, PickledTasks(), "fast", {"iteration": 3})
+
+    def test_a_worker_with_another_stipple_is_refused(self):
+        here = stipple.dask.check_workers(PickledTasks())
+        self.assertEqual(here.version, stipple.__version__)
+        for there, message in ((here._replace(version="0.0.1"), "second:2 has Stipple 0.0.1, this process "),
+                               (here._replace(decode_sha256="00"), "second:2 decodes a small clip to other bits"),
+                               (ModuleNotFoundError("No module named 'stipple'"), "second:2 cannot run Stipple")):
+            with self.subTest(message), self.assertRaisesRegex(RuntimeError, message):
+                stipple.dask.decode("none.stipple", PickledTasks(there))
+        with self.assertRaisesRegex(RuntimeError, "a worker has Stipple"):
+            stipple.dask.require_same(here._replace(version="0.0.1"))
 
     def test_a_client_that_takes_no_tasks_is_refused(self):
         with self.assertRaisesRegex(TypeError, "client is a NoneType.*python3-distributed"):
