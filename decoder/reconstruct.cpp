@@ -23,9 +23,11 @@ namespace {
 /// The packets that the blocks being decoded need, read as late as possible.
 class PacketBuffer {
   public:
-    /// Packets of slots below `first_slot` are read and left out.
+    /// Packets of slots below `first_slot` are left out, unread where the stream has an index.
     PacketBuffer(StreamReader& reader, const DecodeOptions& options, std::int64_t first_slot)
-        : reader_(reader), options_(options), counts_(reader.header()), first_slot_(first_slot) {}
+        : reader_(reader), options_(options), counts_(reader.header()), first_slot_(first_slot) {
+        if (first_slot > 0) slots_ = reader.seek(first_slot);
+    }
 
     /// Reads on until every packet of slots below `slot` is here, or the stream ends.
     void read_up_to(std::int64_t slot) {

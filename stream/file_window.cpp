@@ -75,6 +75,12 @@ void FileWindow::skip(std::size_t bytes) {
     offset_ += bytes;
 }
 
+void FileWindow::seek(std::uint64_t offset) {
+    if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) fail();
+    offset_ = offset;
+    begin_ = end_ = 0;
+}
+
 std::optional<std::uint64_t> FileWindow::file_bytes() const {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;

@@ -36,6 +36,9 @@ class FileWindow {
     [[nodiscard]] std::span<const std::uint8_t> peek(std::size_t bytes);
     /// Moves on. Precondition: `bytes` bytes have been peeked at.
     void skip(std::size_t bytes);
+    /// Moves to an offset of the file. Precondition: it is no pipe, and long enough.
+    /// \throws InputError if the system does not allow it.
+    void seek(std::uint64_t offset);
 
     /// Length of the file; nothing if it is a pipe.
     [[nodiscard]] std::optional<std::uint64_t> file_bytes() const;

@@ -107,4 +107,17 @@ std::size_t find_start(Bytes bytes, const Framing& framing) {
     return bytes.size();
 }
 
+std::string_view cause_of(Start start, const Framing& framing) {
+    switch (start) {
+        case Start::kBadCrc:
+            return framing.version == 1
+                       ? "a packet header is damaged (CRC mismatch)"
+                       : "a packet header is damaged or of another stream (CRC mismatch)";
+        case Start::kTooLarge:
+            return "a payload is beyond 2^29 bytes";
+        default:
+            return "no packet begins here";
+    }
+}
+
 }  // namespace stipple

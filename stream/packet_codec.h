@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "stream/framing.h"
@@ -70,6 +71,9 @@ enum class Start {
     kTooLarge,  ///< a packet header with a payload beyond its limit
 };
 [[nodiscard]] Start start_of(std::span<const std::uint8_t> bytes, const Framing& framing);
+
+/// Why neither a packet nor an end marker begins, for messages.
+[[nodiscard]] std::string_view cause_of(Start start, const Framing& framing);
 
 /// Position of the first whole packet header or end marker with a good CRC; bytes.size() if none.
 [[nodiscard]] std::size_t find_start(std::span<const std::uint8_t> bytes, const Framing& framing);

@@ -18,6 +18,11 @@ class PacketOrder {
   public:
     explicit PacketOrder(int array_rows) : array_rows_(array_rows) {}
 
+    /// The slots before `slot` are left out, and not missing. Precondition: nothing came yet.
+    void begin_at(std::int64_t slot) {
+        expected_ = {slot, 0};
+        counted_ = slot;
+    }
     /// Where the next packet begins if nothing is missing.
     [[nodiscard]] StreamPosition expected() const { return expected_; }
     /// Advances to `next` and counts slots with missing rows.

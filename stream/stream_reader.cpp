@@ -63,19 +63,6 @@ Opened read_header(FileWindow& window, const std::string& where, ReadPolicy poli
     return result;
 }
 
-std::string_view cause_of(Start start, const Framing& framing) {
-    switch (start) {
-        case Start::kBadCrc:
-            return framing.version == 1
-                       ? "a packet header is damaged (CRC mismatch)"
-                       : "a packet header is damaged or of another stream (CRC mismatch)";
-        case Start::kTooLarge:
-            return "a payload is beyond 2^29 bytes";
-        default:
-            return "no packet begins here";
-    }
-}
-
 }  // namespace
 
 struct StreamReader::Impl {
@@ -131,6 +118,7 @@ struct StreamReader::Impl {
     std::optional<std::uint64_t> search_begin;  ///< set while searching
     std::uint64_t searched_to = 0;   ///< end of the tail that `wait_for_rest` has searched
     std::uint32_t checksum;          ///< of all packets with good CRCs so far
+    bool sought = false;             ///< packets were left out, so the checksum is another one
     std::uint64_t rescan_bytes = 0;  ///< of payloads whose CRC was wrong
     std::optional<std::uint64_t> index_offset;  ///< of the index packet, once it was read
     std::optional<std::uint64_t> end_offset;    ///< after the end marker, once it was read
@@ -299,7 +287,7 @@ void StreamReader::Impl::take_end_marker(const EndMarker& marker) {
     const std::size_t size = end_marker_bytes(stream.framing);
     if (report.damage.empty() && marker.index_offset != index_offset)
         note(size, "the end marker does not point to an index before it");
-    else if (report.damage.empty() && marker.checksum.value_or(checksum) != checksum)
+    else if (report.damage.empty() && !sought && marker.checksum.value_or(checksum) != checksum)
         note(0, kOtherPackets);
     window.skip(size);
     end_offset = window.offset();
@@ -368,6 +356,16 @@ void StreamReader::use_sites(std::vector<SiteCalibration> sites) {
 
 std::optional<std::int64_t> StreamReader::slots() const {
     return impl_->slots;
+}
+
+std::int64_t StreamReader::seek(std::int64_t slot) {
+    assert(impl_->report.packets == 0);
+    const auto entry = entry_before(impl_->window, impl_->stream.framing, slot);
+    if (impl_->wait || !entry || entry->slot == 0) return 0;
+    impl_->sought = true;
+    impl_->window.seek(entry->offset);
+    impl_->order.begin_at(static_cast<std::int64_t>(entry->slot));
+    return impl_->order.expected().slot;
 }
 
 bool StreamReader::next(SamplePacket& packet) {

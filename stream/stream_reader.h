@@ -92,6 +92,12 @@ class StreamReader {
     /// been read. Nothing if the stream was interrupted, is still growing, or comes through a pipe.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
+    /// Moves to the last slot of the index that is not after `slot`, if the file ends with a good
+    /// index, and returns it; else stays at the beginning and returns 0. Then the packets before
+    /// are not in the report, and the checksum of all packets is not checked.
+    /// Precondition: no packet has been read. \throws InputError if the file cannot be read.
+    std::int64_t seek(std::int64_t slot);
+
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the
     /// file is still being written, a later call may succeed. \throws InputError (kStrict only;
     /// and if the file cannot be read).

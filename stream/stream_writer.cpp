@@ -46,9 +46,10 @@ bool StreamWriter::Impl::is_due(const SamplePacket& packet) const {
 }
 
 StreamWriter::StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
-                           std::string where) {
+                           std::string where, std::int64_t first_slot) {
     if (where.empty()) where = file.string();
     impl_ = std::make_unique<Impl>(file, header, where, encode_header(header, where));
+    impl_->order.begin_at(first_slot);
 }
 
 StreamWriter::~StreamWriter() = default;

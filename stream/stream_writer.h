@@ -17,13 +17,14 @@ class StreamWriter {
     /// Creates the file and writes the header. Messages call the output `where` (default: the
     /// path), for a file that is renamed when it is complete. \throws InputError if a header field
     /// is outside its limits, DeviceError if the file cannot be written.
+    /// With `first_slot` the file lacks the slots before it, and is a piece of a stream.
     StreamWriter(const std::filesystem::path& file, const StreamHeader& header,
-                 std::string where = {});
+                 std::string where = {}, std::int64_t first_slot = 0);
     ~StreamWriter();
     StreamWriter(const StreamWriter&) = delete;
     StreamWriter& operator=(const StreamWriter&) = delete;
 
-    /// Appends a packet. Precondition: packets come by slot from 0 on and by row, without gaps;
+    /// Appends a packet. Precondition: packets come by slot from the first on and by row, no gaps;
     /// `dn` has one DN for each due pixel and plane of its slot and rows (none if dropped), each
     /// below 2^bit_depth. \throws DeviceError (full disk).
     void write(const SamplePacket& packet);

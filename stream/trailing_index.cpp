@@ -2,19 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "stream/crc32c.h"
 #include "stream/packet_check.h"
 #include "stream/packet_codec.h"
 
 namespace stipple {
 
-std::optional<std::int64_t> slots_by_index(const FileWindow& file, const Framing& framing) {
+namespace {
+
+bool leads_to_slot(const IndexEntry& entry, const FileWindow& file, const Framing& framing) {
+    const auto start = file.read_at(entry.offset, kPacketHeaderBytes);
+    if (!start || start_of(*start, framing) != Start::kPacket) return false;
+    const PacketHeader header = decode_packet_header(*start);
+    return header.kind == PacketKind::kSamples && header.slot == entry.slot &&
+           header.first_row == 0;
+}
+
+}  // namespace
+
+std::optional<TrailingIndex> read_trailing_index(const FileWindow& file, const Framing& framing) {
     const std::size_t marker_bytes = end_marker_bytes(framing);
     const std::uint64_t end = file.file_bytes().value_or(0);
     if (end < marker_bytes) return std::nullopt;
     const auto marker = file.read_at(end - marker_bytes, marker_bytes);
     if (!marker || start_of(*marker, framing) != Start::kEnd) return std::nullopt;
-    const std::uint64_t offset = decode_end_marker(*marker, framing).index_offset;
+    const auto [offset, checksum] = decode_end_marker(*marker, framing);
     const auto start = file.read_at(offset, kPacketHeaderBytes);
     if (!start || start_of(*start, framing) != Start::kPacket) return std::nullopt;
     const PacketHeader packet = decode_packet_header(*start);
@@ -25,21 +39,32 @@ std::optional<std::int64_t> slots_by_index(const FileWindow& file, const Framing
     // Each slot takes a packet or more, so the length of the file bounds their number.
     if (packet.slot > offset / kPacketHeaderBytes) return std::nullopt;
     if (index_fault(packet, *payload, offset, {})) return std::nullopt;
-    return static_cast<std::int64_t>(packet.slot);
+    return TrailingIndex{static_cast<std::int64_t>(packet.slot), checksum, load_index(*payload)};
+}
+
+std::optional<std::int64_t> slots_by_index(const FileWindow& file, const Framing& framing) {
+    const auto index = read_trailing_index(file, framing);
+    return index ? std::optional(index->slots) : std::nullopt;
+}
+
+std::optional<IndexEntry> entry_before(const FileWindow& file, const Framing& framing,
+                                       std::int64_t slot) {
+    const auto index = read_trailing_index(file, framing);
+    if (!index || slot < 0) return std::nullopt;
+    const auto after = std::ranges::upper_bound(index->entries, static_cast<std::uint64_t>(slot),
+                                                {}, &IndexEntry::slot);
+    if (after == index->entries.begin() || !leads_to_slot(*(after - 1), file, framing))
+        return std::nullopt;
+    return *(after - 1);
 }
 
 std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
                                        const FileWindow& file, const Framing& framing) {
     if (!file.file_bytes()) return std::nullopt;
-    for (const IndexEntry& entry : entries) {
-        const auto start = file.read_at(entry.offset, kPacketHeaderBytes);
-        const bool packet = start && start_of(*start, framing) == Start::kPacket;
-        const PacketHeader header = packet ? decode_packet_header(*start) : PacketHeader{};
-        if (!packet || header.kind != PacketKind::kSamples || header.slot != entry.slot ||
-            header.first_row != 0)
+    for (const IndexEntry& entry : entries)
+        if (!leads_to_slot(entry, file, framing))
             return fmt::format("the index says that slot {} begins at byte {}, but it does not",
                                entry.slot, entry.offset);
-    }
     return std::nullopt;
 }
 

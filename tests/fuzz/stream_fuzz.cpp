@@ -66,6 +66,17 @@ Reading read(std::span<const std::uint8_t> bytes, ReadPolicy policy) {
     return reading;
 }
 
+/// From the middle on, a whole stream gives the packets that follow there.
+void check_seek(std::span<const std::uint8_t> bytes, const Reading& whole) {
+    const MemoryFile file(bytes);
+    StreamReader reader(file.path());
+    const std::int64_t begin = reader.seek(whole.report.slots / 2);
+    std::vector<SamplePacket> expected = whole.packets, packets;
+    std::erase_if(expected, [&](const SamplePacket& packet) { return packet.slot < begin; });
+    for (SamplePacket packet; reader.next(packet);) packets.push_back(packet);
+    require(packets == expected && reader.report().damage.empty());
+}
+
 /// What a strict reader accepts is whole for a tolerant one, and the other way round; one that
 /// takes any schedule gets through, too.
 void check_both_policies(std::span<const std::uint8_t> bytes) {
@@ -75,6 +86,7 @@ void check_both_policies(std::span<const std::uint8_t> bytes) {
         !tolerant.refused && tolerant.report.damage.empty() && tolerant.report.tail_bytes == 0;
     require(strict.refused == !whole);
     if (whole) require(strict.packets == tolerant.packets);
+    if (whole) check_seek(bytes, tolerant);
     static_cast<void>(read(bytes, ReadPolicy::kAnySchedule));
 }
 

@@ -1,0 +1,24 @@
+#include "stream/stream_identity.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+#include "stream/file_window.h"
+#include "stream/header_codec.h"
+#include "stream/trailing_index.h"
+
+namespace stipple {
+
+std::optional<std::string> stream_identity(const std::filesystem::path& file) {
+    FileWindow window(file);
+    const std::size_t bytes = header_bytes(window.peek(kHeaderStartBytes), file.string());
+    const auto header = window.peek(bytes);
+    if (header.size() < bytes) return std::nullopt;
+    const Framing framing = framing_of(header);
+    const auto index = read_trailing_index(window, framing);
+    if (!index || !index->checksum) return std::nullopt;
+    return fmt::format("crc {:08x} {:08x}", framing.seed, *index->checksum);
+}
+
+}  // namespace stipple
