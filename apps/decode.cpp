@@ -1,5 +1,4 @@
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -9,7 +8,6 @@
 #include "apps/decode_file.h"
 #include "apps/decode_part.h"
 #include "apps/subcommands.h"
-#include "core/parsed_number.h"
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
 
@@ -43,27 +41,6 @@ void add_reading(Command& command, DecodeArguments& arguments, std::string& chec
         .one_of({"true", "fix"});
 }
 
-/// \throws UsageError.
-PartOfWork parsed_part(const std::string& text) {
-    constexpr std::int64_t kMaxParts = 1'000'000;
-    const std::size_t slash = text.find('/');
-    const auto number = parsed_number<std::int64_t>(text.substr(0, slash));
-    const auto count = parsed_number<std::int64_t>(
-        slash == std::string::npos ? std::string() : text.substr(slash + 1));
-    if (!number || !count || *number < 1 || *number > *count || *count > kMaxParts)
-        throw UsageError("--part", "is a number and how many there are, such as 1/16 to 16/16");
-    return {.number = *number, .count = *count};
-}
-
-void add_part(Command& command, DecodeArguments& arguments) {
-    command
-        .add_parsed(
-            "--part", [&arguments](const std::string& text) { arguments.part = parsed_part(text); },
-            "decode part I of N into windows of the folder OUT; those that are there are kept "
-            "(docs/scaling.md)")
-        .type_name("I/N");
-}
-
 /// Windows are .npy files, and "join" makes what else is wanted of them.
 void check_part(const Command& command, const DecodeArguments& arguments) {
     command.refuse({"--until", "--follow", "--stages", "--check-schedule"},
@@ -71,9 +48,7 @@ void check_part(const Command& command, const DecodeArguments& arguments) {
     command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd", "--images",
                     "--samples", "--full-scale", "--pixel-um"},
                    "is an option of \"stipple join\", which makes the video of all parts");
-    const std::filesystem::path output(arguments.output);
-    if (output.has_extension() && !std::filesystem::is_directory(output))
-        throw UsageError("--output", "with --part it is a folder, and has no extension");
+    check_part_folder(arguments.output);
 }
 
 void decode_all_or_part(const DecodeArguments& arguments, const RunOptions& run) {
@@ -118,7 +93,9 @@ void add_decode(Command& app, Action& action) {
         .input();
     const auto check_schedule = std::make_shared<std::string>();
     add_reading(command, *options, *check_schedule);
-    add_part(command, *options);
+    add_part(command, options->part,
+             "decode part I of N into windows of the folder OUT; those that are there are kept "
+             "(docs/scaling.md)");
     add_video_arguments(command, options->video, options->images);
     add_threads(command, action.options);
     command.footer(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/arguments/run_options.h"
+#include "apps/part_of_work.h"
 #include "io/image_coding.h"
 #include "io/video_coding.h"
 
@@ -15,12 +16,6 @@ enum class CheckSchedule : std::uint8_t {
     kNo,
     kRefuseShift,  ///< samples that follow the schedule with a shift are an error
     kFixShift      ///< they are decoded with this shift
-};
-
-/// A share of the work: `number` of `count`, which begin at 1.
-struct PartOfWork {
-    std::int64_t number = 0;
-    std::int64_t count = 0;  ///< 0: all in one run
 };
 
 /// The arguments of `stipple decode`.

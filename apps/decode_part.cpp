@@ -23,32 +23,12 @@
 #include "io/frame_writer.h"
 #include "readout/footage_origin.h"
 #include "stream/stream_figures.h"
+#include "stream/stream_identity.h"
 
 namespace stipple {
 namespace {
 
 constexpr auto kGoOn = "complete windows are kept, and the same command goes on";
-
-/// Windows [begin, end).
-struct WindowRange {
-    std::int64_t begin = 0;
-    std::int64_t end = 0;
-};
-
-WindowRange range_of(const PartOfWork& part, std::int64_t windows) {
-    return {windows * (part.number - 1) / part.count, windows * part.number / part.count};
-}
-
-/// Consecutive numbers together.
-std::vector<WindowRange> ranges_of(const std::vector<std::int64_t>& numbers) {
-    std::vector<WindowRange> ranges;
-    for (const std::int64_t number : numbers)
-        if (!ranges.empty() && ranges.back().end == number)
-            ++ranges.back().end;
-        else
-            ranges.push_back({number, number + 1});
-    return ranges;
-}
 
 std::string sha256_of(const std::string& file) {
     return origin_of(file, {}, [] { throw_if_stopped(); }).sha256;
@@ -69,8 +49,9 @@ WindowIdentity identity_of(const DecodeArguments& arguments, const DecodeSetup& 
         throw InputError(arguments.stream, "--part needs a file, which is read more than once");
     const StreamHeader header = StreamReader(arguments.stream).header();
     const std::string& calibration = arguments.calibration;
+    const auto whole = stream_identity(arguments.stream);
     return {.stream_bytes = std::filesystem::file_size(arguments.stream),
-            .stream_sha256 = sha256_of(arguments.stream),
+            .stream = whole ? *whole : "sha256 " + sha256_of(arguments.stream),
             .method = arguments.method,
             .options = setup.given,
             .calibration_sha256 = calibration.empty() ? "" : sha256_of(calibration),
@@ -90,8 +71,8 @@ class PartRun {
     void tell();
 
   private:
-    void decode_windows(const WindowRange& windows, Progress& progress);
-    [[nodiscard]] std::int64_t slots_of_range(const WindowRange& windows) const;
+    void decode_windows(const NumberRange& windows, Progress& progress);
+    [[nodiscard]] std::int64_t slots_of_range(const NumberRange& windows) const;
     [[nodiscard]] double voxels_per_second() const;
 
     const DecodeArguments& arguments_;
@@ -99,7 +80,7 @@ class PartRun {
     DecodeSetup setup_;
     JsonFile json_;
     WindowFolder folder_;
-    WindowRange windows_;
+    NumberRange windows_;
     std::vector<std::int64_t> missing_;
     std::int64_t slots_ = 0;  ///< decoded in this run
     double seconds_ = 0;
@@ -114,27 +95,27 @@ PartRun::PartRun(const DecodeArguments& arguments, const RunOptions& run)
       folder_(arguments.output, identity_of(arguments, setup_)),
       windows_(range_of(arguments.part, folder_.count())) {
     if (!run.force)
-        missing_ = folder_.missing(windows_.begin, windows_.end);
+        missing_ = folder_.windows().missing(windows_.begin, windows_.end);
     else
         for (std::int64_t number = windows_.begin; number < windows_.end; ++number)
             missing_.push_back(number);
 }
 
 void PartRun::run() {
-    const std::vector<WindowRange> ranges = ranges_of(missing_);
+    const std::vector<NumberRange> ranges = ranges_of(missing_);
     std::int64_t total = 0;
-    for (const WindowRange& range : ranges) total += slots_of_range(range);
+    for (const NumberRange& range : ranges) total += slots_of_range(range);
     const auto start = std::chrono::steady_clock::now();
     Progress progress(run_, "decoding", total);
-    for (const WindowRange& range : ranges) decode_windows(range, progress);
+    for (const NumberRange& range : ranges) decode_windows(range, progress);
     seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::int64_t PartRun::slots_of_range(const WindowRange& windows) const {
+std::int64_t PartRun::slots_of_range(const NumberRange& windows) const {
     return folder_.end_slot(windows.end - 1) - folder_.begin_slot(windows.begin);
 }
 
-void PartRun::decode_windows(const WindowRange& windows, Progress& progress) {
+void PartRun::decode_windows(const NumberRange& windows, Progress& progress) {
     StreamReader reader(arguments_.stream,
                         arguments_.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
     calibrate(reader, arguments_);
@@ -145,7 +126,7 @@ void PartRun::decode_windows(const WindowRange& windows, Progress& progress) {
     std::optional<FrameWriter> window;
     const auto take = [&](std::int64_t slot, std::span<const float> frame) {
         if (!window) {
-            folder_.remove_leftovers(number);
+            remove_leftovers(folder_.window(number));
             window.emplace(folder_.window(number), folder_.identity().shape,
                            FrameWriterOptions{.force = true});
         }

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
-#include "apps/arguments/footage.h"
-#include "apps/arguments/sensor.h"
+#include "apps/emulate_part.h"
+#include "apps/emulation_input.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
 #include "apps/report/json_file.h"
@@ -17,30 +16,15 @@
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
-#include "capture/level_warning.h"
 #include "capture/rate_warning.h"
-#include "capture/recording/read_ahead.h"
-#include "capture/recording/resampled_footage.h"
 #include "core/error.h"
 #include "core/joined.h"
-#include "decoder/motion/late_opencv.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
-#include "readout/footage_origin.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {
 namespace {
-
-struct EmulateOptions {
-    std::string footage;
-    std::string output;
-    std::string truth;  ///< empty: none
-    WaveformOptions waveform;
-    FootageOptions reading;
-    std::optional<Resampling> resampling;  ///< none: each frame is a slot
-    SensorChoice sensor;
-};
 
 /// A warning about the faults of a recording named `file` that was read to its end: damage, no end,
 /// missing or incomplete frames. Empty if it has none.
@@ -55,38 +39,14 @@ std::string recording_faults(const std::string& file, const RecordingFootage& fo
     return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
 }
 
-void say_rate_warnings(const EmulateOptions& options, const ReadAhead& footage,
-                       const SensorParams& sensor) {
-    const auto hz = footage.frames_hz();
-    if (hz && !options.resampling) say_warning(video_rate_warning(options.footage, *hz, sensor));
-    if (const auto exposure_us = footage.exposure_us())
-        say_warning(exposure_warning(options.footage, *exposure_us, sensor));
-}
-
-ResampledFootage slots_of(ReadAhead& footage, const EmulateOptions& options, double slot_us) {
-    return {footage,
-            options.footage,
-            {.method = options.resampling,
-             .frames_hz = options.reading.frames_hz,
-             .slot_us = slot_us,
-             .flow = dis_flow,
-             .min_flow_side = kMinDisFlowSide}};
-}
-
 /// Null without --truth.
-std::unique_ptr<FrameWriter> open_truth(const EmulateOptions& options, FrameShape shape,
+std::unique_ptr<FrameWriter> open_truth(const EmulateArguments& options, FrameShape shape,
                                         bool force) {
     if (options.truth.empty()) return nullptr;
     auto truth =
         std::make_unique<FrameWriter>(options.truth, shape, FrameWriterOptions{.force = force});
     say_leftover(options.truth);
     return truth;
-}
-
-FootageOrigin footage_origin(const EmulateOptions& options) {
-    FootageOrigin origin = origin_of(options.footage, options.reading, [] { throw_if_stopped(); });
-    if (options.resampling) origin.resample = name_in(kResamplings, *options.resampling);
-    return origin;
 }
 
 /// True at the end of the footage, false after a signal. \throws Interrupted, InputError without a
@@ -101,26 +61,23 @@ bool expose_slots(ResampledFootage& slots, StreamRecorder& recorder, FrameWriter
     }
     if (progress.done() == 0) {
         throw_if_stopped();
-        throw InputError(footage, "is shorter than a slot of the sensor");
+        refuse_short_footage(footage);
     }
     return frame.empty();
 }
 
 /// Precondition: a recording was read to its end.
-void say_recording_warnings(const EmulateOptions& options, const RecordingFootage& recording,
+void say_recording_warnings(const EmulateArguments& options, const RecordingFootage& recording,
                             const SensorParams& sensor) {
     say_warning(recording_faults(options.footage, recording));
     if (!options.resampling)
         say_warning(recording_rate_warning(options.footage, recording.rate(), sensor));
 }
 
-void emulate(const EmulateOptions& options, const RunOptions& run) {
-    ReadAhead footage = read_footage(options.footage, options.reading);
-    const SensorSetup setup = set_up_sensor(options.sensor, footage.shape(), footage.filter());
-    say_warning(mosaic_warning(setup, footage.filter()));
-    say_rate_warnings(options, footage, setup.params);
-    say_warning(black_level_warning(options.footage, footage.traits(), setup.params));
-    ResampledFootage slots = slots_of(footage, options, setup.params.slot_us);
+void emulate(const EmulateArguments& options, const RunOptions& run) {
+    EmulationInput input(options);
+    const SensorSetup& setup = input.setup();
+    ResampledFootage& slots = input.slots();
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     const auto truth = open_truth(options, setup.footage, run.force);
@@ -134,18 +91,32 @@ void emulate(const EmulateOptions& options, const RunOptions& run) {
         waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
-    if (at_end && footage.recording() != nullptr)
-        say_recording_warnings(options, *footage.recording(), setup.params);
+    if (const auto* recording = input.footage().recording(); at_end && recording != nullptr)
+        say_recording_warnings(options, *recording, setup.params);
     const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
     json.write(emulation_json(recorder, slots_per_second));
     run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_second)));
+}
+
+/// A piece is a part of the stream and of nothing else.
+void check_part(const Command& command, const EmulateArguments& arguments) {
+    command.refuse({"--truth", "--vcd", "--vcd-slots"},
+                   "is of all slots, which a part has not; leave out one of them");
+    check_part_folder(arguments.output);
+}
+
+void emulate_all_or_part(const EmulateArguments& arguments, const RunOptions& run) {
+    if (arguments.part.count > 0)
+        emulate_part(arguments, run);
+    else
+        emulate(arguments, run);
 }
 
 }  // namespace
 
 void add_emulate(Command& app, Action& action) {
     Command command = app.add_command("emulate", "Footage through the sensor to a sample stream");
-    const auto options = std::make_shared<EmulateOptions>();
+    const auto options = std::make_shared<EmulateArguments>();
     command
         .add_option(
             "FOOTAGE", options->footage,
@@ -169,6 +140,9 @@ void add_emulate(Command& app, Action& action) {
         .type_name("OUT")
         .output(kVideoName);
     add_waveform_arguments(command, options->waveform);
+    add_part(command, options->part,
+             "emulate part I of N into pieces of the folder FILE; those that are there are kept "
+             "(docs/scaling.md)");
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
@@ -177,8 +151,11 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate clip.raw --raw 1280x1024:bayergr16:hz=1057 -o clip.stipple\n"
         "  stipple emulate hdr.mp4 -o clip.stipple --transfer auto --resample flow --scale 2\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
-        "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8");
-    set_action(command, action, options, emulate);
+        "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8\n"
+        "  stipple emulate film.npy -o pieces --part 3/16");
+    set_action(command, action, options, emulate_all_or_part, [command, options] {
+        if (options->part.count > 0) check_part(command, *options);
+    });
 }
 
 }  // namespace stipple

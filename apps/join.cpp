@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,13 +8,14 @@
 
 #include "apps/arguments/video_output.h"
 #include "apps/interrupt.h"
+#include "apps/join_stream.h"
+#include "apps/piece_folder.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/subcommands.h"
 #include "apps/window_folder.h"
-#include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/npy_reader.h"
 #include "io/output_names.h"
@@ -31,26 +30,11 @@ struct JoinArguments {
     ImageCoding images;  ///< of folders and .tif
 };
 
-/// \throws InputError naming the windows that are missing.
-void require_all(const WindowFolder& folder, const std::string& name) {
-    constexpr std::size_t kMaxNamed = 8;
-    const std::vector<std::int64_t> missing = folder.missing(0, folder.count());
-    if (missing.empty()) return;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
-        names +=
-            fmt::format("{}{}", i == 0 ? "" : ", ", folder.window(missing[i]).filename().string());
-    if (missing.size() > kMaxNamed)
-        names += fmt::format(" and {} more", missing.size() - kMaxNamed);
-    throw InputError(name,
-                     fmt::format("lacks {} of its {} windows: {}; run `stipple decode --part` "
-                                 "again, which keeps the others",
-                                 missing.size(), folder.count(), names));
-}
-
 void join(const JoinArguments& arguments, const RunOptions& run) {
+    if (is_piece_folder(arguments.folder))
+        return join_stream(arguments.folder, arguments.output, run);
     const WindowFolder folder(arguments.folder);
-    require_all(folder, arguments.folder);
+    folder.windows().require_all(arguments.folder, kDecodingFolder);
     const WindowIdentity& identity = folder.identity();
     JsonFile json(run);
     FrameWriterOptions options{
@@ -81,27 +65,43 @@ void join(const JoinArguments& arguments, const RunOptions& run) {
 }  // namespace
 
 void add_join(Command& app, Action& action) {
-    Command command = app.add_command("join", "Windows of \"decode --part\" to one video");
+    Command command = app.add_command(
+        "join",
+        "Windows of \"decode --part\" to one video, pieces of \"emulate --part\" to a stream");
     const auto options = std::make_shared<JoinArguments>();
     command
-        .add_option("FOLDER", options->folder, "folder that \"stipple decode --part\" has filled")
+        .add_option(
+            "FOLDER", options->folder,
+            "folder that \"stipple decode --part\" or \"stipple emulate --part\" has filled")
         .required()
         .input();
     command
         .add_option("-o,--output", options->output,
-                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video)")
+                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video); of pieces a "
+                    ".stipple")
         .type_name("OUT")
         .required()
-        .output(kVideoName);
+        .output();
     add_video_arguments(command, options->video, options->images);
     command.footer(
         "Example:\n"
         "  stipple decode film.stipple -o windows --part 1/2\n"
         "  stipple decode film.stipple -o windows --part 2/2\n"
         "  stipple join windows -o film.npy\n"
-        "The video has the same bytes as that of one run of \"stipple decode\".");
+        "The video has the same bytes as that of one run of \"stipple decode\".\n"
+        "  stipple emulate film.npy -o pieces --part 1/2\n"
+        "  stipple emulate film.npy -o pieces --part 2/2\n"
+        "  stipple join pieces -o film.stipple\n"
+        "The stream has the same bytes as that of one run of \"stipple emulate\".");
     set_action(command, action, options, join, [command, options] {
-        check_video_arguments(command, options->video, options->images, options->output);
+        const bool stream = is_piece_folder(options->folder);
+        check_extension("--output", options->output, stream ? kStreamName : kVideoName);
+        if (stream)
+            command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd", "--images",
+                            "--samples", "--full-scale", "--pixel-um"},
+                           "is of videos, and these pieces make a stream; leave it out");
+        else
+            check_video_arguments(command, options->video, options->images, options->output);
     });
 }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include "apps/shared_folder.h"
 #include "core/geometry.h"
 
 namespace stipple {
@@ -13,7 +13,7 @@ namespace stipple {
 /// All that determines the frames of a decoded stream.
 struct WindowIdentity {
     std::uint64_t stream_bytes = 0;
-    std::string stream_sha256;
+    std::string stream;  ///< as stream_identity, or else its hash
     std::string method;
     std::string options;             ///< lines of TOML; empty: the defaults
     std::string calibration_sha256;  ///< empty: without
@@ -43,14 +43,13 @@ class WindowFolder {
     /// The slots of a window: [begin_slot, end_slot).
     [[nodiscard]] std::int64_t begin_slot(std::int64_t number) const;
     [[nodiscard]] std::int64_t end_slot(std::int64_t number) const;
-    /// Whether the window is there, with all of its frames.
-    [[nodiscard]] bool holds(std::int64_t number) const;
-    /// Windows that are not there, of [begin, end).
-    [[nodiscard]] std::vector<std::int64_t> missing(std::int64_t begin, std::int64_t end) const;
-    /// Removes what killed runs have left of a window.
-    void remove_leftovers(std::int64_t number) const;
+    /// All of them, while this object lives.
+    [[nodiscard]] NumberedParts windows() const;
 
   private:
+    /// Whether the window is there, with all of its frames.
+    [[nodiscard]] bool holds(std::int64_t number) const;
+
     std::filesystem::path folder_;
     WindowIdentity identity_;
 };

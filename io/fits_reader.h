@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -33,6 +34,7 @@ class FitsReader {
 
     /// The next frame, by row and column; false at the end. \throws InputError.
     bool read(std::span<float> frame);
+    void skip(int frames) { next_slot_ += std::min(frames, slots_ - next_slot_); }
 
   private:
     FileBytes file_;

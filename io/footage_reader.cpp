@@ -74,6 +74,8 @@ class ImageSequence {
         return true;
     }
 
+    void skip(int frames) { next_ += std::min(frames, slots() - next_); }
+
   private:
     void load(int slot) {
         if (!tiff_) return read_image(images_.files[static_cast<std::size_t>(slot)], image_);
@@ -268,6 +270,17 @@ bool FootageReader::read(std::span<float> frame) {
         for (float& value : frame) value = std::min(value, max_light);
     }
     return true;
+}
+
+void FootageReader::skip(int frames) {
+    std::vector<float> light;
+    const auto skip = [&](auto& source) {
+        if constexpr (requires { source.skip(frames); }) return source.skip(frames);
+        light.resize(source.shape().sites());
+        for (int i = 0; i < frames && source.read(light); ++i) {
+        }
+    };
+    std::visit(skip, impl_->source);
 }
 
 }  // namespace stipple

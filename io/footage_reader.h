@@ -63,6 +63,9 @@ class FootageReader {
     /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
     /// infinite or negative light.
     bool read(std::span<float> frame);
+    /// Leaves out the next `frames` frames, unchecked; where the source cannot seek, they are read.
+    /// \throws InputError as `read`.
+    void skip(int frames);
 
   private:
     struct Impl;

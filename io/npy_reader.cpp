@@ -85,4 +85,11 @@ bool NpyReader::read(std::span<float> frame) {
     return true;
 }
 
+void NpyReader::skip(int frames) {
+    const int skipped = std::min(frames, header_.slots - next_slot_);
+    next_slot_ += skipped;
+    const auto bytes = static_cast<long>(bytes_.size()) * skipped;
+    if (std::fseek(file_.get(), bytes, SEEK_CUR) != 0) fail(name_);
+}
+
 }  // namespace stipple

@@ -29,6 +29,8 @@ class NpyReader {
     /// The next frame, order (plane, row, col), integers scaled to 0..1; false at the end.
     /// \throws InputError.
     bool read(std::span<float> frame);
+    /// Leaves out the next `frames` frames. \throws InputError.
+    void skip(int frames);
 
   private:
     struct Closer {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -46,6 +47,9 @@ class RawVideoReader {
 
     /// The next frame, order (plane, row, col); false at the end. \throws InputError.
     bool read(std::span<float> frame);
+    void skip(int frames) {
+        next_slot_ = std::min(next_slot_ + static_cast<std::uint64_t>(frames), video_.slots);
+    }
 
   private:
     [[nodiscard]] std::uint64_t offset_of(std::uint64_t slot);

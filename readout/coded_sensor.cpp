@@ -272,8 +272,11 @@ void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row,
 }
 
 CodedSensor::CodedSensor(const SensorParams& params, FrameShape shape,
-                         const ExposureSchedule& schedule, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(params, shape, schedule, seed)) {}
+                         const ExposureSchedule& schedule, std::uint64_t seed,
+                         std::int64_t first_slot)
+    : impl_(std::make_unique<Impl>(params, shape, schedule, seed)) {
+    impl_->stats.slots = first_slot;
+}
 
 CodedSensor::~CodedSensor() = default;
 CodedSensor::CodedSensor(CodedSensor&&) noexcept = default;

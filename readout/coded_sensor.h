@@ -12,9 +12,9 @@
 
 namespace stipple {
 
-/// Counts of the emulated chip since slot 0.
+/// Counts of the emulated chip since its first slot.
 struct ReadoutStats {
-    std::int64_t slots = 0;
+    std::int64_t slots = 0;  ///< the slot to expose next
     std::uint64_t samples = 0;
     std::uint64_t saturated_samples = 0;  ///< clipped by the full well, or at full scale
 };
@@ -26,10 +26,11 @@ struct ReadoutStats {
 /// slot in scan order.
 class CodedSensor {
   public:
-    /// `schedule` must outlive the sensor. \throws InputError as `validate`, if the shape is empty,
-    /// or if the schedule needs more charge stores than the pixels of the sensor have.
+    /// `schedule` must outlive the sensor. The array is reset before `first_slot`; samples of
+    /// exposures that began earlier lack light. \throws InputError as `validate`, if the shape is
+    /// empty, or if the schedule needs more charge stores than the pixels of the sensor have.
     CodedSensor(const SensorParams& params, FrameShape shape, const ExposureSchedule& schedule,
-                std::uint64_t seed);
+                std::uint64_t seed, std::int64_t first_slot = 0);
     ~CodedSensor();
     CodedSensor(CodedSensor&&) noexcept;
     CodedSensor& operator=(CodedSensor&&) noexcept;

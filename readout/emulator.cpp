@@ -37,13 +37,14 @@ StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance) 
             .cfa = setup.params.physical.cfa};
 }
 
-Emulator::Emulator(const SensorSetup& setup)
+Emulator::Emulator(const SensorSetup& setup, std::int64_t first_slot)
     : setup_(setup),
       filters_(calibration_of(setup.params).tile),
-      sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed) {
+      sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed, first_slot) {
     if (!setup.timing) return;
     const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
     readout_cost_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
+    readout_cost_->begin_at(first_slot);
 }
 
 std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {

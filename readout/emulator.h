@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,8 +22,9 @@ namespace stipple {
 /// A sensor that turns light into the packets of a stream, slot by slot.
 class Emulator {
   public:
-    /// `setup` must outlive the emulator.
-    explicit Emulator(const SensorSetup& setup);
+    /// `setup` must outlive the emulator. The array is reset before `first_slot`; samples of
+    /// exposures that began earlier lack light (lead_in.h).
+    explicit Emulator(const SensorSetup& setup, std::int64_t first_slot = 0);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
     /// the grey mask of the slot if the schedule has weights: its photons are counted. The
@@ -36,7 +38,7 @@ class Emulator {
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
     /// Fraction of the light on the array since slot 0 that the samples hold. Less than the light
     /// throughput by exposures that began before slot 0, exposures under way, and dropped rows. NaN
-    /// before slot 0.
+    /// before slot 0. Precondition: the first slot was 0.
     [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] ReadoutCost* readout_cost() { return readout_cost_ ? &*readout_cost_ : nullptr; }

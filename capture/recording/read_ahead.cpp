@@ -90,4 +90,17 @@ std::span<const float> ReadAhead::next() {
     return current_;
 }
 
+void ReadAhead::skip(int frames) {
+    if (frames < 1) return;
+    const bool has_frame = reading_.valid() && reading_.get();  // the first of them is being read
+    pass_warnings_on();
+    if (!has_frame) return;
+    if (auto* const footage = std::get_if<FootageReader>(&reader_))
+        footage->skip(frames - 1);
+    else
+        for (int i = 1; i < frames && std::get<RecordingFootage>(reader_).read(coming_); ++i) {
+        }
+    start_reading();
+}
+
 }  // namespace stipple

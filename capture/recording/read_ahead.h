@@ -41,6 +41,9 @@ class ReadAhead {
     /// The next frame, valid until the next call, or an empty span at the end.
     /// \throws InputError as FootageReader::read and RecordingFootage::read.
     std::span<const float> next();
+    /// Leaves out the next `frames` frames. A recording and a video are read, the others are not.
+    /// \throws InputError as `next`.
+    void skip(int frames);
 
     /// The recording; null of other footage. Not while a frame is read: after `next` was empty.
     [[nodiscard]] const RecordingFootage* recording() const;

@@ -48,4 +48,10 @@ std::span<const float> ResampledFootage::next() {
     return resampler_ ? resampler_->next() : footage_.next();
 }
 
+void ResampledFootage::skip(int slots) {
+    if (!resampler_) return footage_.skip(slots);
+    for (int i = 0; i < slots && !resampler_->next().empty(); ++i) {
+    }
+}
+
 }  // namespace stipple

@@ -31,6 +31,8 @@ class ResampledFootage {
     /// The next slot, order (plane, row, col), valid until the next call, or an empty span at the
     /// end. \throws as ReadAhead::next and the flow.
     std::span<const float> next();
+    /// Leaves out the next `slots` slots. \throws as `next`.
+    void skip(int slots);
 
   private:
     ReadAhead& footage_;

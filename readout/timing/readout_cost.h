@@ -80,6 +80,8 @@ class ReadoutCost {
     /// Times of its rows from `begin` on, without dropped rows.
     [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
 
+    /// The totals begin with this slot.
+    void begin_at(std::int64_t slot) { slots_ = slot; }
     /// Adds slot `slots()` to the totals and returns it.
     const SlotCost& add_next();
     [[nodiscard]] std::int64_t slots() const { return slots_; }

@@ -132,6 +132,35 @@ TEST(FootageReaderTest, KeepsReturningFalseAtTheEnd) {
     EXPECT_FALSE(reader.read(frame));
 }
 
+/// The frames from `first` on; the first is read before the others are skipped.
+Floats read_from(const fs::path& source, int first, const FootageOptions& options) {
+    FootageReader reader(source, options);
+    Floats all, frame(reader.shape().sites());
+    EXPECT_TRUE(reader.read(frame));
+    reader.skip(first - 1);
+    while (reader.read(frame)) all.insert(all.end(), frame.begin(), frame.end());
+    return all;
+}
+
+TEST(FootageReaderTest, FramesThatAreSkippedAreLeftOut) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "images");
+    for (int i = 0; i < 5; ++i)
+        write_flat(folder / fmt::format("images/f{}.png", i), 1, 2, CV_8UC1, i * 5);
+    write_text(folder / "clip.npy", npy_file("|u1", "(5, 1, 2)", "aabbccddee"));
+    write_text(folder / "clip.raw", "aabbccddee");
+    FootageOptions raw;
+    raw.raw = parse_raw_format("2x1:mono8");
+    for (const auto& [name, options] :
+         {std::pair("images", FootageOptions()), {"clip.npy", FootageOptions()}, {"clip.raw", raw}})
+        for (int first = 1; first < 8; ++first) {
+            SCOPED_TRACE(fmt::format("{} from frame {}", name, first));
+            Floats rest = read_all(folder / name, options);
+            rest.erase(rest.begin(), rest.begin() + 2 * std::min(first, 5));
+            EXPECT_EQ(read_from(folder / name, first, options), rest);
+        }
+}
+
 /// A number of a clip's meta.json.
 int described(const fs::path& clip, const std::string& key) {
     const std::string text = read_text(clip / "meta.json");

@@ -52,6 +52,23 @@ TEST_F(ResampledFootageTest, EachFrameIsASlotWithoutAMethod) {
     }
 }
 
+TEST_F(ResampledFootageTest, SlotsThatAreSkippedAreLeftOut) {
+    for (const auto method : {std::optional<Resampling>(), std::optional(Resampling::kBlend)})
+        for (int first = 0; first < 7; ++first) {
+            const SlotOptions options{
+                .method = method, .frames_hz = 0.9e6 / kSlotUs, .slot_us = kSlotUs};
+            ReadAhead all_frames = footage(5);
+            ResampledFootage all_slots(all_frames, "a", options);
+            auto expected = read_all(all_slots);
+            expected.erase(expected.begin(), expected.begin() + std::min<std::ptrdiff_t>(
+                                                                    first, std::ssize(expected)));
+            ReadAhead frames = footage(5);
+            ResampledFootage slots(frames, "a", options);
+            slots.skip(first);
+            EXPECT_EQ(read_all(slots), expected) << first;
+        }
+}
+
 TEST_F(ResampledFootageTest, FramesOfHalfTheSlotRateAreHeldForTwoSlots) {
     ReadAhead frames = footage(3);
     ResampledFootage slots(

@@ -1,0 +1,125 @@
+#include "apps/shared_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <system_error>
+
+#include "apps/report/text_file.h"
+#include "core/error.h"
+#include "io/disk_sync.h"
+#include "io/partial_output.h"
+
+namespace stipple {
+namespace fs = std::filesystem;
+namespace {
+
+/// Gives `file` the content `text`, unless it exists: then another process was first.
+void publish(const fs::path& file, const std::string& text) {
+    const fs::path partial = partial_path(file, getpid(), std::random_device{}());
+    write_whole(partial, file.string(), text);
+    try {
+        if (!rename_to_free_name(partial, file)) fs::remove(partial);
+        sync_to_disk(file.parent_path());
+    } catch (const fs::filesystem_error& e) {
+        throw DeviceError(file.string(), "cannot be written: " + e.code().message());
+    }
+}
+
+std::string differing(const std::string& key, const nlohmann::ordered_json& there,
+                      const nlohmann::ordered_json& here) {
+    return fmt::format("{} is {} there and {} here", key, there.dump(), here.dump());
+}
+
+}  // namespace
+
+void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
+                  const nlohmann::ordered_json& identity) {
+    std::error_code error;
+    if (fs::create_directory(folder, error)) sync_to_disk(folder / "..");
+    if (error) throw InputError(folder.string(), "cannot be made: " + error.message());
+    const fs::path file = folder / kind.identity;
+    if (!fs::exists(file)) {
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+            if (!partial_output(entry.path()) && entry.path().filename() != kind.identity)
+                throw InputError(folder.string(),
+                                 fmt::format("holds {}, and is no folder of {}; give another name",
+                                             entry.path().filename().string(), kind.parts));
+        publish(file, identity.dump(2) + "\n");
+    }
+    const std::string other = first_difference(read_identity(folder, kind, identity), identity);
+    if (!other.empty())
+        throw InputError(folder.string(),
+                         fmt::format("holds another {}: {}; give another name, or remove it",
+                                     kind.result, other));
+}
+
+nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderKind& kind,
+                                     const nlohmann::ordered_json& pattern) {
+    const fs::path file = folder / kind.identity;
+    if (!fs::exists(file))
+        throw InputError(folder.string(),
+                         fmt::format("has no {}: it is no folder that `stipple {} --part` wrote",
+                                     kind.identity, kind.verb));
+    std::ifstream stream(file);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+    bool whole = json.is_object();
+    for (const auto& [key, value] : pattern.items())
+        whole = whole && json.contains(key) &&
+                (value.is_number() ? json[key].is_number() : json[key].type() == value.type());
+    if (!whole)
+        throw InputError(file.string(), fmt::format("does not describe {} {}; remove the "
+                                                    "folder, and {} again",
+                                                    kind.article, kind.result, kind.verb));
+    return json;
+}
+
+std::string first_difference(const nlohmann::ordered_json& there,
+                             const nlohmann::ordered_json& here) {
+    for (const auto& [key, value] : here.items()) {
+        const nlohmann::ordered_json& other = there[key];
+        if (other == value) continue;
+        if (value.is_array() && other.is_array())
+            for (std::size_t i = 0; i < std::min(other.size(), value.size()); ++i)
+                if (other[i] != value[i]) return differing(key, other[i], value[i]);
+        return differing(key, other, value);
+    }
+    return {};
+}
+
+void remove_leftovers(const fs::path& file) {
+    std::error_code error;
+    for (const PartialOutput& partial : partial_outputs(folder_of(file)))
+        if (partial.final_path.filename() == file.filename() && !partial.running())
+            fs::remove(partial.path, error);
+}
+
+std::vector<std::int64_t> NumberedParts::missing(std::int64_t begin, std::int64_t end) const {
+    std::vector<std::int64_t> numbers;
+    for (std::int64_t number = begin; number < end; ++number)
+        if (!holds(number)) numbers.push_back(number);
+    return numbers;
+}
+
+void NumberedParts::require_all(const fs::path& folder, const SharedFolderKind& kind) const {
+    constexpr std::size_t kMaxNamed = 8;
+    const std::vector<std::int64_t> lacking = missing(0, count);
+    if (lacking.empty()) return;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(lacking.size(), kMaxNamed); ++i)
+        names += fmt::format("{}{}", i == 0 ? "" : ", ", file(lacking[i]).filename().string());
+    if (lacking.size() > kMaxNamed)
+        names += fmt::format(" and {} more", lacking.size() - kMaxNamed);
+    throw InputError(folder.string(),
+                     fmt::format("lacks {} of its {} {}: {}; run `stipple {} --part` again, which "
+                                 "keeps the others",
+                                 lacking.size(), count, kind.parts, names, kind.verb));
+}
+
+}  // namespace stipple
