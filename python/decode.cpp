@@ -26,6 +26,7 @@
 #include "python/stream.h"
 #include "readout/provenance.h"
 #include "stream/stream_figures.h"
+#include "stream/stream_identity.h"
 
 namespace stipple::python {
 namespace {
@@ -33,6 +34,7 @@ namespace {
 /// What is decoded, and how.
 struct DecodeTask {
     DecodeOptions options;
+    std::string given;  ///< options of the method that were given, as lines of TOML
     bool strict = false;
     std::optional<std::int64_t> until;                      ///< slots; none: all
     std::optional<std::filesystem::path> calibration = {};  ///< file of the chip's calibration
@@ -43,6 +45,7 @@ DecodeTask decode_task(const std::string& method, const py::dict& settings, bool
     if (until && *until < 1) throw InputError("until", fmt::format("{} is not above 0", *until));
     Config config(settings_of(settings), "decoder");
     DecodeTask task{.options = read_decode_options(decode_method_from_name(method), config),
+                    .given = config.as_toml(""),
                     .strict = strict,
                     .until = until};
     task.options.fill_gaps = fill_gaps;
@@ -111,11 +114,13 @@ void bind_decode(py::module_& module) {
     py::class_<DecodeTask>(module, "DecodeTask")
         .def(py::init(&decode_task))
         .def_readwrite("calibration", &DecodeTask::calibration)
+        .def_readonly("given", &DecodeTask::given)
         .def("begin_at_block", [](DecodeTask& task, std::int64_t number) {
             task.options.first_slot = block_begin(number);
         });
     module.def("decode_blocks", &block_count);
     module.def("block_begin", &block_begin);
+    module.def("stream_identity", &stream_identity);
     module.def("decode", &decode_stream);
     module.def("decode_methods", [] {
         std::vector<std::string> names;

@@ -2,21 +2,24 @@
 
     client = dask.distributed.Client("scheduler:8786")
     video = stipple.dask.decode("/shared/film.stipple", client, "fast")
+    stipple.dask.decode_to("/shared/film.zarr", "/shared/film.stipple", client, "fast")
 
 Each worker needs this package, and the stream under the same path."""
 
 import functools
 import hashlib
+import warnings
 from os import PathLike, fsdecode, path
-from typing import Any, Mapping, NamedTuple, Optional, Union
+from typing import Any, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _pipeline, _stipple
+from ._block_outputs import BlockOutput, block_output, slots_of_block
 from ._stipple import Stream
 
-__all__ = ["check_workers", "decode"]
+__all__ = ["check_workers", "decode", "decode_to", "require_same"]
 
 Name = Union[str, "PathLike[str]"]
 
@@ -71,6 +74,61 @@ def require_same(caller: Fingerprint) -> None:
         raise RuntimeError(f"a worker {difference}")
 
 
+class _Job(NamedTuple):
+    """What all blocks of a decoding have in common."""
+
+    caller: Fingerprint
+    stream: str
+    slots: int
+    method: str
+    options: Mapping[str, object]
+    fill_gaps: bool
+    calibration: Optional[str]
+    threads: int
+
+    def task(self, until: int) -> _stipple.DecodeTask:
+        task = _stipple.DecodeTask(self.method, self.options, self.fill_gaps, False, until)
+        task.calibration = self.calibration
+        return task
+
+    def decode(self, number: int) -> Tuple[npt.NDArray[np.float32], List[str]]:
+        """On a worker: the frames of a block, and what is to be said of its samples."""
+        require_same(self.caller)
+        task = self.task(slots_of_block(number, self.slots)[1])
+        task.begin_at_block(number)
+        with _stipple.Threads(self.threads), warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            frames = _stipple.decode(Stream.open(self.stream), task, None)
+        return frames, [str(warning.message) for warning in said]
+
+    def store(self, number: int, output: BlockOutput) -> Tuple[None, List[str]]:
+        """On a worker: the same, stored there."""
+        frames, said = self.decode(number)
+        output.write(number, frames)
+        return None, said
+
+
+def _job(client: Any, stream: Name, method: str, more: Mapping[str, Any]) -> _Job:
+    caller = check_workers(client)
+    name = path.abspath(fsdecode(stream))
+    calibration = more["calibration"]
+    chip = None if calibration is None else path.abspath(fsdecode(calibration))
+    slots = Stream.open(name).slots()
+    if slots == 0:
+        raise ValueError(f"{name}: holds no slot to decode")
+    job = _Job(caller, name, slots, method, dict(more["options"]), more["fill_gaps"], chip, more["threads"])
+    job.task(slots)  # raises for wrong options here, and not on a worker
+    return job
+
+
+def _gather(client: Any, tasks: List[Any]) -> List[Any]:
+    """The results of tasks. What they say is a warning, once."""
+    results, said = zip(*client.gather(tasks)) if tasks else ((), ())
+    for text in dict.fromkeys(text for texts in said for text in texts):
+        warnings.warn(text, UserWarning, stacklevel=3)
+    return list(results)
+
+
 def decode(
     stream: Name,
     client: Any,
@@ -90,28 +148,68 @@ def decode(
 
     Raises as `check_workers`, and ValueError and OSError as `stipple.decode`.
     """
-    caller = check_workers(client)
-    name = path.abspath(fsdecode(stream))
-    chip = None if calibration is None else path.abspath(fsdecode(calibration))
-    slots = Stream.open(name).slots()
-    how = (method, dict(options), fill_gaps, chip, threads)
-    tasks = [
-        client.submit(_decode_block, caller, name, number, slots, how, pure=False)
-        for number in range(_stipple.decode_blocks(slots))
-    ]
-    if not tasks:
-        raise ValueError(f"{name}: holds no slot to decode")
-    return np.concatenate(client.gather(tasks))
+    more = {"options": options, "fill_gaps": fill_gaps, "calibration": calibration, "threads": threads}
+    job = _job(client, stream, method, more)
+    blocks = range(_stipple.decode_blocks(job.slots))
+    tasks = [client.submit(_Job.decode, job, number, pure=False) for number in blocks]
+    return np.concatenate(_gather(client, tasks))
 
 
-def _decode_block(caller: Fingerprint, name: str, number: int, slots: int, how: Any) -> npt.NDArray[np.float32]:
-    """The frames of one block, on a worker."""
-    require_same(caller)
-    method, options, fill_gaps, calibration, threads = how
-    last = number + 1 == _stipple.decode_blocks(slots)
-    until = slots if last else _stipple.block_begin(number + 1)
-    task = _stipple.DecodeTask(method, options, fill_gaps, False, until)
-    task.calibration = calibration
-    task.begin_at_block(number)
-    with _stipple.Threads(threads):
-        return _stipple.decode(Stream.open(name), task, None)
+def decode_to(
+    output: Name,
+    stream: Name,
+    client: Any,
+    method: str = "best",
+    options: Mapping[str, object] = {},
+    *,
+    fill_gaps: bool = False,
+    calibration: Optional[Name] = None,
+    threads: int = 1,
+) -> int:
+    """The same, stored by the workers, for videos that are larger than a memory. Blocks that are there are
+    kept, so the same call goes on after it was ended. Returns the number of blocks that were decoded.
+
+    output: on storage that the caller and all workers see under this path. With the extension .zarr an array
+        of Zarr (Debian: python3-zarr) of float32, shape (slot, row, col) or (slot, row, col, plane); else the
+        folder of windows that "stipple decode --part" writes and "stipple join" reads.
+    stream ... threads: as for `decode`.
+
+    Raises as `decode`, ModuleNotFoundError without Zarr, and ValueError if the output holds something else.
+    """
+    more = {"options": options, "fill_gaps": fill_gaps, "calibration": calibration, "threads": threads}
+    job = _job(client, stream, method, more)
+    store = block_output(path.abspath(fsdecode(output)), _identity(job))
+    store.claim()
+    missing = [number for number in range(_stipple.decode_blocks(job.slots)) if not store.holds(number)]
+    tasks = [client.submit(_Job.store, job, number, store, pure=False) for number in missing]
+    _gather(client, tasks)
+    return len(missing)
+
+
+def _sha256(name: str) -> str:
+    digest = hashlib.sha256()
+    with open(name, "rb") as file:
+        while piece := file.read(1 << 20):
+            digest.update(piece)
+    return digest.hexdigest()
+
+
+def _identity(job: _Job) -> Mapping[str, Any]:
+    """All that determines the frames: the keys of docs/scaling.md."""
+    stream = Stream.open(job.stream)
+    rows, cols, planes = stream.shape
+    return {
+        "version": _stipple.__version__,
+        "stream_bytes": path.getsize(job.stream),
+        "stream": _stipple.stream_identity(job.stream) or f"sha256 {_sha256(job.stream)}",
+        "method": job.method,
+        "options": job.task(job.slots).given,
+        "calibration_sha256": "" if job.calibration is None else _sha256(job.calibration),
+        "fill_gaps": job.fill_gaps,
+        "slots": job.slots,
+        "rows": rows,
+        "cols": cols,
+        "planes": planes if stream.header["cfa"] == "none" else 3,
+        "slot_us": stream.header["slot_us"],
+        "window_slots": _stipple.block_begin(1),
+    }

@@ -1,6 +1,14 @@
 """Decoding on several workers gives the bits of one process."""
 
+import functools
+import logging
+import os
 import pickle
+import random
+import shutil
+import signal
+import threading
+import time
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
@@ -74,16 +82,134 @@ class DaskTest(ProgramTest):
         with self.assertRaises(FileNotFoundError):
             stipple.dask.decode("none.stipple", PickledTasks())
 
-    def test_a_cluster_of_dask_gives_the_same(self):
+    def test_stored_blocks_are_the_windows_of_the_program(self):
+        clip = self.write_clip(150, (3,))
+        self.succeed("decode", clip, "-o", "windows", "--part", "1/2", "--method", "fast", "--set", "decoder.rounds=1")
+        decode_to = functools.partial(stipple.dask.decode_to, self.folder / "windows", clip, PickledTasks())
+        self.assertEqual(decode_to("fast", {"rounds": 1}), 2)  # of three blocks, one was there
+        self.assertEqual(decode_to("fast", {"rounds": 1}), 0)
+        self.succeed("decode", clip, "-o", "program", "--part", "1/1", "--method", "fast", "--set", "decoder.rounds=1")
+        for path in (self.folder / "program").iterdir():
+            self.assertEqual((self.folder / "windows" / path.name).read_bytes(), path.read_bytes(), path.name)
+        self.assertEqual(len(list((self.folder / "windows").iterdir())), 4)
+        with self.assertRaisesRegex(ValueError, 'another decoding: options is "rounds = 1.*" there and "" here'):
+            decode_to("fast")
+
+    def test_the_program_goes_on_with_stored_blocks(self):
+        clip = self.write_clip(150)
+        self.assertEqual(stipple.dask.decode_to(self.folder / "windows", clip, PickledTasks(), "naive"), 3)
+        (self.folder / "windows" / "window_000001.npy").write_bytes(b"cut off")
+        figures = self.figures("decode", clip, "-o", "windows", "--part", "1/1", "--method", "naive")
+        self.assertEqual(figures["windows_decoded"], 1)
+        (self.folder / "windows" / "window_000002.npy").write_bytes(b"")
+        self.assertEqual(stipple.dask.decode_to(self.folder / "windows", clip, PickledTasks(), "naive"), 1)
+        self.succeed("join", "windows", "-o", "joined.npy")
+        np.testing.assert_array_equal(self.array("joined.npy"), stipple.decode(clip, "naive"))
+
+    def test_a_folder_that_holds_something_else_is_refused(self):
+        clip = self.write_clip(10)
+        (self.folder / "windows").mkdir()
+        (self.folder / "windows" / "letter.txt").touch()
+        with self.assertRaisesRegex(ValueError, "holds letter.txt"):
+            stipple.dask.decode_to(self.folder / "windows", clip, PickledTasks())
+        (self.folder / "windows" / "decoding.json").write_text("[]")
+        with self.assertRaisesRegex(ValueError, "another decoding: version is null there"):
+            stipple.dask.decode_to(self.folder / "windows", clip, PickledTasks())
+
+    def test_an_array_of_zarr_has_the_same_bits(self):
+        try:
+            import zarr
+        except ImportError as reason:
+            self.skipTest(f"no Zarr: {reason}")
+        store = self.folder / "film.zarr"
+        for planes in ((), (3,)):
+            clip = self.write_clip(160, planes)
+            decode_to = functools.partial(stipple.dask.decode_to, store, clip, PickledTasks())
+            self.assertEqual(decode_to("naive"), 3)
+            whole = stipple.decode(clip, "naive")
+            array = zarr.open(str(store), mode="r")
+            self.assertEqual(array.chunks, (48, 20, 24, *planes))
+            np.testing.assert_array_equal(array[:], whole)
+            self.assertEqual(decode_to("naive"), 0)
+            for chunk in (1, 3):  # the last block of 64 slots has two chunks
+                (store / ".".join([str(chunk), "0", "0", *["0" for _ in planes]])).unlink()
+                self.assertEqual(decode_to("naive"), 1)
+            np.testing.assert_array_equal(zarr.open(str(store), mode="r")[:], whole)
+            with self.assertRaisesRegex(ValueError, 'another decoding: method is "naive" there and "fast" here'):
+                decode_to("fast")
+            clip.unlink()
+            shutil.rmtree(store)
+
+    def test_damage_is_told_to_the_caller(self):
+        clip = self.write_clip(100)
+        self.change_byte(clip, clip.stat().st_size // 2)
+        with self.assertWarnsRegex(UserWarning, "damaged"):
+            result = stipple.dask.decode(clip, PickledTasks(), "naive")
+        with self.assertWarnsRegex(UserWarning, "damaged"):
+            np.testing.assert_array_equal(result, stipple.decode(clip, "naive"))
+
+
+def pretend_to_be_another_version():
+    stipple._stipple.__version__ = "0.0.1"
+    stipple.dask._fingerprint.cache_clear()
+
+
+class DaskClusterTest(ProgramTest):
+    """Two workers, each a process of its own."""
+
+    @classmethod
+    def setUpClass(cls):
         try:
             from distributed import Client, LocalCluster
         except ImportError as reason:
-            self.skipTest(f"no Dask: {reason}")
+            raise unittest.SkipTest(f"no Dask: {reason}")
+        cls.cluster = cls.enterClassContext(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                                         silence_logs=logging.CRITICAL))
+        cls.client = cls.enterClassContext(Client(cls.cluster))
+
+    def write_clip(self, slots, rows=20, cols=24):
+        light = np.random.default_rng(1).uniform(0, 1, (slots, rows, cols)).astype(np.float32)
+        stipple.emulate(light, output=self.folder / "clip.stipple")
+        return self.folder / "clip.stipple"
+
+    def test_gives_the_bits_of_one_process(self):
         clip = self.write_clip(150)
-        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-            with Client(cluster) as client:
-                result = stipple.dask.decode(clip, client, "naive")
+        result = stipple.dask.decode(clip, self.client, "naive")
         np.testing.assert_array_equal(result, stipple.decode(clip, "naive"))
+        with self.assertRaisesRegex(ValueError, "iteration"):
+            stipple.dask.decode(clip, self.client, "fast", {"iteration": 3})
+
+    def test_a_worker_that_is_killed_costs_its_block_only(self):
+        clip = self.write_clip(2400, 24, 32)
+        seed = random.randrange(1000)
+        enough = random.Random(seed).randrange(1, 12)
+        workers = self.client.run(os.getpid)
+        decoding = threading.Thread(target=stipple.dask.decode_to,
+                                    args=(self.folder / "windows", clip, self.client, "fast"))
+        decoding.start()
+        windows = functools.partial(self.folder.glob, "windows/window_*.npy")
+        while len(list(windows())) < enough and decoding.is_alive():
+            time.sleep(0.002)
+        os.kill(random.Random(seed).choice(list(workers.values())), signal.SIGKILL)
+        kept = {path: path.stat().st_mtime_ns for path in windows()}
+        decoding.join(timeout=120)
+        self.assertLess(len(kept), 50, f"nothing was left to do, seed {seed}")
+        self.assertEqual(len(list(windows())), 50, f"seed {seed}")
+        for path, written in kept.items():
+            self.assertEqual(path.stat().st_mtime_ns, written, f"{path.name} was decoded again, seed {seed}")
+        self.succeed("join", "windows", "-o", "joined.npy")
+        np.testing.assert_array_equal(self.array("joined.npy"), stipple.decode(clip, "fast"))
+        self.assertEqual([name for name in self.names() if "partial" in name], [])
+
+    def test_a_worker_of_another_version_is_refused(self):
+        clip = self.write_clip(10)
+        first = sorted(self.client.run(os.getpid))[0]
+        self.client.run(pretend_to_be_another_version, workers=[first])
+        try:
+            with self.assertRaisesRegex(RuntimeError, f"worker {first} has Stipple 0.0.1, this process"):
+                stipple.dask.decode(clip, self.client, "naive")
+        finally:
+            self.client.restart()
 
 
 if __name__ == "__main__":
