@@ -13,6 +13,8 @@
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/prior_decoding.h"
+#include "decoder/rivals/conventional_schedule.h"
+#include "decoder/rivals/frame_decoding.h"
 
 namespace stipple {
 namespace {
@@ -47,6 +49,54 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
                                  block.progress);
      }},
+    {"interpolated", DecodeMethod::kInterpolated,
+     "conventional cameras only: frames as delivered, interpolated along motion", kMaxCoreSites, 60,
+     [](Config&, DecodeOptions&) {},
+     [](const BlockTask& block) {
+         return decode_frames(block, [](const DeliveredFrames& frames, const ProgressCallback&) {
+             return std::optional(frames.light);
+         });
+     },
+     require_conventional},
+    {"bennett2005", DecodeMethod::kBennett2005,
+     "conventional cameras only: adaptive spatio-temporal accumulation (Bennett, McMillan 2005)",
+     kMaxCoreSites, 60,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.bennett2005); },
+     [](const BlockTask& block) {
+         return decode_frames(
+             block, [&](const DeliveredFrames& frames, const ProgressCallback& progress) {
+                 return accumulate_samples(frames, block.options.bennett2005, progress);
+             });
+     },
+     require_conventional},
+    {"zhang2009", DecodeMethod::kZhang2009,
+     "conventional cameras only: denoising along optical flow (after Zhang et al. 2009)",
+     kMaxCoreSites, 60,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.zhang2009); },
+     [](const BlockTask& block) {
+         return decode_frames(
+             block, [&](const DeliveredFrames& frames, const ProgressCallback& progress) {
+                 return denoise_along_flow(frames, block.options.zhang2009, progress);
+             });
+     },
+     require_conventional},
+    {"vbm4d", DecodeMethod::kVbm4d,
+     "conventional cameras only: collaborative filter of volumes (after V-BM4D, 2012)",
+     kMaxCoreSites, 60,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.vbm4d); },
+     [](const BlockTask& block) {
+         return decode_frames(block,
+                              [&](const DeliveredFrames& frames, const ProgressCallback& progress) {
+                                  return filter_volumes(frames, block.options.vbm4d, progress);
+                              });
+     },
+     require_conventional},
+    {"shahar2011", DecodeMethod::kShahar2011,
+     "conventional cameras only: temporal super-resolution (after Shahar, Faktor, Irani 2011)",
+     kMaxCoreSites, 60,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.shahar2011); },
+     [](const BlockTask& block) { return super_resolve_time(block, block.options.shahar2011); },
+     require_conventional},
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 namespace stipple {
 
 class Config;
+class ExposureSchedule;
 struct Calibration;
 struct DecodeOptions;
 struct Measurements;
@@ -21,6 +22,12 @@ enum class DecodeMethod {
     kFast,       ///< motion-compensated total variation
     kBest,       ///< collaborative filter of similar patches
     kPortz2013,  ///< the method of the paper, in two stages
+    // Of conventional cameras; see rivals/.
+    kInterpolated,  ///< frames as delivered
+    kBennett2005,   ///< adaptive spatio-temporal accumulation
+    kZhang2009,     ///< principal components of patches along optical flow
+    kVbm4d,         ///< collaborative filter of volumes along motion
+    kShahar2011,    ///< temporal super-resolution by self-similarity
 };
 
 /// A block of the video and the context of its decoding.
@@ -44,6 +51,10 @@ struct NamedDecodeMethod {
     /// The result may be slightly negative. Returns nothing if the progress callback has stopped
     /// it.
     std::optional<FluxVideo> (*decode)(const BlockTask& block);
+    /// If given, \throws InputError that names `stream` and the method, for a schedule that the
+    /// method does not take.
+    void (*check_schedule)(const ExposureSchedule& schedule, std::string_view stream,
+                           std::string_view method) = nullptr;
 };
 
 /// All methods, the simplest first.

@@ -5,6 +5,10 @@
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/portz2013/portz2013.h"
+#include "decoder/rivals/bennett2005.h"
+#include "decoder/rivals/shahar2011.h"
+#include "decoder/rivals/vbm4d.h"
+#include "decoder/rivals/zhang2009.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
@@ -15,6 +19,10 @@ struct DecodeOptions {
     MotionTvOptions fast = {};
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
+    Bennett2005Options bennett2005 = {};
+    Zhang2009Options zhang2009 = {};
+    Vbm4dOptions vbm4d = {};
+    Shahar2011Options shahar2011 = {};
     StageSink stages = {};
     bool fill_gaps = false;  ///< decode missing slots, whatever their number
     /// The first frame, where a block begins (block_begin); those before are not decoded. The

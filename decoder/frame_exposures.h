@@ -16,13 +16,17 @@ struct FrameExposure {
     int first_slot = 0;
     int last_slot = 0;
     int open_slots = 0;
-    float centre_slot = 0;  ///< mean of the open ones
+    float centre_slot = 0;  ///< mean of the open ones, by their weights
 };
 
 /// The frames of a block in temporal order, if all sites have the same exposures, as in a
-/// conventional camera or one with a flutter shutter. Samples may be missing. Nothing otherwise,
-/// if exposures are weighted, and if each slot is a frame, because there are then no slots between
-/// frames.
+/// conventional camera or one with a flutter shutter; none if there is no sample. Samples may be
+/// missing. Sites may have different weights, if these have the same centre. Nothing otherwise.
+[[nodiscard]] std::optional<std::vector<FrameExposure>> shared_exposures(
+    const Measurements& measurements);
+
+/// The same, but nothing without samples, if exposures are weighted, and if each slot is a frame,
+/// because there are then no slots between frames.
 [[nodiscard]] std::optional<std::vector<FrameExposure>> frame_exposures(
     const Measurements& measurements);
 
@@ -31,7 +35,8 @@ struct FrameExposure {
                                                   std::span<const FrameExposure> exposures,
                                                   const SampleNoise& noise);
 
-/// Adds the same light to all open slots of each exposure so that their mean equals its frame.
+/// Adds the same light to all open slots of each exposure, or light in proportion to their weights,
+/// so that their mean equals its frame.
 /// Interpolation between frames of several slots blurs them a second time; this corrects it.
 void add_what_frames_lack(const Measurements& measurements,
                           std::span<const FrameExposure> exposures, const FluxVideo& frames,

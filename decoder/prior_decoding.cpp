@@ -3,8 +3,8 @@
 #include "decoder/decode_options.h"
 #include "decoder/defects.h"
 #include "decoder/frame_exposures.h"
+#include "decoder/frame_video.h"
 #include "decoder/measurements.h"
-#include "decoder/motion/frame_interpolation.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {
@@ -37,9 +37,7 @@ std::optional<FluxVideo> decode_with_prior(
     const auto lights = decode({frames, noise_of_frames(block.calibration, *exposures),
                                 options_of_frames(block.options), block.progress});
     if (!lights) return {};
-    FluxVideo x = interpolate_frames(*lights, centre_slots(*exposures), measurements.slots);
-    add_what_frames_lack(measurements, *exposures, *lights, x);
-    return x;
+    return video_of_frames(measurements, *exposures, *lights);
 }
 
 }  // namespace stipple

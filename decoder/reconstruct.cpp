@@ -240,6 +240,9 @@ DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const Fr
                     const ProgressCallback& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const StreamHeader& header = reader.header();
+    const NamedDecodeMethod& method = named(options.method);
+    if (method.check_schedule != nullptr)
+        method.check_schedule(header.schedule, reader.name(), method.name);
     const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
     const std::int64_t first_packet = std::max<std::int64_t>(options.first_slot - halo, 0);
     PacketBuffer buffer(reader, options, first_packet);

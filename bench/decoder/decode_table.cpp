@@ -232,15 +232,16 @@ std::vector<double> factors(const std::string& text) {
 
 int run(int argc, char** argv) {
     TableOptions options;
-    for (const NamedDecodeMethod& known : decode_methods())
-        options.methods.emplace_back(known.name);
+    for (const NamedDecodeMethod& known : decode_methods())  // those that take any schedule
+        if (known.check_schedule == nullptr) options.methods.emplace_back(known.name);
     const auto all_methods = options.methods;
     CommandLine line("bench_decode",
                      "Speed, memory and quality of the decoding methods, as a table");
     Command command = line.root();
     command.add_list("--clips", options.clips, "clips of the footage folder, or scenes")
         .split_at_commas();
-    command.add_list("--methods", options.methods, "of `stipple decode` (all)")
+    command
+        .add_list("--methods", options.methods, "of `stipple decode` (all that take any schedule)")
         .split_at_commas()
         .one_of(names_of(decode_methods()));
     command.add_list("--set", options.settings, "METHOD.KEY=VALUE");

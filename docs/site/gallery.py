@@ -91,7 +91,7 @@ class Gallery:
         (self.folder / "gallery/methods_small.png").write_bytes(side_by_side(panels))
         figures = (f"`{method}` {self.stipple.compare(video, truth, margin=4, max_value=2).psnr_db:.1f} dB"
                    for method, video in videos.items())
-        return (f"\n### All methods on {cols} x {rows} pixels\n\nThe middle of the scene, {slots} slots: few enough for the "
+        return (f"\n### All methods of coded schedules on {cols} x {rows} pixels\n\nThe middle of the scene, {slots} slots: few enough for the "
                 f"method of the paper, `portz2013`.\n\n![Slot {SHOWN}: truth, {', '.join(methods)}]"
                 f"(gallery/methods_small.png)\n\n{', '.join(figures)}.\n")
 

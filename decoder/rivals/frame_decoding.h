@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/flux_video.h"
+#include "decoder/decode_method.h"
+#include "decoder/frame_exposures.h"
+#include "decoder/progress_callback.h"
+
+namespace stipple {
+
+struct Measurements;
+
+/// Noise of the frames of a conventional camera: variance of the light per slot x is dark_variance
+/// + per_light x, the mean over all samples. Pixels that differ are not distinguished.
+struct FrameNoise {
+    float dark_variance = 0;
+    float per_light = 0;
+
+    [[nodiscard]] float variance(float light) const {
+        return dark_variance + per_light * (light > 0 ? light : 0);
+    }
+};
+
+/// The frames of a conventional camera as they are delivered, in light per slot. Missing samples
+/// and colours are filled by `nearest_samples`; a saturated sample is its bound.
+struct DeliveredFrames {
+    FluxVideo light;
+    FrameNoise noise;
+    std::vector<float> bounds = {};  ///< of the light where samples are saturated, elsewhere 0
+};
+
+/// Denoises frames; per_light of their noise is above 0. Returns nothing if `progress` has stopped
+/// it.
+using FrameFilter = std::function<std::optional<FluxVideo>(const DeliveredFrames& frames,
+                                                           const ProgressCallback& progress)>;
+
+/// Decodes the samples of a conventional camera: frames as delivered, without those of stuck
+/// pixels, then the filter, then the video between the frames (frame_video.h). Where a sample is
+/// saturated, the filtered light is at least its bound. Frames without noise are not filtered.
+/// Without any sample the video is black. \throws InputError if the samples are not those of
+/// frames.
+[[nodiscard]] std::optional<FluxVideo> decode_frames(const BlockTask& block,
+                                                     const FrameFilter& filter);
+
+/// The frames of a block; none without samples. \throws InputError as decode_frames.
+[[nodiscard]] std::vector<FrameExposure> exposures_of_frames(const Measurements& measurements);
+
+/// Their light, without the samples of stuck pixels.
+[[nodiscard]] DeliveredFrames delivered_frames(const BlockTask& block,
+                                               std::span<const FrameExposure> exposures);
+
+/// The mean noise of the samples of frames.
+[[nodiscard]] FrameNoise noise_of_samples(const Measurements& frames);
+
+}  // namespace stipple
