@@ -30,13 +30,13 @@ nlohmann::ordered_json json_of(const std::string& provenance, std::uint32_t head
             {"slots", slots}};
 }
 
-/// The slots that the identity of an emulation tells. \throws InputError if there cannot be so
-/// many.
+/// The slots that the identity of an emulation tells. \throws InputError if its numbers cannot be.
 std::int64_t slots_of(const nlohmann::ordered_json& json, const fs::path& folder) {
     const nlohmann::ordered_json& slots = json["slots"];
-    if (!slots.is_number_integer() || slots < 1 || slots > kMaxSlots)
+    const bool whole = slots.is_number_integer() && json["header_crc"].is_number_unsigned();
+    if (!whole || slots < 1 || slots > kMaxSlots)
         throw InputError((folder / kEmulationFolder.identity).string(),
-                         "has a number of slots that no stream has; emulate again");
+                         "has a number that no stream has; emulate again");
     return slots;
 }
 
@@ -49,15 +49,11 @@ std::uint32_t crc_of(const StreamHeader& header) {
 PieceFolder::PieceFolder(fs::path folder, const StreamHeader& header,
                          const std::function<std::int64_t()>& count_slots)
     : folder_(std::move(folder)), header_crc_(crc_of(header)) {
-    auto identity = json_of(header.provenance, header_crc_, 0);
-    if (is_piece_folder(folder_)) {
-        identity["slots"] = slots_of(read_identity(folder_, kEmulationFolder, identity), folder_);
-        claim_folder(folder_, kEmulationFolder, identity);
-    } else {
-        identity["slots"] = count_slots();
-        claim_folder(folder_, kEmulationFolder, identity);
-    }
-    slots_ = identity["slots"];
+    const auto pattern = json_of({}, 0, 0);
+    slots_ = is_piece_folder(folder_)
+                 ? slots_of(read_identity(folder_, kEmulationFolder, pattern), folder_)
+                 : count_slots();
+    claim_folder(folder_, kEmulationFolder, json_of(header.provenance, header_crc_, slots_));
 }
 
 PieceFolder::PieceFolder(fs::path folder) : folder_(std::move(folder)) {

@@ -19,19 +19,22 @@ from distributed import Client, LocalCluster
 GIB = 1 << 30
 
 
-def write_stream(folder, slots, rows, cols):
+ROWS, COLS = 240, 320
+
+
+def write_stream(folder, slots):
     """A bar that moves a pixel a slot, through the sensor `paper`."""
-    light = np.lib.format.open_memmap(folder / "light.npy", "w+", np.uint8, (slots, rows, cols))
-    still = np.random.default_rng(1).integers(20, 60, (rows, cols), np.uint8)
+    light = np.lib.format.open_memmap(folder / "light.npy", "w+", np.uint8, (slots, ROWS, COLS))
+    still = np.random.default_rng(1).integers(20, 60, (ROWS, COLS), np.uint8)
     for slot in range(slots):
         light[slot] = still
-        light[slot, :, slot % cols:slot % cols + 16] = 200
+        light[slot, :, slot % COLS:slot % COLS + 16] = 200
     light.flush()
     del light
     stream = folder / "film.stipple"
     begin = time.monotonic()
     stipple.emulate(folder / "light.npy", output=stream)
-    print(f"{slots} slots of {cols} x {rows}: {stream.stat().st_size / 1e6:.0f} MB of stream, "
+    print(f"{slots} slots of {COLS} x {ROWS}: {stream.stat().st_size / 1e6:.0f} MB of stream, "
           f"emulated in {time.monotonic() - begin:.1f} s")
     (folder / "light.npy").unlink()
     return stream
@@ -69,8 +72,8 @@ def run(stream, folder, workers, memory, method, pinned):
 
 
 def table_of_cores(folder, method, slots):
-    voxels = slots * 240 * 320
-    stream = write_stream(folder, slots, 240, 320)
+    voxels = slots * ROWS * COLS
+    stream = write_stream(folder, slots)
     first = None
     for workers in (1, 2, 4):
         seconds = run(stream, folder, workers, "2GiB", method, True)
@@ -79,8 +82,8 @@ def table_of_cores(folder, method, slots):
 
 
 def table_of_memory(folder, method, slots):
-    stream = write_stream(folder, slots, 480, 640)
-    print(f"{slots * 480 * 640:.4g} voxels, method {method}")
+    stream = write_stream(folder, slots)
+    print(f"{slots * ROWS * COLS:.4g} voxels, method {method}")
     run(stream, folder, 4, "1GiB", method, False)
 
 
@@ -96,7 +99,7 @@ def main():
         if options.table == "cores":
             table_of_cores(Path(name), options.method or "fast", options.slots or 960)
         else:
-            table_of_memory(Path(name), options.method or "naive", options.slots or 3264)
+            table_of_memory(Path(name), options.method or "naive", options.slots or 13056)
 
 
 if __name__ == "__main__":

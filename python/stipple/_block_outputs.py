@@ -34,7 +34,9 @@ class BlockOutput(Protocol):
 
 def block_output(name: str, identity: Identity) -> BlockOutput:
     """That of a name: an array of Zarr by the extension .zarr, else a folder of windows."""
-    return ZarrArray(name, identity) if Path(name).suffix == ".zarr" else WindowFolder(name, identity)
+    if Path(name).suffix == ".zarr":
+        return ZarrArray(name, identity)
+    return WindowFolder(name, identity)
 
 
 def slots_of_block(number: int, slots: int) -> Tuple[int, int]:

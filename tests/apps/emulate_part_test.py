@@ -31,7 +31,8 @@ class EmulatePartTest(ProgramTest):
         self.write_noise("light.npy", 150, 20, 28)
         for number, options in enumerate([
                 (), ("--schedule", "tiled", "--seed", 7, "--set", "sensor.bit_depth=10"),
-                ("--sensor", "lux1310", "--schedule", "hardware_tiled", "--set", "sensor.slot_us=40", "--overrun", "drop"),
+                ("--sensor", "lux1310", "--schedule", "hardware_tiled", "--set", "sensor.slot_us=40",
+                 "--overrun", "drop"),
                 ("--sensor", "grasshopper", "--set", "sensor.row_skew_slots=0.5", "--schedule", "pixel_flutter",
                  "--set", "sensor.parasitic_light_sensitivity=0.1"),
                 ("--schedule", "two_bucket", "--set", "sensor.charge_stores=2"),
@@ -58,7 +59,8 @@ class EmulatePartTest(ProgramTest):
 
     def test_a_recording_makes_the_bytes_of_one_run(self):
         self.write_noise("light.npy", 140, 12, 16, kind=np.uint8)
-        self.succeed("capture", "record", "replay:light.npy", "-o", "shot.strec", "--set", "camera.AcquisitionFrameRate=0")
+        self.succeed("capture", "record", "replay:light.npy", "-o", "shot.strec", "--set",
+                     "camera.AcquisitionFrameRate=0")
         for part in ("2/3", "3/3", "1/3"):
             self.emulate_part(part, footage="shot.strec")
         self.expect_bytes_of_one_run(footage="shot.strec")

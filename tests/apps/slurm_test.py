@@ -105,7 +105,8 @@ class SlurmTest(ProgramTest):
             daemon.wait()
 
     def told(self, *command):
-        done = subprocess.run(command, env=self.environment, cwd=self.folder, capture_output=True, text=True, timeout=SECONDS)
+        done = subprocess.run(command, env=self.environment, cwd=self.folder, capture_output=True, text=True,
+                              timeout=SECONDS)
         return done.stdout.strip()
 
     def wait(self, condition, what):
