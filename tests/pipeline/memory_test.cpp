@@ -41,6 +41,11 @@ std::uint64_t decoding_bytes(const std::filesystem::path& file, DecodeMethod met
     for (MotionTvOptions* fast : {&options.fast, &options.best.start})  // more take no more
         fast->static_tv.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
     options.best.iterations = 2;
+    options.bennett2005.radius_px = 1;
+    options.zhang2009.step_px = 6;
+    options.vbm4d.step_px = 8;
+    options.vbm4d.search_px = 1;
+    options.vbm4d.max_volumes = 2;
     decode(reader, options, [](std::int64_t, std::span<const float>) { return true; });
     return status_bytes("VmHWM") - before;
 }
