@@ -19,6 +19,7 @@
 #include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
+#include "capture/recording/footage_notes.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"
 #include "core/shape_difference.h"
@@ -181,6 +182,8 @@ void compare(const CompareOptions& options, const RunOptions& run) {
     }
     const VideoQuality found = meter.quality();
     say_overlap(options, longer, frames);
+    say_warning(recording_note(options.result, result));
+    say_warning(recording_note(options.reference, reference));
     const FrameTable table{metrics, meter.frame_qualities(), quality.margin};
     outputs.finish(table);
     auto figures = metrics_json(metrics, found);

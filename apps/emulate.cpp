@@ -16,28 +16,14 @@
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
-#include "capture/rate_warning.h"
+#include "capture/recording/footage_notes.h"
 #include "core/error.h"
-#include "core/joined.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {
 namespace {
-
-/// A warning about the faults of a recording named `file` that was read to its end: damage, no end,
-/// missing or incomplete frames. Empty if it has none.
-std::string recording_faults(const std::string& file, const RecordingFootage& footage) {
-    auto faults = footage.recording().faults();
-    if (footage.missing_frames() > 0)
-        faults.push_back(
-            fmt::format("has {} ({} replaced by the previous frame)",
-                        counted(footage.missing_frames(), "missing or incomplete frame"),
-                        footage.held_slots()));
-    if (faults.empty()) return {};
-    return fmt::format("{}: {}; \"stipple capture replay\" lists the places", file, joined(faults));
-}
 
 /// Null without --truth.
 std::unique_ptr<FrameWriter> open_truth(const EmulateArguments& options, FrameShape shape,
@@ -66,14 +52,6 @@ bool expose_slots(ResampledFootage& slots, StreamRecorder& recorder, FrameWriter
     return frame.empty();
 }
 
-/// Precondition: a recording was read to its end.
-void say_recording_warnings(const EmulateArguments& options, const RecordingFootage& recording,
-                            const SensorParams& sensor) {
-    say_warning(recording_faults(options.footage, recording));
-    if (!options.resampling)
-        say_warning(recording_rate_warning(options.footage, recording.rate(), sensor));
-}
-
 void emulate(const EmulateArguments& options, const RunOptions& run) {
     EmulationInput input(options);
     const SensorSetup& setup = input.setup();
@@ -91,8 +69,10 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
         waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
-    if (const auto* recording = input.footage().recording(); at_end && recording != nullptr)
-        say_recording_warnings(options, *recording, setup.params);
+    if (at_end)
+        for (const std::string& note : end_notes(options.footage, input.footage(), setup.params,
+                                                 options.resampling.has_value()))
+            say_warning(note);
     const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
     json.write(emulation_json(recorder, slots_per_second));
     run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_second)));

@@ -2,33 +2,20 @@
 
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
-#include "capture/level_warning.h"
-#include "capture/rate_warning.h"
+#include "capture/recording/footage_notes.h"
 #include "core/error.h"
 #include "decoder/motion/late_opencv.h"
 #include "readout/footage_origin.h"
 
 namespace stipple {
-namespace {
-
-void say_rate_warnings(const EmulateArguments& arguments, const ReadAhead& footage,
-                       const SensorParams& sensor) {
-    const auto hz = footage.frames_hz();
-    if (hz && !arguments.resampling)
-        say_warning(video_rate_warning(arguments.footage, *hz, sensor));
-    if (const auto exposure_us = footage.exposure_us())
-        say_warning(exposure_warning(arguments.footage, *exposure_us, sensor));
-}
-
-}  // namespace
-
 EmulationInput::EmulationInput(const EmulateArguments& arguments)
     : footage_(read_footage(arguments.footage, arguments.reading)),
       setup_(set_up_sensor(arguments.sensor, footage_.shape(), footage_.filter())),
       slots_(slots_of(footage_, arguments, setup_.params.slot_us)) {
     say_warning(mosaic_warning(setup_, footage_.filter()));
-    say_rate_warnings(arguments, footage_, setup_.params);
-    say_warning(black_level_warning(arguments.footage, footage_.traits(), setup_.params));
+    for (const std::string& note :
+         sensor_notes(arguments.footage, footage_, setup_.params, arguments.resampling.has_value()))
+        say_warning(note);
 }
 
 ResampledFootage slots_of(ReadAhead& footage, const EmulateArguments& arguments, double slot_us) {

@@ -91,6 +91,19 @@ void check_light(std::span<const float> light, FrameShape shape, std::string_vie
                     pixel / width, pixel % width, site / shape.pixels(), problem, light[site]));
 }
 
+void scale_light(std::span<float> light, double factor, std::string_view where) {
+    const auto scale = static_cast<float>(factor);
+    bool finite = true;
+    for (float& value : light) {
+        value *= scale;
+        finite &= value <= std::numeric_limits<float>::max();
+    }
+    if (!finite)
+        throw InputError(
+            where,
+            fmt::format("light becomes infinite by --scale {}; give a smaller factor", factor));
+}
+
 void reduce_to_luminance(std::span<const float> rgb, std::span<float> luminance) {
     const std::size_t pixels = luminance.size();
     assert(rgb.size() == 3 * pixels);

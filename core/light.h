@@ -58,6 +58,9 @@ void linearise(std::span<float> values, Transfer transfer);
 /// infinite or negative.
 void check_light(std::span<const float> light, FrameShape shape, std::string_view where);
 
+/// Multiplies light by `factor`, in place. \throws InputError if light becomes infinite.
+void scale_light(std::span<float> light, double factor, std::string_view where);
+
 /// Rec. 709 luminance .2126 R + .7152 G + .0722 B of `rgb` (order (plane, row, col)).
 /// Precondition: rgb.size() == 3 * luminance.size().
 void reduce_to_luminance(std::span<const float> rgb, std::span<float> luminance);

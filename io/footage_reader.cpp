@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -144,7 +143,6 @@ struct FootageReader::Impl {
     Impl(const fs::path& path, const FootageOptions& wanted);
     [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
     void make_linear(std::span<float> light) const;
-    void multiply(std::span<float> light, const std::string& where) const;
     void warn(std::string text) {
         if (!text.empty()) warnings.push_back(std::move(text));
     }
@@ -178,20 +176,6 @@ void FootageReader::Impl::make_linear(std::span<float> light) const {
     linearise(light, transfer);
     const bool hdr = transfer == Transfer::kPq || transfer == Transfer::kHlg;
     if (hdr && traits.bt2020 && source_shape.planes == 3) bt2020_to_bt709(light);
-}
-
-/// \throws InputError if light becomes infinite.
-void FootageReader::Impl::multiply(std::span<float> light, const std::string& where) const {
-    const auto factor = static_cast<float>(options.scale);
-    bool finite = true;
-    for (float& value : light) {
-        value *= factor;
-        finite &= value <= std::numeric_limits<float>::max();
-    }
-    if (!finite)
-        throw InputError(where,
-                         fmt::format("light becomes infinite by --scale {}; give a smaller factor",
-                                     options.scale));
 }
 
 FootageReader::FootageReader(const fs::path& source, const FootageOptions& options)
@@ -252,7 +236,7 @@ bool FootageReader::read(std::span<float> frame) {
         if (!source.read(light)) return false;
         impl_->make_linear(light);
         check_light(light, impl_->source_shape, source.where());
-        if (impl_->options.scale != 1) impl_->multiply(light, source.where());
+        if (impl_->options.scale != 1) scale_light(light, impl_->options.scale, source.where());
         if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
             impl_->options.scale == 1)
             impl_->warn(brightness_warning(light, source.where()));

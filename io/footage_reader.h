@@ -15,6 +15,10 @@
 
 namespace stipple {
 
+/// Range of the frame rates of footage.
+inline constexpr double kMinFramesHz = 0.001;
+inline constexpr double kMaxFramesHz = 1e9;
+
 struct FootageOptions {
     std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
     bool luminance = false;                ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)

@@ -66,6 +66,7 @@ ArrayFrames::ArrayFrames(const py::array& array, const FootageOptions& options)
       kind_(array_.dtype().kind()),
       contiguous_(are_planar(array_, source_)) {
     if (options.luminance && source_.planes == 3) luminance_.resize(source_.pixels());
+    if (options.raw) throw InputError(kWhere, "is an array; raw describes a file");
 }
 
 FrameShape ArrayFrames::shape() const {
@@ -114,7 +115,12 @@ std::span<const float> ArrayFrames::next() {
         light = frame_;
     }
     check_light(light, source_, where);
-    if (slot_ == 1 && !options_.max_value) warning_ = brightness_warning(light, where);
+    if (options_.scale != 1) {
+        scale_light(own(light), options_.scale, where);
+        light = frame_;
+    } else if (slot_ == 1 && !options_.max_value) {
+        warning_ = brightness_warning(light, where);
+    }
     if (!luminance_.empty()) {
         reduce_to_luminance(light, luminance_);
         light = luminance_;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/output_names.h"
 #include "python/bindings.h"
@@ -52,15 +53,17 @@ py::dict write_stream(Footage& footage, const SensorSetup& setup, const py::obje
         return std::make_unique<StreamRecorder>(
             file, setup, StreamRecorderOptions{.force = force, .provenance = provenance});
     });
-    CallProgress progress(tell, footage.slots());
+    ResampledFootage slots = footage.resampled(setup.params.slot_us);
+    CallProgress progress(tell, slots.slots());
+    double done = 0;
     {
         const py::gil_scoped_release released;
-        double done = 0;
-        for (auto frame = footage.next(); !frame.empty(); frame = footage.next()) {
+        for (auto frame = slots.next(); !frame.empty(); frame = slots.next()) {
             recorder->expose(frame);
             if (!progress.reach(++done)) break;
         }
     }
+    if (done == 0) throw InputError(footage.name(), "is shorter than a slot of the sensor");
     progress.finish();
     {
         const py::gil_scoped_release released;
@@ -74,6 +77,7 @@ std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
                                     const py::object& tell) {
     if (output) check_name(*output, kStreamName);
     warn(mosaic_warning(setup, footage.filter()));
+    footage.warn_of(setup.params);
     std::unique_ptr<StreamFile> stream;
     if (output) {
         const py::dict figures = write_stream(footage, setup, tell, *output, force);
@@ -85,7 +89,7 @@ std::unique_ptr<StreamFile> emulate(Footage& footage, const SensorSetup& setup,
         file->unname();
         stream = std::make_unique<StreamFile>(std::move(file), figures);
     }
-    footage.pass_warnings_on();
+    footage.pass_warnings_on(&setup.params);
     return stream;
 }
 

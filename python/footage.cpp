@@ -1,13 +1,18 @@
 #include "python/footage.h"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <memory>
+#include <mutex>
 #include <utility>
 
+#include "capture/recording/footage_notes.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "decoder/motion/late_opencv.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
@@ -35,13 +40,42 @@ std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& opti
     return open_it();
 }
 
-FootageOptions options_of(const std::optional<std::string>& transfer, bool luminance,
-                          std::optional<double> max_value) {
-    FootageOptions options{.transfer = {}, .luminance = luminance, .max_value = max_value};
+Reading reading_of(const std::optional<std::string>& transfer, bool luminance,
+                   std::optional<double> max_value) {
+    Reading reading{.options = {.luminance = luminance, .max_value = max_value}};
     if (max_value && !(static_cast<float>(*max_value) > 0))
         throw InputError("max_value", fmt::format("{} is not above 0", *max_value));
-    if (transfer) options.transfer = value_in(kTransfers, *transfer, "transfer");
-    return options;
+    if (transfer) reading.options.transfer = value_in(kTransfers, *transfer, "transfer");
+    return reading;
+}
+
+void set_scale(Reading& reading, double scale) {
+    const auto factor = static_cast<float>(scale);
+    if (!(factor > 0 && std::isfinite(factor)))
+        throw InputError("scale", fmt::format("{} is no factor above 0", scale));
+    reading.options.scale = scale;
+}
+
+void set_rate(Reading& reading, std::optional<double> hz) {
+    if (hz && !(*hz >= kMinFramesHz && *hz <= kMaxFramesHz))
+        throw InputError("frames_hz",
+                         fmt::format("{} is not {} to {}", *hz, kMinFramesHz, kMaxFramesHz));
+    reading.options.frames_hz = hz;
+}
+
+void set_raw(Reading& reading, const std::optional<std::string>& text) {
+    if (text) reading.options.raw = parse_raw_format(*text);
+}
+
+void set_resampling(Reading& reading, const std::optional<std::string>& method) {
+    if (method) reading.resampling = value_in(kResamplings, *method, "resample");
+}
+
+/// The flow between frames; OpenCV computes one at a time.
+void flow_of(PlaneView<const float> from, PlaneView<const float> to, std::span<float> flow) {
+    static std::mutex one;
+    const std::scoped_lock lock(one);
+    dis_flow(from, to, flow);
 }
 
 }  // namespace
@@ -65,16 +99,16 @@ void warn(const std::string& text, int level) {
         throw py::error_already_set();
 }
 
-Footage::Footage(const py::object& video, const FootageOptions& options) : options_(options) {
+Footage::Footage(const py::object& video, Reading reading) : reading_(std::move(reading)) {
     if (const auto path = path_of(video)) {
         path_ = path->string();
-        files_ = open(*path, options, warnings_);
+        files_ = open(*path, reading_.options, warnings_);
     } else {
         if (py::module_::import("numpy.ma").attr("is_masked")(video).cast<bool>())
             throw InputError("video", "has masked values; give them light first: video.filled(0)");
         const auto array = py::array::ensure(video);
         if (!array) throw py::type_error("video: give an array or a path");
-        array_.emplace(array, options);
+        array_.emplace(array, reading_.options);
     }
 }
 
@@ -100,16 +134,45 @@ std::string Footage::name() const {
     return path_.empty() ? "video" : path_;
 }
 
-FootageOrigin Footage::origin() const {
-    if (path_.empty()) return {.name = "NumPy array", .reading = options_};
-    return origin_of(path_, options_, [] {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    });
+ResampledFootage Footage::resampled(double slot_us) {
+    return {FrameSource{.shape = shape(),
+                        .filter = filter(),
+                        .frames = slots(),
+                        .frames_hz = files_ ? files_->frames_hz() : std::nullopt,
+                        .next = [this] { return next(); }},
+            name(),
+            {.method = reading_.resampling,
+             .frames_hz = reading_.options.frames_hz,
+             .slot_us = slot_us,
+             .flow = flow_of,
+             .min_flow_side = kMinDisFlowSide}};
 }
 
-void Footage::pass_warnings_on() {
+FootageOrigin Footage::origin() const {
+    FootageOrigin origin{.name = "NumPy array", .reading = reading_.options};
+    if (!path_.empty())
+        origin = origin_of(path_, reading_.options, [] {
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        });
+    if (reading_.resampling) origin.resample = name_in(kResamplings, *reading_.resampling);
+    return origin;
+}
+
+void Footage::warn_of(const SensorParams& sensor) const {
+    if (!files_) return;
+    for (const std::string& text :
+         sensor_notes(path_, *files_, sensor, reading_.resampling.has_value()))
+        warn(text);
+}
+
+void Footage::pass_warnings_on(const SensorParams* sensor) {
     for (const std::string& text : std::exchange(warnings_, {})) warn(text);
     if (array_) warn(array_->warning());
+    if (!files_) return;
+    if (sensor == nullptr) return warn(recording_note(path_, *files_));
+    for (const std::string& text :
+         end_notes(path_, *files_, *sensor, reading_.resampling.has_value()))
+        warn(text);
 }
 
 namespace {
@@ -137,14 +200,13 @@ py::array load(Footage& footage, const py::object& tell) {
 
 void bind_footage(py::module_& module) {
     module.def("load", &load);
-    py::class_<Footage>(module, "Footage")
-        .def(py::init([](const py::object& video, const std::optional<std::string>& transfer,
-                         bool luminance, std::optional<double> max_value) {
-                 return std::make_unique<Footage>(video,
-                                                  options_of(transfer, luminance, max_value));
-             }),
-             py::arg("video"), py::arg("transfer") = py::none(), py::arg("luminance") = false,
-             py::arg("max_value") = py::none());
+    py::class_<Reading>(module, "Reading")
+        .def(py::init(&reading_of))
+        .def("set_scale", &set_scale)
+        .def("set_raw", &set_raw)
+        .def("set_rate", &set_rate)
+        .def("set_resampling", &set_resampling);
+    py::class_<Footage>(module, "Footage").def(py::init<const py::object&, Reading>());
 }
 
 }  // namespace stipple::python

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "capture/recording/read_ahead.h"
+#include "capture/recording/resampled_footage.h"
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "io/footage_reader.h"
+#include "io/frame_resampler.h"
 #include "readout/provenance.h"
+#include "sensor_model/sensor_params.h"
 
 namespace stipple::python {
 
@@ -50,11 +52,17 @@ class ArrayFrames {
     std::string warning_;
 };
 
+/// How footage is read, and how its frames become slots.
+struct Reading {
+    FootageOptions options;
+    std::optional<Resampling> resampling = {};  ///< none: each frame is a slot
+};
+
 /// Light that Python names: an array, or a path to what the program reads.
 class Footage {
   public:
     /// With the GIL. \throws InputError as ArrayFrames or ReadAhead, FileError.
-    Footage(const pybind11::object& video, const FootageOptions& options);
+    Footage(const pybind11::object& video, Reading reading);
     ~Footage() = default;
     Footage(const Footage&) = delete;
     Footage& operator=(const Footage&) = delete;
@@ -65,15 +73,20 @@ class Footage {
     /// The next frame, order (plane, row, col), valid until the next call, or empty at the end.
     /// Without the GIL.
     std::span<const float> next();
+    /// The frames as slots of this length. \throws InputError as ResampledFootage.
+    [[nodiscard]] ResampledFootage resampled(double slot_us);
     /// The origin of the light, for the provenance of a stream. With the GIL: reads files whole.
     [[nodiscard]] FootageOrigin origin() const;
-    /// Has Python warn of what the reader warns of. With the GIL.
-    void pass_warnings_on();
+    /// Has Python warn of what does not suit the sensor. Before the first frame, with the GIL.
+    void warn_of(const SensorParams& sensor) const;
+    /// Has Python warn of what the reader warns of, and of the faults of a recording; with a sensor
+    /// also of its frame rate. After the last frame, with the GIL.
+    void pass_warnings_on(const SensorParams* sensor = nullptr);
     /// The path, or "video".
     [[nodiscard]] std::string name() const;
 
   private:
-    FootageOptions options_;
+    Reading reading_;
     std::string path_;  ///< empty of an array
     std::vector<std::string> warnings_;
     std::optional<ArrayFrames> array_;

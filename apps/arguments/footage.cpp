@@ -43,8 +43,6 @@ void add_max_value(Command& command, std::optional<double>& max_value) {
 
 void add_resample_arguments(Command& command, std::optional<Resampling>& method,
                             FootageOptions& options) {
-    constexpr double kMinHz = 0.001;
-    constexpr double kMaxHz = 1e9;
     command
         .add_choice("--resample", method, kResamplings,
                     "make slots of frames of another rate: hold the frame before, blend light, or "
@@ -53,7 +51,7 @@ void add_resample_arguments(Command& command, std::optional<Resampling>& method,
         .type_name("METHOD");
     command.add_option("--frames-hz", options.frames_hz, "frame rate of the footage")
         .default_text("that in its file")
-        .check(number_check(kMinHz, kMaxHz))
+        .check(number_check(kMinFramesHz, kMaxFramesHz))
         .type_name("HZ");
     command.add_option("--scale", options.scale, "multiply light by this: the exposure")
         .shows_default()

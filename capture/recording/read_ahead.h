@@ -45,6 +45,9 @@ class ReadAhead {
     /// \throws InputError as `next`.
     void skip(int frames);
 
+    /// Whether `next` was empty.
+    [[nodiscard]] bool ended() const { return !reading_.valid(); }
+
     /// The recording; null of other footage. Not while a frame is read: after `next` was empty.
     [[nodiscard]] const RecordingFootage* recording() const;
 

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <limits>
+#include <utility>
 
 #include "core/error.h"
 
@@ -12,12 +10,21 @@ namespace stipple {
 
 ResampledFootage::ResampledFootage(ReadAhead& footage, const std::string& name,
                                    const SlotOptions& options)
-    : footage_(footage) {
+    : ResampledFootage({.shape = footage.shape(),
+                        .filter = footage.filter(),
+                        .frames = footage.slots(),
+                        .frames_hz = footage.frames_hz(),
+                        .next = [&footage] { return footage.next(); }},
+                       name, options) {}
+
+ResampledFootage::ResampledFootage(FrameSource source, const std::string& name,
+                                   const SlotOptions& options)
+    : source_(std::move(source)) {
     if (!options.method) return;
-    const auto hz = options.frames_hz ? options.frames_hz : footage.frames_hz();
+    const auto hz = options.frames_hz ? options.frames_hz : source_.frames_hz;
     if (!hz)
         throw InputError(name, "does not declare its frame rate; --resample needs --frames-hz");
-    if (options.method == Resampling::kFlow && footage.filter() != ColourFilter::kNone)
+    if (options.method == Resampling::kFlow && source_.filter != ColourFilter::kNone)
         throw InputError(name,
                          "is the mosaic of a colour filter array, whose colours --resample flow "
                          "would mix; use blend");
@@ -29,23 +36,21 @@ ResampledFootage::ResampledFootage(ReadAhead& footage, const std::string& name,
                 "has {:.4g} frames/s, which are {:.4g} a slot of {:g} us; --resample takes {:g} "
                 "to {:g}, so check the rate (--frames-hz) and sensor.slot_us",
                 *hz, frames_per_slot_, options.slot_us, kMinFramesPerSlot, kMaxFramesPerSlot));
-    resampler_.emplace(footage.shape(),
+    resampler_.emplace(source_.shape,
                        ResamplingOptions{.method = *options.method,
                                          .frames_per_slot = frames_per_slot_,
                                          .flow = options.flow,
                                          .min_flow_side = options.min_flow_side},
-                       [&footage] { return footage.next(); });
+                       source_.next);
 }
 
-std::optional<int> ResampledFootage::slots() const {
-    const auto frames = footage_.slots();
-    if (!frames || !resampler_) return frames;
-    return static_cast<int>(std::min<std::int64_t>(resampled_slots(*frames, frames_per_slot_),
-                                                   std::numeric_limits<int>::max()));
+std::optional<std::int64_t> ResampledFootage::slots() const {
+    if (!source_.frames || !resampler_) return source_.frames;
+    return resampled_slots(*source_.frames, frames_per_slot_);
 }
 
 std::span<const float> ResampledFootage::next() {
-    return resampler_ ? resampler_->next() : footage_.next();
+    return resampler_ ? resampler_->next() : source_.next();
 }
 
 void ResampledFootage::skip(int slots) {

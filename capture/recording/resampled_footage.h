@@ -1,10 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "capture/recording/read_ahead.h"
+#include "core/colour_filter.h"
+#include "core/geometry.h"
 #include "io/frame_resampler.h"
 
 namespace stipple {
@@ -18,15 +21,26 @@ struct SlotOptions {
     int min_flow_side = 0;                  ///< as in ResamplingOptions
 };
 
-/// Footage or a recording as slots of a sensor.
+/// Frames, and what is known of them before they are read.
+struct FrameSource {
+    FrameShape shape;
+    ColourFilter filter = ColourFilter::kNone;
+    std::optional<std::int64_t> frames = {};
+    std::optional<double> frames_hz = {};
+    std::function<std::span<const float>()> next;  ///< as ReadAhead::next
+};
+
+/// Frames as slots of a sensor.
 class ResampledFootage {
   public:
-    /// `footage` must outlive it; messages call it `name`. \throws InputError if a method needs the
-    /// frame rate and it is unknown or out of range, or if kFlow would mix the colours of a mosaic.
+    /// Messages call the source `name`. \throws InputError if a method needs the frame rate and it
+    /// is unknown or out of range, or if kFlow would mix the colours of a mosaic.
+    ResampledFootage(FrameSource source, const std::string& name, const SlotOptions& options);
+    /// The same of footage or a recording, which must outlive it.
     ResampledFootage(ReadAhead& footage, const std::string& name, const SlotOptions& options);
 
     /// Number of slots, if the footage declares its number of frames.
-    [[nodiscard]] std::optional<int> slots() const;
+    [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// The next slot, order (plane, row, col), valid until the next call, or an empty span at the
     /// end. \throws as ReadAhead::next and the flow.
@@ -35,7 +49,7 @@ class ResampledFootage {
     void skip(int slots);
 
   private:
-    ReadAhead& footage_;
+    FrameSource source_;
     double frames_per_slot_ = 1;
     std::optional<FrameResampler> resampler_;  ///< none: each frame is a slot
 };

@@ -92,13 +92,19 @@ def load(
     transfer: Optional[str] = None,
     luminance: bool = False,
     max_value: Optional[float] = None,
+    raw: Optional[str] = None,
+    scale: float = 1.0,
     progress: Tell = None,
 ) -> npt.NDArray[np.float32]:
     """Footage as an array of linear light: what "stipple emulate" would emulate (its option --truth).
 
-    video, transfer, luminance, max_value, progress: as for `emulate`. The array is as that of `decode`.
+    video, transfer, luminance, max_value, raw, scale, progress: as for `emulate`. The array is as that of
+    `decode`.
     """
-    return _stipple.load(_stipple.Footage(video, transfer, luminance, max_value), progress)
+    reading = _stipple.Reading(transfer, luminance, max_value)
+    reading.set_raw(raw)
+    reading.set_scale(scale)
+    return _stipple.load(_stipple.Footage(video, reading), progress)
 
 
 def emulate(
@@ -113,6 +119,10 @@ def emulate(
     transfer: Optional[str] = None,
     luminance: bool = False,
     max_value: Optional[float] = None,
+    raw: Optional[str] = None,
+    scale: float = 1.0,
+    resample: Optional[str] = None,
+    frames_hz: Optional[float] = None,
     threads: int = 0,
     progress: Tell = None,
 ) -> Stream:
@@ -132,14 +142,24 @@ def emulate(
         "auto": as the file declares.
     luminance: reduce colour to Rec. 709 luminance.
     max_value: clip light to this value first.
+    raw: read a file as frames without a header, "640x480:mono12p" (docs/footage.md).
+    scale: multiply light by this, before it is clipped.
+    resample: make slots of frames of another rate, "hold", "blend" or "flow"; None: each frame is a slot.
+    frames_hz: frames per second of the video; by default what its file declares.
     threads: 0 means all cores. The bytes do not depend on it.
     progress: called some ten times a second as progress(slots done, slots in all or None). What it raises ends
         the call, as Ctrl-C does; nothing is written then.
 
     The same arguments give the same bytes. A stream of a path is that of the program; of an array its header
-    does not name the footage. Raises ValueError, or OSError for files.
+    does not name the footage. Raises ValueError, or OSError for files. Footage whose frame rate, exposure time or
+    black level does not suit the sensor is a UserWarning, and so are missing frames and damage of a recording.
     """
-    footage = _stipple.Footage(video, transfer, luminance, max_value)
+    reading = _stipple.Reading(transfer, luminance, max_value)
+    reading.set_raw(raw)
+    reading.set_scale(scale)
+    reading.set_resampling(resample)
+    reading.set_rate(frames_hz)
+    footage = _stipple.Footage(video, reading)
     setup = _stipple.Setup(footage, sensor, schedule, seed, overrun)
     with _stipple.Threads(threads):
         return _stipple.emulate(footage, setup, output, force, progress)
@@ -191,6 +211,7 @@ def compare(
     until: Optional[int] = None,
     transfer: Optional[str] = None,
     luminance: bool = False,
+    raw: Optional[str] = None,
     pu21_ssim: bool = False,
     pixels_per_degree: Optional[float] = None,
     threads: int = 0,
@@ -199,8 +220,8 @@ def compare(
     """Quality of a video against its reference, as "stipple compare" does; `frames` of the result has that
     of each frame. Of videos of unequal length the frames that both have are compared, with a warning.
 
-    result, reference: videos as for `emulate`, of the same shape. `transfer` and `max_value` are those of
-        "stipple compare": transfer is of the reference.
+    result, reference: videos as for `emulate`, of the same shape. `transfer`, `raw` and `max_value` are those
+        of "stipple compare": transfer and raw are of the reference.
     margin: frames left out at each end.
     max_value: clip the light of both to it first.
     peak: light of which PSNR and PU21-PSNR are.
@@ -210,8 +231,10 @@ def compare(
     pu21_ssim: compute it too.
     pixels_per_degree: pixels in a degree of visual angle, to compute pu21_csf_psnr_db too.
     """
-    a = _stipple.Footage(result, "linear", luminance)
-    b = _stipple.Footage(reference, transfer, luminance)
+    a = _stipple.Footage(result, _stipple.Reading("linear", luminance, None))
+    reading = _stipple.Reading(transfer, luminance, None)
+    reading.set_raw(raw)
+    b = _stipple.Footage(reference, reading)
     comparison = _stipple.Comparison(
         margin, max_value, peak, cd_per_unit, until, pu21_ssim, pixels_per_degree
     )

@@ -1,0 +1,53 @@
+#include "capture/recording/footage_notes.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "capture/level_warning.h"
+#include "capture/rate_warning.h"
+#include "core/joined.h"
+
+namespace stipple {
+namespace {
+
+void add(std::vector<std::string>& notes, std::string note) {
+    if (!note.empty()) notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+std::vector<std::string> sensor_notes(const std::string& name, const ReadAhead& footage,
+                                      const SensorParams& sensor, bool resampled) {
+    std::vector<std::string> notes;
+    const auto hz = footage.frames_hz();
+    if (hz && !resampled) add(notes, video_rate_warning(name, *hz, sensor));
+    if (const auto exposure_us = footage.exposure_us())
+        add(notes, exposure_warning(name, *exposure_us, sensor));
+    add(notes, black_level_warning(name, footage.traits(), sensor));
+    return notes;
+}
+
+std::string recording_note(const std::string& name, const ReadAhead& footage) {
+    if (!footage.ended() || footage.recording() == nullptr) return {};
+    const RecordingFootage& recording = *footage.recording();
+    auto faults = recording.recording().faults();
+    const std::uint64_t missing = recording.missing_frames();
+    if (missing > 0)
+        faults.push_back(
+            fmt::format("has {} missing or incomplete frame{} ({} replaced by the previous frame)",
+                        missing, missing == 1 ? "" : "s", recording.held_slots()));
+    if (faults.empty()) return {};
+    return fmt::format("{}: {}; \"stipple capture replay\" lists the places", name, joined(faults));
+}
+
+std::vector<std::string> end_notes(const std::string& name, const ReadAhead& footage,
+                                   const SensorParams& sensor, bool resampled) {
+    std::vector<std::string> notes;
+    add(notes, recording_note(name, footage));
+    if (!resampled && footage.ended() && footage.recording() != nullptr)
+        add(notes, recording_rate_warning(name, footage.recording()->rate(), sensor));
+    return notes;
+}
+
+}  // namespace stipple
