@@ -57,7 +57,7 @@ function loadText(run) {
   if (overruns) text.push(`The readout of ${counted(overruns, 'slot')} took longer than the slot.`);
   const dropped = loads.dropped.filter(Boolean).length;
   if (dropped) text.push(`Rows that did not fit into their slot were dropped in ${counted(dropped, 'slot')}.`);
-  text.push(loads.clocks ? `Slowest step of the slots: ${[...new Set(loads.clocks.limit)].join(', ').replace('_', ' ')}.`
+  text.push(loads.clocks ? `Slowest step of the slots: ${[...new Set(loads.clocks.limit)].join(', ').replaceAll('_', ' ')}.`
                          : 'The sensor has no clocks ([timing]), so the time of the readout is not known.');
   return text.join(' ');
 }

@@ -14,17 +14,19 @@ function viewOf(side) {
 
 async function drawSide(side) {
   const number = ++drawing[side];
-  const image = await viewOf(side).image(state.slot, state.stops);
-  if (number !== drawing[side] || !image) return;
-  element(`picture-${side}`).getContext('2d', {willReadFrequently: true}).putImageData(image, 0, 0);
+  const view = viewOf(side);
+  const image = await view.image(state.slot, state.stops);
+  if (number !== drawing[side]) return;
+  const context = element(`picture-${side}`).getContext('2d', {willReadFrequently: true});
+  context.fillStyle = `rgb(${kNoSample.join()})`;
+  if (image) context.putImageData(image, 0, 0);
+  else context.fillRect(0, 0, area.cols, area.rows); // such as after the end of the truth
+  element(`name-${side}`).textContent = image ? view.name : `${view.name}: no picture of this slot`;
   element(`picture-${side}`).dataset.slot = state.slot;
 }
 
-function showNames() {
-  for (const side of ['a', 'b']) {
-    element(`name-${side}`).textContent = viewOf(side).name;
-    element(`view-${side}`).value = state[side];
-  }
+function showChoice() {
+  for (const side of ['a', 'b']) element(`view-${side}`).value = state[side];
 }
 
 function showScale() {
@@ -142,7 +144,7 @@ function setUpViewer() {
   listenToControls();
   whenever(['slot', 'stops', 'a'], () => drawSide('a'));
   whenever(['slot', 'stops', 'b'], () => drawSide('b'));
-  whenever(['a', 'b'], showNames);
+  whenever(['a', 'b'], showChoice);
   whenever(['a', 'b'], showOneOrTwo);
   whenever(['a', 'b', 'stops'], showScale);
   whenever(['divider'], showDivider);

@@ -74,6 +74,18 @@ class ReportPageTest(BrowserTest):
             self.assertEqual(self.element("name-a").text, name)
         self.assertEqual(len(set(shown)), len(names))
 
+    def test_a_slot_after_the_end_of_the_truth_has_no_picture_of_it(self):
+        np.save(self.folder / "begin.npy", self.array("scene.npy")[:SLOTS // 2])
+        self.open_page("random.stipple", "--truth", "begin.npy", "--method", "naive")
+        last, first = SLOTS // 2 - 1, SLOTS // 2
+        self.script("chooseSlot(arguments[0])", last)
+        self.assertGreater(self.picture("b", last).max(), 0)
+        self.assertEqual(self.element("name-b").text, "truth")
+        self.script("chooseSlot(arguments[0])", first)
+        self.assertEqual(np.unique(self.picture("b", first)).size, 3)  # of one colour, not the one of the slot before
+        self.assertEqual(self.element("name-b").text, "truth: no picture of this slot")
+        self.assertGreater(self.picture("a", first).max(), 0)
+
     def test_the_divider_moves_by_pointer_and_keys(self):
         self.open_page()
         divider = self.element("divider")
