@@ -104,10 +104,10 @@ Evaluation evaluate_series(const Series& series, const std::string& where, const
     return *evaluation;
 }
 
-py::dict characterize(const py::object& chosen, std::uint64_t seed, const py::object& tell) {
+py::dict characterize(const py::object& chosen, const py::object& seed, const py::object& tell) {
     const ChosenSensor sensor = sensor_of(chosen);
     const SensorParams& params = sensor.description.params;
-    FlatField field(params, seed);
+    FlatField field(params, whole_in(seed, "seed"));
     Series series{.bits = params.bit_depth,
                   .cols = FlatField::kShape.cols,
                   .rows = FlatField::kShape.rows,

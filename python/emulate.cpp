@@ -38,9 +38,9 @@ namespace {
 
 /// A sensor with its schedule for some footage.
 SensorSetup set_up_for(const Footage& footage, const py::object& sensor, const py::object& schedule,
-                       std::uint64_t seed, const std::string& overrun) {
+                       const py::object& seed, const std::string& overrun) {
     ChosenSensor chosen = sensor_of(sensor);
-    chosen.choice.seed = seed;
+    chosen.choice.seed = whole_in(seed, "seed");
     chosen.choice.overrun = overrun_policy(overrun);
     return set_up(chosen, schedule, footage.shape(), footage.filter());
 }

@@ -16,6 +16,15 @@ namespace stipple::python {
 namespace fs = std::filesystem;
 namespace {
 
+/// How Python shows a value, of values that are long the begin.
+std::string short_text(const py::object& value) {
+    constexpr py::ssize_t kMaxLetters = 80;
+    const py::str text = py::repr(value);
+    const py::object begin = text[py::slice(0, kMaxLetters, 1)];
+    const bool is_whole = begin.equal(text);
+    return std::string(py::str(begin)) + (is_whole ? "" : " ...");
+}
+
 PyObject* class_of(int number) {
     if (number == ENOENT) return PyExc_FileNotFoundError;
     if (number == EACCES) return PyExc_PermissionError;
@@ -74,8 +83,33 @@ fs::path path_in(const py::object& value, const char* argument) {
         return value.cast<fs::path>();
     } catch (const py::cast_error&) {
         throw py::type_error(fmt::format("{}: {} is neither a text nor a path of a file", argument,
-                                         std::string(py::repr(value))));
+                                         short_text(value)));
     }
+}
+
+std::uint64_t whole_in(const py::object& value, const char* argument) {
+    const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+    if (!index) {
+        PyErr_Clear();
+        throw py::type_error(fmt::format("{}: {} is no whole number", argument, short_text(value)));
+    }
+    const unsigned long long number = PyLong_AsUnsignedLongLong(index.ptr());
+    if (PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw InputError(argument, fmt::format("{} is outside 0..2^64 - 1", short_text(index)));
+    }
+    return number;
+}
+
+std::pair<std::uint64_t, std::uint64_t> size_in(const py::object& value, const char* argument) {
+    const bool is_list = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
+    if (!is_list || py::len(value) != 2)
+        throw py::type_error(
+            fmt::format("{}: {} is not (rows, columns)", argument, short_text(value)));
+    const auto side = [&](py::size_t i) {
+        return whole_in(py::reinterpret_borrow<py::sequence>(value)[i], argument);
+    };
+    return {side(0), side(1)};
 }
 
 void check_name(const fs::path& file, const OutputName& name) {

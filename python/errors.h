@@ -2,6 +2,7 @@
 
 #include <pybind11/pytypes.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,14 @@ namespace stipple::python {
 
 /// \throws TypeError naming `argument` if it is neither a text nor a path, or holds a NUL.
 [[nodiscard]] std::filesystem::path path_in(const pybind11::object& value, const char* argument);
+
+/// The whole number of an argument. \throws TypeError naming `argument` if it is none, InputError
+/// if it is below 0 or above 2^64 - 1.
+[[nodiscard]] std::uint64_t whole_in(const pybind11::object& value, const char* argument);
+
+/// The same of (rows, columns).
+[[nodiscard]] std::pair<std::uint64_t, std::uint64_t> size_in(const pybind11::object& value,
+                                                              const char* argument);
 
 /// A file that cannot be opened or created.
 class FileError : public std::runtime_error {

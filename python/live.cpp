@@ -144,15 +144,15 @@ std::unique_ptr<StreamFile> live(const CameraTask& task, const LiveTask& live,
 
 void bind_live(py::module_& module) {
     py::class_<LiveTask>(module, "LiveTask")
-        .def(py::init([](const py::object& sensor, const py::object& schedule, std::uint64_t seed,
-                         const std::string& overrun, double black_level_dn,
+        .def(py::init([](const py::object& sensor, const py::object& schedule,
+                         const py::object& seed, const std::string& overrun, double black_level_dn,
                          std::size_t queue_frames, double late_after_slots,
                          std::optional<PreviewTask> preview) {
             if (!(late_after_slots > 0))
                 throw InputError("late_after", fmt::format("{} is not above 0", late_after_slots));
             LiveTask task{sensor_of(sensor),      schedule,         black_level_dn,
                           queue_of(queue_frames), late_after_slots, std::move(preview)};
-            task.sensor.choice.seed = seed;
+            task.sensor.choice.seed = whole_in(seed, "seed");
             task.sensor.choice.overrun = overrun_policy(overrun);
             return task;
         }));

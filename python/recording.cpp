@@ -167,7 +167,10 @@ void bind_recording(py::module_& module) {
 Iterating reads frame by frame; damage costs its own frames and is a UserWarning at the end. It is
 footage, too: stipple.emulate(recording).)")
         .def_static(
-            "open", [](const fs::path& path) { return open_recording(path, py::none()); },
+            "open",
+            [](const py::object& path) {
+                return open_recording(path_in(path, "path"), py::none());
+            },
             py::arg("path"),
             "Opens a .strec file. Raises OSError if it cannot be read, ValueError if it is no\n"
             "recording.")

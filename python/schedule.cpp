@@ -38,15 +38,16 @@ struct ExposureRow {
 };
 
 ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
-                               std::pair<std::uint64_t, std::uint64_t> size, std::uint64_t seed,
+                               const py::object& chosen_size, const py::object& seed,
                                const py::object& sensor) {
+    const auto size = size_in(chosen_size, "size");
     ColumnAddressing addressing;
     if (!sensor.is_none())
         if (const auto timing = sensor_of(sensor).description.timing)
             addressing = timing->addressing;
     ChosenSchedule schedule{.choice = {.schedule = path_in(name, "schedule").string(),
                                        .schedule_settings = settings_of(settings),
-                                       .seed = seed},
+                                       .seed = whole_in(seed, "seed")},
                             .shape = checked_shape(size.first, size.second, 1, "size"),
                             .made = {"", {}, ExposureSchedule(1, 1, 1, {0, 0}, {})}};
     const auto make = [&] { return set_up_schedule(schedule.choice, schedule.shape, addressing); };

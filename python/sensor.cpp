@@ -32,6 +32,19 @@ void bind_numbers(py::class_<ChosenSensor>& sensor) {
         "Exposures of a pixel that can be under way at once.");
 }
 
+/// A value of a setting as TOML writes it. \throws TypeError naming `key` if TOML has none such.
+std::string setting_text(py::object value, const py::handle& key) {
+    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+    if (py::hasattr(value, "tolist")) value = value.attr("tolist")();
+    if (py::isinstance<py::float_>(value)) return py::repr(value);  // JSON has no nan and inf
+    try {
+        return py::module_::import("json").attr("dumps")(value).cast<std::string>();
+    } catch (py::error_already_set&) {
+        throw py::type_error(fmt::format("setting {}: {} is no value of one",
+                                         key.cast<std::string>(), std::string(py::repr(value))));
+    }
+}
+
 std::string settings_text(const SensorChoice& choice) {
     std::string text;
     for (const std::string& setting : choice.settings) text += ", " + setting;
@@ -41,19 +54,13 @@ std::string settings_text(const SensorChoice& choice) {
 }  // namespace
 
 std::vector<std::string> settings_of(const py::dict& settings) {
-    const auto text_of = [](py::object value) {
-        if (py::isinstance<py::str>(value)) return value;
-        if (py::hasattr(value, "tolist")) value = value.attr("tolist")();
-        return py::object(py::module_::import("json").attr("dumps")(value));
-    };
     std::vector<std::string> texts;
     for (const auto& [key, value] : settings) {
         if (!py::isinstance<py::str>(key))
             throw py::type_error(
                 fmt::format("key {} of a setting is no text", std::string(py::repr(key))));
-        texts.push_back(
-            fmt::format("{}={}", key.cast<std::string>(),
-                        text_of(py::reinterpret_borrow<py::object>(value)).cast<std::string>()));
+        texts.push_back(fmt::format("{}={}", key.cast<std::string>(),
+                                    setting_text(py::reinterpret_borrow<py::object>(value), key)));
     }
     return texts;
 }

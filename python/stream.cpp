@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "python/bindings.h"
+#include "python/errors.h"
 #include "python/figures_dict.h"
 #include "python/schedule.h"
 #include "stream/stream_figures.h"
@@ -46,7 +47,9 @@ void bind_stream(py::module_& module) {
     py::class_<StreamFile>(module, "Stream", "A sample stream: what leaves the chip, in a file.")
         .def_static(
             "open",
-            [](const std::filesystem::path& path) { return std::make_unique<StreamFile>(path); },
+            [](const py::object& path) {
+                return std::make_unique<StreamFile>(path_in(path, "path"));
+            },
             py::arg("path"),
             "Opens a .stipple file. Raises OSError if it cannot be read, ValueError if it is "
             "no\nstream.")

@@ -25,6 +25,7 @@ namespace {
 struct SampleRow {
     std::uint16_t row, col;
     std::uint8_t plane, exposure_slots, light_slots;
+    std::uint8_t zero;  ///< no field, but the same bytes for the same samples
     std::uint16_t dn;
 };
 
@@ -39,7 +40,7 @@ void add_rows(const SamplePacket& packet, const StreamHeader& header,
                                  rows.push_back({static_cast<std::uint16_t>(row),
                                                  static_cast<std::uint16_t>(col),
                                                  static_cast<std::uint8_t>(plane), pixel.span_slots,
-                                                 pixel.light_slots, *dn++});
+                                                 pixel.light_slots, 0, *dn++});
                          });
 }
 

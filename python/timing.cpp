@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "python/bindings.h"
+#include "python/errors.h"
 #include "python/figures_dict.h"
 #include "python/schedule.h"
 #include "python/sensor.h"
@@ -16,23 +17,25 @@
 namespace stipple::python {
 namespace {
 
-using Size = std::optional<std::pair<std::uint64_t, std::uint64_t>>;  ///< rows, columns
-
 const ReadoutTiming& timing_of(const ChosenSensor& sensor) {
     if (!sensor.description.timing)
         throw InputError(fmt::format("sensor \"{}\"", sensor.choice.sensor), no_timing_text());
     return *sensor.description.timing;
 }
 
-py::dict timing(const py::object& chosen_sensor, const py::object& schedule, const Size& size,
-                std::uint64_t seed) {
+/// `size` is None or (rows, columns).
+py::dict timing(const py::object& chosen_sensor, const py::object& schedule, const py::object& size,
+                const py::object& seed) {
     ChosenSensor sensor = sensor_of(chosen_sensor);
     const ReadoutTiming& clocks = timing_of(sensor);
-    sensor.choice.seed = seed;
-    FrameShape shape = size ? checked_shape(size->first, size->second, 1, "size")
-                            : FrameShape{.rows = clocks.rows, .cols = clocks.cols};
-    if (!size && py::isinstance<ChosenSchedule>(schedule))
+    sensor.choice.seed = whole_in(seed, "seed");
+    FrameShape shape{.rows = clocks.rows, .cols = clocks.cols};
+    if (!size.is_none()) {
+        const auto [rows, cols] = size_in(size, "size");
+        shape = checked_shape(rows, cols, 1, "size");
+    } else if (py::isinstance<ChosenSchedule>(schedule)) {
         shape = schedule.cast<const ChosenSchedule&>().shape;
+    }
     const SensorSetup setup = set_up(sensor, schedule, shape, ColourFilter::kNone);
     const SlotBudget budget{slot_clocks(clocks, setup.params.slot_us), OverrunPolicy::kStretch};
     ReadoutCost cost(clocks, setup.schedule.schedule, shape, budget);

@@ -75,10 +75,36 @@ class ChoiceTest(ProgramTest):
             with self.subTest(name), self.assertRaisesRegex(ValueError, "name: give at most 64 bytes"):
                 stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), 6, name=name)
 
+    def test_whole_numbers_have_their_range(self):
+        light = np.zeros((2, 8, 8), np.float32)
+        calls = {"emulate": lambda seed: stipple.emulate(light, seed=seed), "Schedule": lambda seed: stipple.Schedule(seed=seed),
+                 "timing": lambda seed: stipple.timing("lux1310", seed=seed),
+                 "characterize": lambda seed: stipple.characterize(seed=seed),
+                 "live": lambda seed: stipple.capture.live("replay:a.npy", seed=seed)}
+        for seed in (-1, 2**64):
+            for name, call in calls.items():
+                with self.subTest(name), self.assertRaisesRegex(ValueError, rf"seed: {seed} is outside 0\.\.2\^64 - 1"):
+                    call(seed)
+        self.assertEqual(stipple.emulate(light, seed=np.uint64(2**64 - 1)).slots(), 2)
+        with self.assertRaisesRegex(ValueError, "size: -1 is outside"):
+            stipple.Schedule(size=(-1, 4))
+
+    def test_numbers_that_are_none_are_told_as_such(self):
+        for value in (float("nan"), np.float32("inf")):
+            with self.assertRaisesRegex(ValueError, "read_noise_e: (?!.*is text)"):
+                stipple.Sensor("paper", {"read_noise_e": value})
+
     def test_what_is_no_name_is_a_TypeError(self):
         for message, call in {"sensor: 3 is neither": lambda: stipple.Sensor(3),
                               "schedule: None is neither": lambda: stipple.Schedule(None),
                               "key 1 of a setting": lambda: stipple.Sensor("paper", {1: 2}),
+                              "setting read_noise_e: <object": lambda: stipple.Sensor("paper", {"read_noise_e": object()}),
+                              r"(?s)path: array\(.* [.]{3} is neither": lambda: stipple.decode(np.zeros((9, 9, 9))),
+                              "path: 3 is neither": lambda: stipple.Recording.open(3),
+                              "seed: 1.5 is no whole": lambda: stipple.emulate(np.zeros((2, 8, 8)), seed=1.5),
+                              "seed: 'a' is no whole": lambda: stipple.Schedule(seed="a"),
+                              "size: '8x8' is not": lambda: stipple.Schedule(size="8x8"),
+                              "size: 1.5 is no whole": lambda: stipple.timing("lux1310", size=(8, 1.5)),
                               r"video: 'a\\x00": lambda: stipple.load("a\0")}.items():
             with self.subTest(message), self.assertRaisesRegex(TypeError, message):
                 call()

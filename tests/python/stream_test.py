@@ -8,6 +8,12 @@ from program import ProgramTest
 
 
 class StreamTest(ProgramTest):
+    def test_the_same_samples_are_the_same_bytes(self):
+        light = np.random.default_rng(1).random((20, 9, 13), dtype=np.float32)
+        first, second = stipple.emulate(light), stipple.emulate(light)
+        for slot in range(20):
+            self.assertEqual(first.samples(slot).tobytes(), second.samples(slot).tobytes())
+
     def test_header_and_counts_are_those_of_info(self):
         self.write_array("light.npy", np.full((20, 8, 12, 3), 0.3))
         for options in ((), ("--sensor", "t6"), ("--sensor", "nd_mosaic", "--schedule", "nd_mosaic")):

@@ -77,7 +77,8 @@ TEST_F(FootageNotesTest, AnotherRateIsToldUnlessItIsResampled) {
 
 TEST_F(FootageNotesTest, OtherFootageIsToldByWhatItDeclares) {
     std::ofstream(folder_ / "a.raw") << std::string(12, 'x');
-    const ReadAhead footage(folder_ / "a.raw", {.raw = parse_raw_format("2x3:mono8:black=5:hz=50")},
+    const ReadAhead footage(folder_ / "a.raw",
+                            {.max_value = {}, .raw = parse_raw_format("2x3:mono8:black=5:hz=50")},
                             [](const std::string&) {});
     EXPECT_THAT(sensor_notes("a", footage, sensor_, false), ElementsAre(HasSubstr("50 frames/s")));
     EXPECT_THAT(sensor_notes("a", footage, sensor_, true), IsEmpty());
