@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +11,7 @@
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/standard_error.h"
+#include "apps/standard_output.h"
 #include "apps/subcommands.h"
 #include "capture/serve/gige_server.h"
 #include "core/version.h"
@@ -70,7 +72,7 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     settings.version = version();
     JsonFile json(run);
     GigeServer server(*source, settings);
-    fmt::print("{}\n", ready_text(*source, settings));
+    print_text(ready_text(*source, settings) + "\n");
     std::fflush(stdout);
     ClientReport clients(server);
     std::string said;

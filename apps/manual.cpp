@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <string>
 #include <string_view>
@@ -9,6 +7,7 @@
 #include "apps/report/manual_page.h"
 #include "apps/report/markdown_page.h"
 #include "apps/report/text_file.h"
+#include "apps/standard_output.h"
 #include "apps/subcommands.h"
 #include "core/version.h"
 #include "io/pending_output.h"
@@ -41,7 +40,7 @@ void write_manual(const ManualOptions& options, const RunOptions& run) {
 }
 
 void print_completion(const ManualOptions& options, const RunOptions&) {
-    fmt::print("{}", completion(options.describe(), options.argument));
+    print_text(completion(options.describe(), options.argument));
 }
 
 }  // namespace

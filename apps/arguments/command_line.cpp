@@ -12,6 +12,7 @@
 
 #include "apps/arguments/usage_problem.h"
 #include "apps/standard_error.h"
+#include "apps/standard_output.h"
 #include "capture/recording/replay_camera.h"
 #include "core/suggestion.h"
 
@@ -326,9 +327,9 @@ CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
             throw CLI::ValidationError(e.option(), e.what());
         }
     } catch (const CLI::CallForHelp&) {
-        fmt::print("{}", app_->help());
+        print_text(app_->help());
     } catch (const CLI::CallForVersion& version) {
-        fmt::print("{}\n", version.what());
+        print_text(version.what() + std::string("\n"));
     } catch (const CLI::ParseError& e) {
         say_error(usage_problem(*app_, words, e));
         return Parsed::kWrong;

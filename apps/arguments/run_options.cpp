@@ -1,12 +1,9 @@
 #include "apps/arguments/run_options.h"
 
-#include <fmt/format.h>
-
-#include <cstdio>
-
 #include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
 #include "apps/standard_error.h"
+#include "apps/standard_output.h"
 #include "core/memory_limit.h"
 #include "stream/plain_text.h"
 
@@ -15,7 +12,7 @@ namespace stipple {
 void RunOptions::say(std::string_view text) const {
     if (quiet || json == "-") return;
     clear_bar();
-    fmt::print("{}\n", terminal_text(text));
+    print_text(terminal_text(text) + "\n");
 }
 
 void add_run_options(Command& command, RunOptions& run) {

@@ -1,12 +1,10 @@
 #include "apps/report/json_file.h"
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/report/text_file.h"
+#include "apps/standard_output.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -20,7 +18,7 @@ void JsonFile::write(const nlohmann::ordered_json& figures) {
     // Bytes of a damaged file that are no UTF-8 must not stop the report.
     const std::string text =
         terminal_text(figures.dump(2, ' ', false, ordered_json::error_handler_t::replace)) + "\n";
-    if (to_stdout_) fmt::print("{}", text);
+    if (to_stdout_) print_text(text);
     if (output_) write_text(*output_, text);
 }
 

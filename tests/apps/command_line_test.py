@@ -58,11 +58,11 @@ class CommandLineTest(ProgramTest):
         self.assertIn("stipple capture record", self.succeed("capture", "--help"))
         self.assertNotIn("stipple demo", self.succeed("schedule", "--help"))
 
-    def test_help_that_cannot_be_written_is_an_error(self):
-        for line in ("--help", "--version"):
+    def test_text_that_cannot_be_written_is_an_error(self):
+        for line in (["--help"], ["--version"], ["list", "keys"], ["list", "keys", "--json", "-"], ["completion", "bash"]):
             with open("/dev/full", "w", encoding="utf-8") as full:
-                done = self.start_program(line, stdout=full)
-                self.assertIn("No space left", done.communicate()[1])
+                done = self.start_program(*line, stdout=full)
+                self.assertEqual(done.communicate()[1], "stipple: standard output: No space left on device\n", line)
             self.assertEqual(done.returncode, DEVICE)
 
     def test_a_reader_that_has_gone_ends_it_quietly(self):
