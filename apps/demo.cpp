@@ -13,6 +13,7 @@
 #include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "explore/trial.h"
 #include "io/disk_sync.h"
 #include "report/run_report.h"
 
@@ -67,7 +68,7 @@ RunReportOptions page_options(const DemoOptions& options, const FluxVideo& truth
     page.title = fmt::format("Stipple demo: scene {}", options.scene);
     page.command = own_command();
     page.area = middle_area(truth.shape(), kPageRows, kPageCols);
-    page.quality = demo_quality(truth.slots());
+    page.quality = trial_quality(truth.slots());
     return page;
 }
 

@@ -5,13 +5,10 @@
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
 #include "apps/stream_output.h"
+#include "explore/trial.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
-
-QualityOptions demo_quality(int slots) {
-    return {.margin = usual_margin(slots), .max_value = kBrightestLight};
-}
 
 FluxVideo render_video(const Scene& scene, const RunOptions& run) {
     const SceneOptions& options = scene.options();
@@ -45,7 +42,7 @@ VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod 
                                 const FluxVideo& truth, const FrameSink& take,
                                 const RunOptions& run) {
     StreamReader reader(file);
-    QualityMeter meter(truth.shape(), demo_quality(truth.slots()));
+    QualityMeter meter(truth.shape(), trial_quality(truth.slots()));
     Progress progress(run, fmt::format("decoding {}", file.filename().string()), truth.slots());
     decode(
         reader, method,

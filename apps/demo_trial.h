@@ -12,14 +12,6 @@
 
 namespace stipple {
 
-/// The brightest light that the default sensor can measure within a slot:
-/// full_scale_e / photons_per_unit. Light is compared up to it.
-inline constexpr double kBrightestLight = 2;
-
-/// How its videos of `slots` frames are compared with the scene: without the first and last 4
-/// frames (fewer of short clips), light up to kBrightestLight.
-[[nodiscard]] QualityOptions demo_quality(int slots);
-
 /// Size of a stream.
 struct StreamSize {
     double compression_ratio = 0;  ///< light values per sample
@@ -35,8 +27,8 @@ struct StreamSize {
 StreamSize emulate_video(const FluxVideo& light, const std::string& schedule,
                          const std::filesystem::path& file, const RunOptions& run);
 
-/// Decodes `file`, hands each frame to `take`, and compares it with `truth` (demo_quality). \throws
-/// Interrupted, and as `decode` and `take`.
+/// Decodes `file`, hands each frame to `take`, and compares it with `truth` (trial_quality of
+/// explore/trial.h). \throws Interrupted, and as `decode` and `take`.
 VideoQuality decode_and_compare(const std::filesystem::path& file, DecodeMethod method,
                                 const FluxVideo& truth, const FrameSink& take,
                                 const RunOptions& run);

@@ -67,6 +67,9 @@ void add_synth(Command& app, Action& action) {
         .required()
         .output(kVideoName);
     add_scene_arguments(command, options->rendering);
+    command.add_flag(
+        "--luminance", [options] { options->rendering.shape.planes = 1; },
+        "render Rec. 709 luminance instead of colours");
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_stipple, module) {
     bind_emulate(module);
     bind_decode(module);
     bind_compare(module);
+    bind_explore(module);
     bind_timing(module);
     bind_recording(module);
     bind_characterize(module);

@@ -8,7 +8,11 @@ namespace stipple::page {
 
 extern const std::string_view kHtml;
 extern const std::string_view kStyle;
-extern const std::string_view kProgram;  ///< all .js files, one after the other
+extern const std::string_view kProgram;             ///< all .js files, one after the other
+extern const std::string_view kExploration;         ///< HTML of the page of `stipple explore`
+extern const std::string_view kExplorationStyle;    ///< what its style has beside kStyle
+extern const std::string_view kExplorationProgram;  ///< all .js files of this page
+extern const std::string_view kChartsLicence;       ///< as a comment of HTML
 extern const std::string_view kCharts;  ///< Chart.js, minified; empty if the build has not found it
 
 }  // namespace stipple::page

@@ -1,9 +1,7 @@
 #include "report/report_page.h"
 
-#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "report/page_parts.h"
 #include "report/run_report.h"
@@ -28,11 +26,15 @@ std::string planes_text(const std::vector<PackedPlane>& planes) {
 
 std::string script_json(const nlohmann::ordered_json& data) {
     using nlohmann::ordered_json;
-    std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-    replace_all(text, "<", "\\u003c");
-    replace_all(text, ">", "\\u003e");
-    replace_all(text, "&", "\\u0026");
-    return text;
+    return script_text(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+// In JSON these characters are in texts only.
+std::string script_text(std::string json) {
+    replace_all(json, "<", "\\u003c");
+    replace_all(json, ">", "\\u003e");
+    replace_all(json, "&", "\\u0026");
+    return json;
 }
 
 std::string html_text(std::string_view text) {
@@ -44,25 +46,27 @@ std::string html_text(std::string_view text) {
     return escaped;
 }
 
-std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
-                        const std::vector<PackedPlane>& planes) {
-    const std::array<std::pair<std::string_view, std::string>, 6> parts{
-        {{"@TITLE@", html_text(title)},
-         {"@STYLE@", std::string(page::kStyle)},
-         {"@CHARTS@", std::string(page::kCharts)},
-         {"@DATA@", script_json(data)},
-         {"@PLANES@", planes_text(planes)},
-         {"@PROGRAM@", std::string(page::kProgram)}}};
+std::string filled_page(std::string_view html, const std::vector<PagePart>& parts) {
     std::string text;
     std::size_t from = 0;
-    for (const auto& [mark, part] :
-         parts) {  // in their order, so that no part is searched for marks
-        const std::size_t at = page::kHtml.find(mark, from);
-        text += page::kHtml.substr(from, at - from);
+    for (const auto& [mark, part] : parts) {
+        const std::size_t at = html.find(mark, from);
+        text += html.substr(from, at - from);
         text += part;
         from = at + mark.size();
     }
-    return text += page::kHtml.substr(from);
+    return text += html.substr(from);
+}
+
+std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
+                        const std::vector<PackedPlane>& planes) {
+    return filled_page(page::kHtml, {{"@TITLE@", html_text(title)},
+                                     {"@STYLE@", std::string(page::kStyle)},
+                                     {"@LICENCE@", std::string(page::kChartsLicence)},
+                                     {"@CHARTS@", std::string(page::kCharts)},
+                                     {"@DATA@", script_json(data)},
+                                     {"@PLANES@", planes_text(planes)},
+                                     {"@PROGRAM@", std::string(page::kProgram)}});
 }
 
 std::string chart_warning() {

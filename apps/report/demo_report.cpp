@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "explore/trial.h"
 #include "report/quality_json.h"
 
 namespace stipple {

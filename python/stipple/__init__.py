@@ -10,6 +10,7 @@ ValueError, errors of files OSError, both with the program's texts."""
 
 from . import capture
 from ._characterize import characterize, characterize_images
+from ._explore import explore
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
@@ -41,6 +42,7 @@ __all__ = [
     "decode",
     "decode_methods",
     "emulate",
+    "explore",
     "load",
     "timing",
 ]

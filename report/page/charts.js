@@ -88,7 +88,6 @@ function setUpCharts() {
   if (typeof Chart === 'undefined') return;
   Chart.register(slotMark);
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-  whenever(['slot'], markSlots);
   const redraw = () => { for (const [id, {make}] of [...charts]) showChart(id, make); };
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
 }

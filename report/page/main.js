@@ -53,5 +53,6 @@ setUpQuality();
 setUpReadout();
 setUpSchedule();
 setUpCamera();
+whenever(['slot'], markSlots);
 if (data.videos.length) document.addEventListener('keydown', takeKey);
 document.documentElement.dataset.ready = 'true';

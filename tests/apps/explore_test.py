@@ -2,12 +2,13 @@
 
 import csv
 import os
+import resource
 import signal
 import time
 import unittest
 
 import numpy as np
-from program import INPUT, STOPPED, ProgramTest
+from program import DEVICE, INPUT, STOPPED, USAGE, ProgramTest
 
 SPACE = """
 [axes]
@@ -128,6 +129,101 @@ class ExploreTest(ProgramTest):
         self.assertEqual(len(self.rows()), stored)
         hidden = [name for name in os.listdir(self.folder / "results" / "trials") if name.startswith(".")]
         self.assertEqual(hidden, [])
+
+    def test_no_figure_depends_on_whether_it_was_known(self):
+        """Of an ideal sensor at full light some figures are infinite or absent."""
+        space = SPACE.replace('["paper", "lux1310"]', '["ideal", "lux1310"]').replace("[axes]", '[axes]\nfootage = "light.npy"')
+        self.write_flat("light.npy", slots=16, light=0)
+        self.explore(space)
+        table = (self.folder / "results" / "table.csv").read_bytes()
+        self.assertEqual(self.explore(space)["known"], 4)
+        self.assertEqual((self.folder / "results" / "table.csv").read_bytes(), table)
+        self.assertEqual((self.rows()[0]["psnr_db"], self.rows()[0]["energy_uj_per_slot"]), ("inf", ""))
+
+    def test_the_page_can_be_left_out(self):
+        self.explore(SPACE, "--no-report")
+        self.assertFalse((self.folder / "results/report.html").exists())
+        self.explore()
+        page = (self.folder / "results/report.html").read_text()
+        self.assertIn("full1x", page)
+        self.assertLess(len(page), 1e6)
+
+    def test_all_points_may_fail(self):
+        figures = self.explore(SPACE.replace("full1x", "nosuch").replace("random", "none"))
+        self.assertEqual(figures, {"points": 4, "run": 0, "known": 0, "failed": 4})
+        self.assertTrue(all(row["problem"] and not row["psnr_db"] for row in self.rows()))
+
+    def test_a_budget_drops_the_worse_half_after_each_rung(self):
+        space = SPACE.replace('["paper", "lux1310"]', '"paper"').replace('["random", "full1x"]', '"random"') \
+            .replace("frames = 16", "frames = 48") + '[set]\n"sensor.read_noise_e" = [300, 1, 100, 3, 30, 10]\n'
+        figures = self.explore(space, "--budget", 100, "--rank", "psnr_db")
+        # 6 points with 12 slots, the best 3 of them with 24, the best 2 of these with 48.
+        self.assertEqual((figures["run"], figures["rung_slots"], figures["spent"]), (11, [12, 24, 48], 1.5 + 1.5 + 2))
+        rungs = {row["sensor.read_noise_e"]: (row["rung"], row["slots"]) for row in self.rows()}
+        self.assertEqual(rungs, {"300": ("1", "12"), "100": ("1", "12"), "30": ("1", "12"), "10": ("2", "24"),
+                                 "3": ("3", "48"), "1": ("3", "48")})
+        table = (self.folder / "results" / "table.csv").read_bytes()
+        self.assertEqual(self.explore(space, "--budget", 100, "--rank", "psnr_db")["known"], 11)
+        self.assertEqual((self.folder / "results" / "table.csv").read_bytes(), table)
+        # A rung's share is what is left over the rungs that are left.
+        self.assertEqual(self.explore(space, "--budget", 3, "--rank", "psnr_db")["spent"], 1.5 + 0.5 + 1)
+        tight = self.explore(space, "--budget", 1, "--rank", "psnr_db")
+        self.assertEqual((tight["spent"], tight["failed"]), (1, 2))
+        self.assertIn("the budget was spent", self.rows()[5]["problem"])
+        # Without a budget the trials of the last rung are known.
+        self.assertEqual(self.explore(space)["known"], 2)
+
+    def test_a_budget_of_time_ends(self):
+        space = SPACE + '[set]\n"sensor.read_noise_e" = { from = 1, to = 100, count = 100 }\n'
+        figures = self.explore(space, "--budget", "0.001s")
+        self.assertGreaterEqual(figures["spent"], 0.001)
+        self.assertGreater(figures["failed"], 100)
+        for text in ("0", "-3", "ten", "3d", "nan"):
+            self.fails(USAGE, ["--budget"], "explore", "space.toml", "-o", "results", "--budget", text)
+        self.fails(USAGE, ["--rank"], "explore", "space.toml", "-o", "results", "--rank", "psnr_db")
+        self.fails(USAGE, ["--rank"], "explore", "space.toml", "-o", "results", "--budget", 3, "--rank", "beauty")
+
+    def test_a_killed_run_with_a_budget_goes_on_to_the_same_table(self):
+        space = self.write_space(SPACE.replace("frames = 16", "frames = 48") + "[set]\n"
+                                 '"sensor.read_noise_e" = { from = 1, to = 100, count = 10 }\n')
+        whole = self.figures("explore", space, "-o", "whole", "--budget", 20, "--no-sync")
+        for stored in (20, 45):
+            program = self.start_program("explore", space, "-o", "results", "--budget", "20", "--quiet", "--no-sync")
+            while program.poll() is None and len(list(self.folder.glob("results/trials/[!.]*.json"))) < stored:
+                time.sleep(0.001)
+            program.kill()
+            program.communicate(timeout=60)
+        figures = self.figures("explore", space, "-o", "results", "--budget", 20, "--no-sync")
+        self.assertEqual(figures["run"] + figures["known"], whole["run"])
+        self.assertGreater(figures["known"], 0)
+
+        def table(folder):
+            with open(self.folder / folder / "table.csv", newline="") as file:
+                return [{**row, "decode_seconds": None} for row in csv.DictReader(file)]
+
+        self.assertEqual(table("results"), table("whole"))
+
+    def test_results_that_cannot_be_written(self):
+        self.write_space()
+        limit = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))}
+        (self.folder / "results").mkdir()  # it would be new otherwise
+        done = self.run_program("explore", "space.toml", "-o", "results", **limit)
+        self.assertEqual(done.returncode, DEVICE, done.stderr)
+        self.assertIn("cannot be written", done.stderr)
+        self.assertEqual(list(self.folder.glob("results/trials/*")), [])
+        self.assertEqual(self.explore()["run"], 4)  # the disk has room again
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become somebody who may not write")
+    def test_a_folder_that_may_not_be_written(self):
+        self.explore()
+        self.folder.chmod(0o755)
+        nobody = {"preexec_fn": lambda: os.setuid(65534)}
+        for results in ("results", "new"):
+            done = self.run_program("explore", "space.toml", "-o", results, **nobody)
+            self.assertIn(done.returncode, (INPUT, DEVICE), done.stderr)
+            self.assertIn(results, done.stderr)
+            self.assertIn("Permission denied", done.stderr)
+            self.assertEqual(done.stderr.count("stipple: "), 1)
 
     def test_bad_spaces_are_refused_before_anything_is_written(self):
         for text, part in [("", "axes.sensor: is missing"), ("[axes]\nsensor = []", "is an empty list"),

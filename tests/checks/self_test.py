@@ -30,6 +30,7 @@ TABLE = """| module | may include |
 | readout | sensor_model, stream, core |
 | capture | readout, sensor_model, stream, core |
 | report | readout, decoder, metrics, stream, io, core |
+| explore | report, readout, decoder, metrics, scenes, stream, io, core |
 | apps, python, tests, bench | everything |
 """
 
@@ -135,7 +136,7 @@ class ChecksTest(unittest.TestCase):
 
     def test_all_lists_of_modules_are_equal(self):
         every = ("core", "io", "stream", "sensor_model", "metrics", "scenes", "decoder", "calibration", "readout",
-                 "capture", "report")
+                 "capture", "report", "explore")
         page = "".join(f"| `{name}/` | x |\n" for name in (*every, "apps", "python", "tests")) + TABLE
         files = {f"{name}/CMakeLists.txt": "" for name in (*every, "apps", "python", "tests")}
         files |= {modules.BUILD: f"set(STIPPLE_MODULES {' '.join(every)})\n", modules.PAGE: page,

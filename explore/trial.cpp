@@ -1,26 +1,22 @@
-#include "apps/explore_trial.h"
+#include "explore/trial.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "apps/demo_trial.h"
-#include "apps/interrupt.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/parsed_number.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
+#include "explore/trial_picture.h"
 #include "io/footage_reader.h"
-#include "metrics/video_quality.h"
-#include "readout/footage_origin.h"
 #include "readout/stream_recorder.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
@@ -31,15 +27,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_scene(const std::string& name) {
-    return std::ranges::find(scenes(), name, &NamedScene::name) != scenes().end();
+void check(const KeepGoing& keep_going) {
+    if (!keep_going()) throw TrialStopped();
 }
 
-TrialLight render_scene(const Space& space, const std::string& name) {
+TrialLight render_scene(const Space& space, const std::string& name, const KeepGoing& keep_going) {
     const Scene scene(scene_from_name(name), {.slots = space.frames, .shape = space.scene});
     TrialLight light{FluxVideo(space.frames, space.scene), {.name = "scene " + name}};
     for (int slot = 0; slot < space.frames; ++slot) {
-        throw_if_stopped();
+        check(keep_going);
         scene.render(slot, light.video.frame(slot));
     }
     return light;
@@ -82,25 +78,21 @@ double dynamic_range_stops(const SensorSetup& setup) {
 }
 
 /// Rate, bandwidth and energy, by the timing of the sensor if it has one.
-void add_readout(const Trial& trial, double bits_per_slot, nlohmann::ordered_json& figures) {
+void add_readout(const Trial& trial, double bits_per_slot, TrialFigures& figures) {
     const SensorSetup& setup = trial.setup;
-    double slots_hz = 1e6 / setup.params.slot_us;
-    std::string limit = "slot";
-    std::optional<double> energy_uj;
+    figures.slots_per_second = 1e6 / setup.params.slot_us;
+    figures.limited_by = "slot";
     if (setup.timing) {
         const ReadoutRate rate = rate_of(*setup.timing, trial.timed.schedule, trial.window);
         const double period = trial.timed.schedule.period_slots();
-        if (rate.coded_hz < slots_hz) {
-            slots_hz = rate.coded_hz;
-            limit = name_of(rate.slowest.limit);
+        if (rate.coded_hz < figures.slots_per_second) {
+            figures.slots_per_second = rate.coded_hz;
+            figures.limited_by = name_of(rate.slowest.limit);
         }
         bits_per_slot = static_cast<double>(rate.period.bits) / period;
-        energy_uj = 1e-6 * rate.period.energy_pj / period;
+        figures.energy_uj_per_slot = 1e-6 * rate.period.energy_pj / period;
     }
-    figures["slots_per_second"] = slots_hz;
-    figures["limited_by"] = limit;
-    figures["megabits_per_second"] = 1e-6 * bits_per_slot * slots_hz;
-    figures["energy_uj_per_slot"] = energy_uj ? nlohmann::ordered_json(*energy_uj) : nullptr;
+    figures.megabits_per_second = 1e-6 * bits_per_slot * figures.slots_per_second;
 }
 
 /// Removes a stream that only its trial needs.
@@ -112,25 +104,63 @@ struct RemovedStream {
     }
 };
 
+/// The figures of the recorder; the stream is in place afterwards.
+void record(const Trial& trial, const FluxVideo& truth, const fs::path& stream,
+            const KeepGoing& keep_going, TrialFigures& figures) {
+    StreamRecorder recorder(stream, trial.setup, {.force = true});
+    for (int slot = 0; slot < trial.slots; ++slot) {
+        check(keep_going);
+        recorder.expose(truth.frame(slot));
+    }
+    recorder.finish();
+    add_readout(trial, static_cast<double>(recorder.payload_bits()) / trial.slots, figures);
+    figures.light_throughput = recorder.light_throughput();
+}
+
+/// Decodes with `options` and hands each frame to `take`, until that returns false.
+DecodeReport decode_stream(const fs::path& stream, const DecodeOptions& options,
+                           const FrameSink& take, const KeepGoing& keep_going) {
+    StreamReader reader(stream);
+    const DecodeReport report = decode(
+        reader, options,
+        [&](std::int64_t slot, std::span<const float> frame) {
+            return take(slot, frame) && keep_going();
+        },
+        [&](double) { return keep_going(); });
+    check(keep_going);
+    return report;
+}
+
 }  // namespace
 
-TrialLight read_light(const Space& space, const std::string& footage) {
-    if (is_scene(footage)) return render_scene(space, footage);
+bool is_scene(const std::string& footage) {
+    return std::ranges::find(scenes(), footage, &NamedScene::name) != scenes().end();
+}
+
+QualityOptions trial_quality(int slots) {
+    return {.margin = usual_margin(slots), .max_value = kBrightestLight};
+}
+
+TrialLight read_light(const Space& space, const std::string& footage, const KeepGoing& keep_going) {
+    if (is_scene(footage)) return render_scene(space, footage, keep_going);
     FootageReader reader(footage);
     std::vector<std::vector<float>> frames;
     std::vector<float> frame(reader.shape().sites());
-    while (std::cmp_less(frames.size(), space.frames) && reader.read(frame)) {
-        throw_if_stopped();
+    bool more = reader.read(frame);
+    for (; more && std::cmp_less(frames.size(), space.frames); more = reader.read(frame)) {
+        check(keep_going);
         frames.push_back(frame);
     }
+    if (frames.empty()) throw InputError(footage, "has no frame");
     TrialLight light{FluxVideo(static_cast<int>(frames.size()), reader.shape()),
-                     origin_of(footage, {}, [] { throw_if_stopped(); })};
+                     origin_of(footage, {}, [&] { check(keep_going); }), !more};
     for (std::size_t i = 0; i < frames.size(); ++i)
         std::ranges::copy(frames[i], light.video.frame(static_cast<int>(i)).begin());
     return light;
 }
 
-Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight& light) {
+Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight& light,
+                   int slots) {
     const SensorChoice choice{.sensor = space.value(point, "sensor"),
                               .schedule = space.value(point, "schedule"),
                               .settings = settings_of(space, point, "sensor"),
@@ -144,46 +174,47 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
     const FrameShape window = space.readout.rows > 0 ? space.readout : setup.shape;
     NamedSchedule timed =
         setup.timing ? set_up_schedule(choice, window, setup.timing->addressing) : setup.schedule;
+    const int recorded = std::min(slots, light.video.slots());
     std::string identity = fmt::format(
         "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {}\n{}\nmethod {}\n{}",
-        version(), light.video.slots(), shape.rows, shape.cols, shape.planes, window.rows,
-        window.cols, provenance_of(setup, light.origin), space.value(point, "method"),
-        config.as_toml(""));
-    return {std::move(setup), std::move(timed), window, decoding, std::move(identity)};
+        version(), recorded, shape.rows, shape.cols, shape.planes, window.rows, window.cols,
+        provenance_of(setup, light.origin), space.value(point, "method"), config.as_toml(""));
+    return {std::move(setup), std::move(timed), window, decoding, recorded, std::move(identity)};
 }
 
-nlohmann::ordered_json run_trial(const Trial& trial, const TrialLight& light,
-                                 const fs::path& stream) {
+TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,
+                       const KeepGoing& keep_going) {
     const FluxVideo& truth = light.video;
     const RemovedStream removed{stream};
-    StreamRecorder recorder(stream, trial.setup, {.force = true});
-    for (int slot = 0; slot < truth.slots(); ++slot) {
-        throw_if_stopped();
-        recorder.expose(truth.frame(slot));
-    }
-    recorder.finish();
-    StreamReader reader(stream);
-    QualityMeter meter(truth.shape(), demo_quality(truth.slots()));
-    const DecodeReport report = decode(
-        reader, trial.decoding,
-        [&](std::int64_t slot, std::span<const float> frame) {
-            meter.add(frame, truth.frame(static_cast<int>(slot)));
-            return stop_signal() == 0;
-        },
-        [](double) { return stop_signal() == 0; });
-    throw_if_stopped();
+    TrialFigures figures;
+    TrialPicture picture(truth.shape());
+    record(trial, truth, stream, keep_going, figures);
+    const int shown = trial.slots / 2;
+    const bool is_naive = trial.decoding.method == DecodeMethod::kNaive;
+    QualityMeter meter(truth.shape(), trial_quality(trial.slots));
+    const auto take = [&](std::int64_t slot, std::span<const float> frame) {
+        const auto reference = truth.frame(static_cast<int>(slot));
+        meter.add(frame, reference);
+        if (slot == shown) {
+            picture.put(TrialPicture::kTruth, reference);
+            picture.put(TrialPicture::kDecoded, frame);
+            picture.put_error(frame, reference);
+            if (is_naive) picture.put(TrialPicture::kNaive, frame);
+        }
+        return true;
+    };
+    figures.decode_seconds = decode_stream(stream, trial.decoding, take, keep_going).seconds;
+    const auto take_naive = [&](std::int64_t slot, std::span<const float> frame) {
+        if (slot == shown) picture.put(TrialPicture::kNaive, frame);
+        return slot < shown;
+    };
+    if (!is_naive) decode_stream(stream, {.method = DecodeMethod::kNaive}, take_naive, keep_going);
     const VideoQuality quality = meter.quality();
-    nlohmann::ordered_json figures;
-    add_readout(trial,
-                static_cast<double>(recorder.payload_bits()) / static_cast<double>(truth.slots()),
-                figures);
-    figures["light_throughput"] = recorder.light_throughput();
-    figures["psnr_db"] = quality.psnr_db;
-    figures["psnr_gamma_db"] = quality.psnr_gamma_db;
-    figures["pu21_psnr_db"] = quality.pu21_psnr_db;
-    figures["dynamic_range_stops"] = dynamic_range_stops(trial.setup);
-    figures["decode_seconds"] = report.seconds;
-    return figures;
+    figures.psnr_db = quality.psnr_db;
+    figures.psnr_gamma_db = quality.psnr_gamma_db;
+    figures.pu21_psnr_db = quality.pu21_psnr_db;
+    figures.dynamic_range_stops = dynamic_range_stops(trial.setup);
+    return {figures, picture.pixels()};
 }
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "apps/explore_space.h"
+#include "explore/space.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/input_file.h"
 #include "core/toml_keys.h"
 #include "scenes/scene.h"
 
@@ -191,24 +190,21 @@ const std::string& Space::value(const SpacePoint& point, std::string_view name) 
     return point[static_cast<std::size_t>(axis - axes.begin())];
 }
 
-Space read_space(const std::filesystem::path& file) {
-    const auto bytes = read_file(file);
-    const std::string text(bytes.begin(), bytes.end());
+Space parse_space(const std::string& text, const std::string& name) {
     if (const std::size_t line = line_of_long_key(text); line != 0)
-        throw InputError(fmt::format("{}:{}", file.string(), line),
+        throw InputError(fmt::format("{}:{}", name, line),
                          fmt::format("a key has more than {} parts", kMaxKeyParts));
     toml::table tables;
     try {
-        tables = toml::parse(text, file.string());
+        tables = toml::parse(text, name);
     } catch (const toml::parse_error& e) {
-        throw InputError(fmt::format("{}:{}", file.string(), e.source().begin.line),
+        throw InputError(fmt::format("{}:{}", name, e.source().begin.line),
                          std::string(e.description()));
     }
-    Space space = SpaceReader(file.string()).read(tables);
+    Space space = SpaceReader(name).read(tables);
     if (space.size() > Space::kMaxPoints)
-        throw InputError(file.string(),
-                         fmt::format("has {} points, more than {}; give fewer values", space.size(),
-                                     Space::kMaxPoints));
+        throw InputError(name, fmt::format("has {} points, more than {}; give fewer values",
+                                           space.size(), Space::kMaxPoints));
     return space;
 }
 

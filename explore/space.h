@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,8 +36,9 @@ struct Space {
     [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const;
 };
 
-/// \throws InputError naming the file and the fault: no TOML, no sensor, an unknown key, a value of
-/// a wrong type, or more than kMaxPoints points.
-[[nodiscard]] Space read_space(const std::filesystem::path& file);
+/// The space that a TOML text describes; messages call it `name`. \throws InputError naming the
+/// fault: no TOML, no sensor, an unknown key, a value of a wrong type, or more than kMaxPoints
+/// points.
+[[nodiscard]] Space parse_space(const std::string& text, const std::string& name);
 
 }  // namespace stipple

@@ -1,0 +1,146 @@
+#include "explore/results_page.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/version.h"
+#include "explore/point_commands.h"
+#include "report/exploration_page.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+    std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // EVP_EncodeBlock ends it with a zero
+    EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(),
+                    static_cast<int>(bytes.size()));
+    text.pop_back();
+    return text;
+}
+
+ordered_json columns_json() {
+    ordered_json columns = ordered_json::array();
+    for (const FigureColumn& column : kFigureColumns)
+        columns.push_back({{"name", column.name},
+                           {"title", column.title},
+                           {"more_is_better", column.better == Better::kMore}});
+    return columns;
+}
+
+/// Numbers that JSON does not have are null.
+ordered_json figures_json(const TrialFigures& figures) {
+    ordered_json list = ordered_json::array();
+    for (const FigureColumn& column : kFigureColumns) {
+        const double value = figures.*column.value;
+        list.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json());
+    }
+    return list;
+}
+
+/// The points of the page: the best ones, then those without figures.
+std::vector<std::uint64_t> shown_points(const Exploration& exploration, std::size_t most) {
+    std::vector<std::uint64_t> shown = exploration.best_first();
+    for (std::uint64_t number = 0; number < exploration.points().size(); ++number) {
+        const ExploredPoint& point = exploration.points()[number];
+        if (point.touched && !point.figures) shown.push_back(number);
+    }
+    shown.resize(std::min(shown.size(), most));
+    return shown;
+}
+
+/// Makes the rows of the page, with pictures as long as there is room for them.
+class PageRows {
+  public:
+    PageRows(const Exploration& exploration, std::size_t picture_bytes)
+        : exploration_(exploration), room_(picture_bytes) {}
+
+    [[nodiscard]] ordered_json row(std::uint64_t number);
+    [[nodiscard]] std::size_t left_out() const { return left_out_; }
+
+  private:
+    [[nodiscard]] ordered_json picture(const ExploredPoint& point);
+
+    const Exploration& exploration_;
+    std::size_t room_;
+    std::size_t left_out_ = 0;
+};
+
+ordered_json PageRows::row(std::uint64_t number) {
+    const ExploredPoint& point = exploration_.points()[number];
+    const Space& space = exploration_.space();
+    const SpacePoint values = space.point(number);
+    const int slots = point.figures ? point.slots : space.frames;
+    ordered_json row{{"number", number + 1}, {"values", values}};
+    row["figures"] = figures_json(point.figures.value_or(TrialFigures()));
+    row["limited_by"] = point.figures ? point.figures->limited_by : "";
+    row["rung"] = point.rung;
+    row["slots"] = point.slots;
+    row["problem"] = point.problem;
+    row["commands"] = point_commands(space, values, slots, exploration_.is_whole(number, slots));
+    row["file"] = point.figures ? "trials/" + point.address + ".png" : "";
+    row["picture"] = picture(point);
+    return row;
+}
+
+ordered_json PageRows::picture(const ExploredPoint& point) {
+    if (!point.figures) return nullptr;
+    const std::vector<std::uint8_t> png = exploration_.store().picture(point.address);
+    if (png.empty()) return nullptr;
+    std::string text = base64(png);
+    if (text.size() > room_) {
+        room_ = 0;  // so that the pictures of the best points are whole
+        ++left_out_;
+        return nullptr;
+    }
+    room_ -= text.size();
+    return text;
+}
+
+}  // namespace
+
+std::string results_page(const Exploration& exploration, const std::string& space,
+                         const std::string& command, const PageBounds& bounds) {
+    const auto& points = exploration.points();
+    const auto touched = static_cast<std::size_t>(
+        std::ranges::count_if(points, [](const ExploredPoint& point) { return point.touched; }));
+    PageRows rows(exploration, bounds.picture_bytes);
+    const std::string name = std::filesystem::path(space).filename().string();
+    ordered_json data{{"title", name},
+                      {"program", fmt::format("stipple {}", version())},
+                      {"command", command},
+                      {"points", points.size()},
+                      {"rungs", exploration.rungs()},
+                      {"columns", columns_json()}};
+    data["axes"] = ordered_json::array();
+    for (const SpaceAxis& axis : exploration.space().axes) data["axes"].push_back(axis.name);
+    data["rows"] = ordered_json::array();
+    for (const std::uint64_t number : shown_points(exploration, bounds.points))
+        data["rows"].push_back(rows.row(number));
+    data["notes"] = ordered_json::array();
+    const auto note = [&](bool holds, const std::string& text) {
+        if (holds) data["notes"].push_back(text);
+    };
+    note(touched < points.size(),
+         fmt::format("{} of {} points were reached; the same command goes on with the rest",
+                     touched, points.size()));
+    note(data["rows"].size() < touched,
+         fmt::format("the page has the best {} of {} points, table.csv has all",
+                     data["rows"].size(), touched));
+    note(rows.left_out() > 0,
+         fmt::format("the pictures of {} points lie beside the page only, in trials/, as those in "
+                     "the page are bounded to {:.0f} MB",
+                     rows.left_out(), 1e-6 * static_cast<double>(bounds.picture_bytes)));
+    return exploration_page(name,
+                            data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+}  // namespace stipple

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/flux_video.h"
+#include "decoder/decode_options.h"
+#include "explore/space.h"
+#include "explore/trial_figures.h"
+#include "io/png_file.h"
+#include "metrics/video_quality.h"
+#include "readout/footage_origin.h"
+#include "readout/sensor_file.h"
+
+namespace stipple {
+
+/// Light is compared up to this one: full_scale_e / photons_per_unit of the default sensor.
+inline constexpr double kBrightestLight = 2;
+
+/// How the video of a trial is compared with the truth: without the first and last 4 of its frames
+/// (fewer of short clips), light up to kBrightestLight.
+[[nodiscard]] QualityOptions trial_quality(int slots);
+
+/// Asked now and then during long work; false: end it.
+using KeepGoing = std::function<bool()>;
+
+/// Thrown where a KeepGoing has said so.
+struct TrialStopped {};
+
+/// Light of the trials of a space.
+struct TrialLight {
+    FluxVideo video;
+    FootageOrigin origin;
+    bool is_whole = true;  ///< false: the footage has more slots
+};
+
+/// Whether `footage` names an embedded scene.
+[[nodiscard]] bool is_scene(const std::string& footage);
+
+/// The first slots of an embedded scene, or of a file. \throws InputError, TrialStopped.
+[[nodiscard]] TrialLight read_light(const Space& space, const std::string& footage,
+                                    const KeepGoing& keep_going);
+
+/// A point of a space, set up.
+struct Trial {
+    SensorSetup setup;
+    NamedSchedule timed;  ///< schedule of the window that is timed
+    FrameShape window;    ///< this window
+    DecodeOptions decoding;
+    int slots;             ///< the first ones of the light are recorded
+    std::string identity;  ///< all that determines the result; equal for equal trials
+};
+
+/// Precondition: slots > 0; more than the light has are not recorded.
+/// \throws InputError naming file, line and key of a value that cannot be used.
+[[nodiscard]] Trial set_up_trial(const Space& space, const SpacePoint& point,
+                                 const TrialLight& light, int slots);
+
+struct TrialOutcome {
+    TrialFigures figures;
+    PngPixels picture;  ///< the middle slot (TrialPicture)
+};
+
+/// Records the light as `stream`, which is removed in the end, and decodes it.
+/// \throws InputError, DeviceError, TrialStopped.
+[[nodiscard]] TrialOutcome run_trial(const Trial& trial, const TrialLight& light,
+                                     const std::filesystem::path& stream,
+                                     const KeepGoing& keep_going);
+
+}  // namespace stipple

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace stipple {
+
+/// What a trial costs and how good it is (docs/explore.md). NaN: there is no such figure.
+struct TrialFigures {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+    double slots_per_second = kNone;
+    std::string limited_by;  ///< "slot", or the part of the readout that limits the rate
+    double megabits_per_second = kNone;
+    double energy_uj_per_slot = kNone;  ///< of sensors with timing
+    double light_throughput = kNone;
+    double psnr_db = kNone;
+    double psnr_gamma_db = kNone;
+    double pu21_psnr_db = kNone;
+    double dynamic_range_stops = kNone;
+    double decode_seconds = kNone;
+};
+
+enum class Better : std::uint8_t { kMore, kLess };
+
+/// A column of numbers of the table.
+struct FigureColumn {
+    std::string_view name;
+    std::string_view title;  ///< for people, with the unit
+    double TrialFigures::*value;
+    Better better;
+};
+
+inline constexpr std::array<FigureColumn, 9> kFigureColumns{
+    {{"slots_per_second", "slot rate, 1/s", &TrialFigures::slots_per_second, Better::kMore},
+     {"megabits_per_second", "data rate, Mbit/s", &TrialFigures::megabits_per_second,
+      Better::kLess},
+     {"energy_uj_per_slot", "energy per slot, uJ", &TrialFigures::energy_uj_per_slot,
+      Better::kLess},
+     {"light_throughput", "light throughput", &TrialFigures::light_throughput, Better::kMore},
+     {"psnr_db", "PSNR, dB", &TrialFigures::psnr_db, Better::kMore},
+     {"psnr_gamma_db", "PSNR after 1/2.2, dB", &TrialFigures::psnr_gamma_db, Better::kMore},
+     {"pu21_psnr_db", "PU21-PSNR, dB", &TrialFigures::pu21_psnr_db, Better::kMore},
+     {"dynamic_range_stops", "dynamic range, stops", &TrialFigures::dynamic_range_stops,
+      Better::kMore},
+     {"decode_seconds", "decode time, s", &TrialFigures::decode_seconds, Better::kLess}}};
+
+}  // namespace stipple

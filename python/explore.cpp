@@ -1,0 +1,236 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "core/error.h"
+#include "explore/exploration.h"
+#include "explore/results_page.h"
+#include "python/bindings.h"
+#include "python/call_progress.h"
+
+namespace stipple::python {
+namespace {
+
+/// Figures by their names; None where there is none.
+py::dict dict_of_figures(const TrialFigures& figures) {
+    py::dict dict;
+    for (const FigureColumn& column : kFigureColumns) {
+        const double value = figures.*column.value;
+        dict[py::str(std::string(column.name))] =
+            std::isnan(value) ? py::object(py::none()) : py::object(py::float_(value));
+    }
+    dict["limited_by"] = figures.limited_by;
+    return dict;
+}
+
+TrialFigures figures_of_dict(const py::dict& dict) {
+    TrialFigures figures;
+    for (const FigureColumn& column : kFigureColumns) {
+        const py::object value = dict[py::str(std::string(column.name))];
+        if (!value.is_none()) figures.*column.value = value.cast<double>();
+    }
+    figures.limited_by = dict["limited_by"].cast<std::string>();
+    return figures;
+}
+
+/// Figures, rows, columns, channels and bytes of the picture: what goes from a worker to the one
+/// who asked.
+using PlainOutcome = std::tuple<py::dict, int, int, int, py::bytes>;
+
+PlainOutcome plain(const TrialOutcome& outcome) {
+    const PngPixels& picture = outcome.picture;
+    return {dict_of_figures(outcome.figures), picture.rows, picture.cols, picture.channels,
+            py::bytes(reinterpret_cast<const char*>(picture.bytes.data()), picture.bytes.size())};
+}
+
+TrialOutcome outcome_of(const PlainOutcome& plain) {
+    const auto& [figures, rows, cols, channels, bytes] = plain;
+    const std::string content = bytes;
+    return {figures_of_dict(figures),
+            {.rows = rows,
+             .cols = cols,
+             .channels = channels,
+             .bytes = {content.begin(), content.end()}}};
+}
+
+/// An exploration that Ctrl-C ends.
+class RunExploration {
+  public:
+    RunExploration(const std::filesystem::path& space, const std::filesystem::path& results,
+                   ExploreOptions options, py::object tell)
+        : space_name_(space.string()), exploration_(space, results, std::move(options), [this] {
+              return !progress_ || progress_->reach(done_);
+          }) {
+        progress_.emplace(std::move(tell), static_cast<std::int64_t>(exploration_.most_trials()));
+    }
+
+    bool next_rung() { return exploration_.next_rung(); }
+    /// Whether the trial must be run.
+    bool begin(std::uint64_t number) {
+        const Trial* trial = nullptr;
+        unlocked([&] { trial = exploration_.begin(number); });
+        if (trial == nullptr) advance();
+        return trial != nullptr;
+    }
+    /// Runs the trial of the last `begin`, and takes its outcome.
+    void run(std::uint64_t number) {
+        unlocked([&] {
+            try {
+                const Trial& trial = exploration_.trial();
+                exploration_.put(number, run_trial(trial, exploration_.light(),
+                                                   exploration_.store().stream_of(trial.identity),
+                                                   [this] { return progress_->reach(done_); }));
+            } catch (const InputError& e) {
+                exploration_.fail(number, e.what());
+            }
+        });
+        advance();
+    }
+    void put(std::uint64_t number, const PlainOutcome& outcome) {
+        exploration_.put(number, outcome_of(outcome));
+        advance();
+    }
+    void fail(std::uint64_t number, const std::string& problem) {
+        exploration_.fail(number, problem);
+        advance();
+    }
+    void write(bool report) const {
+        exploration_.store().write("table.csv", exploration_.csv());
+        if (report)
+            exploration_.store().write("report.html", results_page(exploration_, space_name_, ""));
+    }
+    [[nodiscard]] py::list rows() const;
+    [[nodiscard]] const Exploration& exploration() const { return exploration_; }
+
+  private:
+    template <typename Work>
+    void unlocked(const Work& work) {
+        try {
+            const py::gil_scoped_release released;
+            work();
+        } catch (const TrialStopped&) {
+            progress_->finish();  // raises what has stopped it
+            throw;
+        }
+    }
+    void advance() {
+        ++done_;
+        bool go_on = true;
+        {
+            const py::gil_scoped_release released;
+            go_on = progress_->reach(done_);
+        }
+        if (!go_on) progress_->finish();
+    }
+
+    std::string space_name_;
+    std::optional<CallProgress> progress_;
+    double done_ = 0;  ///< trials
+    Exploration exploration_;
+};
+
+py::list RunExploration::rows() const {
+    py::list rows;
+    const Space& space = exploration_.space();
+    for (std::uint64_t number = 0; number < space.size(); ++number) {
+        const ExploredPoint& point = exploration_.points()[number];
+        if (!point.touched) continue;
+        const SpacePoint values = space.point(number);
+        py::dict row;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            row[py::str(space.axes[i].name)] = values[i];
+        row.attr("update")(dict_of_figures(point.figures.value_or(TrialFigures())));
+        const bool has_figures = point.figures.has_value();
+        row["rung"] = has_figures ? py::object(py::int_(point.rung)) : py::none();
+        row["slots"] = has_figures ? py::object(py::int_(point.slots)) : py::none();
+        row["problem"] = point.problem;
+        rows.append(row);
+    }
+    return rows;
+}
+
+ExploreOptions options_of(bool force, const std::string& budget, const std::string& rank) {
+    ExploreOptions options;
+    options.force = force;
+    options.rank = rank;
+    if (!budget.empty()) {
+        options.budget = parse_budget(budget);
+        if (!options.budget)
+            throw InputError("budget", fmt::format("\"{}\" is neither a time, as 90s, 10m or 2h, "
+                                                   "nor a number of decoded clips",
+                                                   budget));
+    }
+    return options;
+}
+
+/// A trial on a worker: its identity and its outcome.
+std::pair<std::string, PlainOutcome> run_point(const Space& space, std::uint64_t number, int slots,
+                                               const TrialLight& light,
+                                               const std::filesystem::path& stream) {
+    CallProgress progress(py::none(), std::nullopt);
+    std::optional<Trial> trial;
+    std::optional<TrialOutcome> outcome;
+    try {
+        const py::gil_scoped_release released;
+        trial = set_up_trial(space, space.point(number), light, slots);
+        outcome = run_trial(*trial, light, stream, [&] { return progress.reach(0); });
+    } catch (const TrialStopped&) {
+        progress.finish();
+        throw;
+    }
+    return {trial->identity, plain(*outcome)};
+}
+
+TrialLight light_of(const Space& space, const std::string& footage) {
+    CallProgress progress(py::none(), std::nullopt);
+    try {
+        const py::gil_scoped_release released;
+        return read_light(space, footage, [&] { return progress.reach(0); });
+    } catch (const TrialStopped&) {
+        progress.finish();
+        throw;
+    }
+}
+
+}  // namespace
+
+void bind_explore(py::module_& module) {
+    py::class_<RunExploration>(module, "Exploration")
+        .def(py::init([](const std::filesystem::path& space, const std::filesystem::path& results,
+                         bool force, const std::string& budget, const std::string& rank,
+                         py::object tell) {
+            return std::make_unique<RunExploration>(space, results, options_of(force, budget, rank),
+                                                    std::move(tell));
+        }))
+        .def("next_rung", &RunExploration::next_rung)
+        .def("due", [](const RunExploration& run) { return run.exploration().due(); })
+        .def("begin", &RunExploration::begin)
+        .def("run", &RunExploration::run)
+        .def("put", &RunExploration::put)
+        .def("fail", &RunExploration::fail)
+        .def("identity", [](const RunExploration& run,
+                            std::uint64_t number) { return run.exploration().identity(number); })
+        .def("write", &RunExploration::write)
+        .def("rows", &RunExploration::rows)
+        .def("slots", [](const RunExploration& run) { return run.exploration().slots(); })
+        .def("text", [](const RunExploration& run) { return run.exploration().space_text(); });
+    py::class_<Space>(module, "Space")
+        .def(py::init(&parse_space))
+        .def("footage", [](const Space& space, std::uint64_t number) {
+            return space.value(space.point(number), "footage");
+        });
+    py::class_<TrialLight>(module, "TrialLight").def(py::init(&light_of));
+    module.def("is_scene", &is_scene);
+    module.def("run_point", &run_point);
+}
+
+}  // namespace stipple::python

@@ -1,0 +1,18 @@
+#include "report/exploration_page.h"
+
+#include "report/page_parts.h"
+#include "report/report_page.h"
+
+namespace stipple {
+
+std::string exploration_page(const std::string& title, const std::string& data) {
+    return filled_page(page::kExploration, {{"@TITLE@", html_text(title)},
+                                            {"@STYLE@", std::string(page::kStyle) +
+                                                            std::string(page::kExplorationStyle)},
+                                            {"@LICENCE@", std::string(page::kChartsLicence)},
+                                            {"@CHARTS@", std::string(page::kCharts)},
+                                            {"@DATA@", script_text(data)},
+                                            {"@PROGRAM@", std::string(page::kExplorationProgram)}});
+}
+
+}  // namespace stipple

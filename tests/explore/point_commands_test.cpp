@@ -1,0 +1,82 @@
+#include "explore/point_commands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace stipple {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// With values of each type, and texts that a shell or TOML could take for something else.
+const std::string kSpace = R"(
+[axes]
+footage = "dice"
+sensor = ["my sensor.toml", "-x"]
+schedule = "tiled"
+method = "fast"
+seed = [3, 18446744073709551615]
+[set]
+"schedule.exposure_slots" = [[1, 2], [4]]
+"sensor.read_noise_e" = [2.5, 3]
+"sensor.shot_noise" = true
+"sensor.name" = ["a'b", "true story", "line\nEND\nrm"]
+"decoder.rounds" = 2
+[clip]
+frames = 20
+rows = 24
+planes = 1
+[readout]
+rows = 100
+cols = 200
+)";
+
+Space space() {
+    std::string text = kSpace;
+    text.replace(text.find("18446744073709551615"), 20, "\"18446744073709551615\"");
+    return parse_space(text, "space.toml");
+}
+
+TEST(PointCommandsTest, ThePointIsASpaceOfItsOwn) {
+    const Space all = space();
+    for (std::uint64_t number = 0; number < all.size(); ++number) {
+        const SpacePoint point = all.point(number);
+        const std::string text = point_space(all, point, 12);
+        const Space one = parse_space(text, "point.toml");
+        ASSERT_EQ(one.size(), 1) << text;
+        ASSERT_EQ(one.axes.size(), all.axes.size());
+        for (const SpaceAxis& axis : all.axes)
+            EXPECT_EQ(one.value(one.point(0), axis.name), all.value(point, axis.name)) << text;
+        EXPECT_EQ(one.frames, 12);
+        EXPECT_EQ(one.scene, all.scene);
+        EXPECT_EQ(one.readout, all.readout);
+        // Nothing but its end ends the text in the shell.
+        EXPECT_THAT("\n" + text, Not(HasSubstr("\nEND\n")));
+    }
+}
+
+TEST(PointCommandsTest, StepsAreQuotedForAShell) {
+    const Space all = space();
+    const std::string steps = point_commands(all, all.point(0), 20, true);
+    EXPECT_THAT(steps, HasSubstr("stipple synth dice -o scene.npy --frames 20 --size 64x24 "
+                                 "--luminance\n"));
+    EXPECT_THAT(steps, HasSubstr("stipple emulate scene.npy -o clip.stipple --sensor 'my "
+                                 "sensor.toml' --schedule tiled --seed 3"));
+    EXPECT_THAT(steps, HasSubstr("--set 'schedule.exposure_slots=[ 1, 2 ]'"));
+    EXPECT_THAT(steps, HasSubstr("--method fast --set decoder.rounds=2\n"));
+    EXPECT_THAT(steps, HasSubstr("--margin 4 --max-value 2\n"));
+    EXPECT_THAT(point_commands(all, all.point(all.size() - 1), 20, true),
+                HasSubstr("--sensor ./-x"));
+}
+
+TEST(PointCommandsTest, LongerFootageHasNoSteps) {
+    const Space all = space();
+    EXPECT_THAT(point_commands(all, all.point(0), 20, false), Not(HasSubstr("emulate")));
+    EXPECT_THAT(point_commands(all, all.point(0), 20, false), HasSubstr("stipple explore"));
+}
+
+}  // namespace
+}  // namespace stipple
