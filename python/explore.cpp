@@ -204,13 +204,10 @@ TrialLight light_of(const Space& space, const std::string& footage) {
 }  // namespace
 
 void bind_explore(py::module_& module) {
+    py::class_<ExploreOptions>(module, "ExploreOptions").def(py::init(&options_of));
     py::class_<RunExploration>(module, "Exploration")
-        .def(py::init([](const std::filesystem::path& space, const std::filesystem::path& results,
-                         bool force, const std::string& budget, const std::string& rank,
-                         py::object tell) {
-            return std::make_unique<RunExploration>(space, results, options_of(force, budget, rank),
-                                                    std::move(tell));
-        }))
+        .def(py::init<const std::filesystem::path&, const std::filesystem::path&, ExploreOptions,
+                      py::object>())
         .def("next_rung", &RunExploration::next_rung)
         .def("due", [](const RunExploration& run) { return run.exploration().due(); })
         .def("begin", &RunExploration::begin)

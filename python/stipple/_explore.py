@@ -43,7 +43,7 @@ def explore(
     A row is a dict of the columns of table.csv; a figure that is not known is None. Raises ValueError and OSError.
     """
     with _stipple.Threads(threads):
-        exploration = _stipple.Exploration(space, results, force, budget, rank, progress)
+        exploration = _stipple.Exploration(space, results, _stipple.ExploreOptions(force, budget, rank), progress)
         try:
             while exploration.next_rung():
                 for number in exploration.due():
@@ -75,7 +75,7 @@ def explore_on(
     The table is that of `explore`, but for decode_seconds. Raises as `check_workers`, and as `explore`.
     """
     caller = check_workers(client)
-    exploration = _stipple.Exploration(space, results, force, budget, rank, progress)
+    exploration = _stipple.Exploration(space, results, _stipple.ExploreOptions(force, budget, rank), progress)
     name = fsdecode(space)
     flying: Deque[Tuple[int, Any]] = deque()
 
