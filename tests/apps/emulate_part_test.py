@@ -31,7 +31,7 @@ class EmulatePartTest(ProgramTest):
         self.write_noise("light.npy", 150, 20, 28)
         for number, options in enumerate([
                 (), ("--schedule", "tiled", "--seed", 7, "--set", "sensor.bit_depth=10"),
-                ("--sensor", "lux1310", "--schedule", "hardware_tiled", "--set", "sensor.slot_us=40",
+                ("--sensor", "lux1310", "--schedule", "hardware_tiled", "--set", "sensor.slot_us=5",
                  "--overrun", "drop"),
                 ("--sensor", "grasshopper", "--set", "sensor.row_skew_slots=0.5", "--schedule", "pixel_flutter",
                  "--set", "sensor.parasitic_light_sensitivity=0.1"),
