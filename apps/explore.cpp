@@ -4,59 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/arguments/checks.h"
-#include "apps/interrupt.h"
+#include "apps/explore_run.h"
 #include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
-#include "apps/report/own_command.h"
-#include "apps/report/progress.h"
-#include "apps/standard_error.h"
 #include "apps/subcommands.h"
-#include "core/error.h"
-#include "explore/exploration.h"
-#include "explore/results_page.h"
-#include "report/run_report.h"
 
 namespace stipple {
 namespace {
-
-struct ExploreArguments {
-    std::string space;
-    std::string results;
-    ExploreOptions options;
-    bool no_report = false;
-};
-
-bool keep_going() {
-    return stop_signal() == 0;
-}
-
-/// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
-void run_point(Exploration& exploration, std::uint64_t number) {
-    const Trial* const trial = exploration.begin(number);
-    if (trial == nullptr) return;
-    try {
-        const auto stream = exploration.store().stream_of(trial->identity);
-        exploration.put(number, run_trial(*trial, exploration.light(), stream, keep_going));
-    } catch (const InputError& e) {
-        if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
-        exploration.fail(number, e.what());
-    }
-}
-
-/// Until all is done, or a signal asks to stop.
-void run_points(Exploration& exploration, Progress& progress) {
-    try {
-        while (exploration.next_rung())
-            for (const std::uint64_t number : exploration.due()) {
-                if (!keep_going()) return;
-                run_point(exploration, number);
-                progress.advance();
-            }
-    } catch (const TrialStopped&) {
-        // What is done stays done.
-    }
-}
 
 nlohmann::ordered_json figures_of(const Exploration& exploration, bool has_budget) {
     const auto [run, known, failed] = exploration.counts();
@@ -69,27 +22,11 @@ nlohmann::ordered_json figures_of(const Exploration& exploration, bool has_budge
     return figures;
 }
 
-void explore(const ExploreArguments& arguments, const RunOptions& run) {
+void explore(const ExploreRun& what, const RunOptions& run) {
     JsonFile json(run);
-    ExploreOptions options = arguments.options;
-    options.force = run.force;
-    Exploration exploration(arguments.space, arguments.results, options, keep_going);
-    run.say(fmt::format("{}: {}", arguments.space, counted(exploration.space().size(), "point")));
-    {
-        Progress progress(run, "exploring", static_cast<std::int64_t>(exploration.most_trials()),
-                          "point");
-        run_points(exploration, progress);
-    }
-    exploration.store().write("table.csv", exploration.csv());
-    if (!arguments.no_report) {
-        exploration.store().write("report.html",
-                                  results_page(exploration, arguments.space, own_command()));
-        say_warning(chart_warning());
-    }
-    json.write(figures_of(exploration, options.budget.has_value()));
-    const auto [trials, known, failed] = exploration.counts();
-    run.say(fmt::format("{}/{}: {} run, {} known before, {} failed", arguments.results,
-                        arguments.no_report ? "table.csv" : "report.html", trials, known, failed));
+    const Exploration exploration = explored(what, run);
+    json.write(figures_of(exploration, what.options.budget.has_value()));
+    run.say(counts_text(what, exploration));
 }
 
 void add_budget(Command& command, ExploreOptions& options) {
@@ -120,7 +57,7 @@ void add_budget(Command& command, ExploreOptions& options) {
 
 void add_explore(Command& app, Action& action) {
     Command command = app.add_command("explore", "A table of many sensors, schedules and decoders");
-    const auto arguments = std::make_shared<ExploreArguments>();
+    const auto arguments = std::make_shared<ExploreRun>();
     command.add_option("SPACE", arguments->space, "what to try, a TOML file (docs/explore.md)")
         .required()
         .input();

@@ -45,8 +45,10 @@ void add_calibrate(Command& app, Action& action);  ///< gain, offset and defects
 void add_capture(Command& app, Action& action);    ///< cameras: its own subcommands
 void add_demo(Command& app, Action& action);       ///< all of it on an embedded scene
 void add_explore(Command& app, Action& action);    ///< a table of many trials
-void add_report(Command& app, Action& action);     ///< a run as an HTML page
-void add_list(Command& app, Action& action);       ///< names that options take, a line each
+/// Coded exposure and its rivals on a scene
+void add_rivals(Command& app, Action& action);
+void add_report(Command& app, Action& action);  ///< a run as an HTML page
+void add_list(Command& app, Action& action);    ///< names that options take, a line each
 /// Manual pages and completions of the command line that `describe` describes
 void add_manual(Command& app, Action& action, std::function<CommandDescription()> describe);
 

@@ -100,9 +100,9 @@ class Config {
 };
 
 /// Kinds of configuration files.
-enum class ConfigKind : std::uint8_t { kSensors, kSchedules };
+enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces };
 
-/// The folder of a kind: "sensors", "schedules".
+/// The folder of a kind: "sensors", "schedules", "spaces".
 [[nodiscard]] std::string_view folder_of(ConfigKind kind);
 
 /// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`.

@@ -13,7 +13,7 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Folders that hold sensors/ and schedules/; the first one that has a name wins.
+/// Folders that hold sensors/, schedules/ and spaces/; the first one that has a name wins.
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
@@ -28,7 +28,15 @@ std::vector<fs::path> config_folders() {
 }  // namespace
 
 std::string_view folder_of(ConfigKind kind) {
-    return kind == ConfigKind::kSensors ? "sensors" : "schedules";
+    switch (kind) {
+        case ConfigKind::kSensors:
+            return "sensors";
+        case ConfigKind::kSchedules:
+            return "schedules";
+        case ConfigKind::kSpaces:
+            return "spaces";
+    }
+    return {};
 }
 
 std::vector<std::string> config_names(ConfigKind kind) {

@@ -35,6 +35,11 @@ ExploreOptions checked(ExploreOptions options) {
     throw InputError("--rank", fmt::format("\"{}\" is none of {}", name, names));
 }
 
+Space replaced(Space space, const std::vector<SpaceAxis>& axes) {
+    for (const SpaceAxis& axis : axes) space.replace(axis);
+    return space;
+}
+
 /// The figure so that more is better.
 double score(const TrialFigures& figures, const FigureColumn& column) {
     const double value = figures.*column.value;
@@ -58,7 +63,7 @@ Exploration::Exploration(const std::filesystem::path& space, const std::filesyst
                          ExploreOptions options, KeepGoing keep_going)
     : options_(checked(std::move(options))),
       text_(file_text(space)),
-      space_(parse_space(text_, space.string())),
+      space_(replaced(parse_space(text_, space.string()), options_.replaced)),
       store_(results),
       keep_going_(std::move(keep_going)),
       rungs_(options_.budget ? rungs_of(space_.frames) : std::vector<int>{space_.frames}),

@@ -15,8 +15,9 @@
 namespace stipple {
 
 struct ExploreOptions {
-    bool force = false;            ///< run trials again that RESULTS has
-    std::optional<Budget> budget;  ///< none: each point with the whole clip
+    std::vector<SpaceAxis> replaced;  ///< axes with other values than in the space
+    bool force = false;               ///< run trials again that RESULTS has
+    std::optional<Budget> budget;     ///< none: each point with the whole clip
     /// Name of the column by which points are ranked after a rung; empty: by dominance in rate, dB
     /// and energy.
     std::string rank;

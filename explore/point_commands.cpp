@@ -27,7 +27,8 @@ std::string settings(const Space& space, const SpacePoint& point, bool of_decode
     std::string text;
     for (std::size_t i = 0; i < point.size(); ++i) {
         const std::string& name = space.axes[i].name;
-        if (name.find('.') != std::string::npos && name.starts_with("decoder.") == of_decoder)
+        if (name.find('.') != std::string::npos && name.starts_with("decoder.") == of_decoder &&
+            !point[i].empty())
             text += " --set " + shell_quoted(fmt::format("{}={}", name, point[i]));
     }
     return text;
@@ -65,6 +66,7 @@ std::string point_space(const Space& space, const SpacePoint& point, int slots) 
     toml::table axes, set;
     for (std::size_t i = 0; i < point.size(); ++i) {
         const std::string& name = space.axes[i].name;
+        if (name == "system" || point[i].empty()) continue;  // the point has all that it stands for
         (name.find('.') == std::string::npos ? axes : set).insert(name, only(point[i]));
     }
     toml::table text{{"axes", axes},
@@ -73,9 +75,11 @@ std::string point_space(const Space& space, const SpacePoint& point, int slots) 
                                           {"cols", space.scene.cols},
                                           {"planes", space.scene.planes}}}};
     if (!set.empty()) text.insert("set", set);
+    toml::table readout;
     if (space.readout.rows > 0)
-        text.insert("readout",
-                    toml::table{{"rows", space.readout.rows}, {"cols", space.readout.cols}});
+        readout = {{"rows", space.readout.rows}, {"cols", space.readout.cols}};
+    if (!space.readout_sensor.empty()) readout.insert("sensor", space.readout_sensor);
+    if (!readout.empty()) text.insert("readout", readout);
     std::ostringstream stream;
     stream << toml::toml_formatter(
         text, toml::toml_formatter::default_flags & ~(toml::format_flags::allow_multi_line_strings |

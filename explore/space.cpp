@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/joined.h"
 #include "core/toml_keys.h"
 #include "scenes/scene.h"
 
@@ -48,6 +49,12 @@ class SpaceReader {
                                                  const toml::table& table) const;
     [[nodiscard]] int whole(const toml::table& table, const std::string& key, int fallback,
                             int max) const;
+    void add_axes(Space& space, const toml::table& tables) const;
+    void add_systems(Space& space, const toml::node* list) const;
+    [[nodiscard]] SpaceSystem system(const toml::table& table, const std::string& key) const;
+    void check_setting(const std::string& name) const;
+    [[nodiscard]] const toml::table& section(const toml::table& tables,
+                                             const std::string& name) const;
     void check_keys(const toml::table& table, const std::string& section,
                     const std::vector<std::string_view>& known) const;
 
@@ -56,7 +63,9 @@ class SpaceReader {
 
 /// A value as TOML, but a text without quotes.
 std::string SpaceReader::text(const std::string& key, const toml::node& node) const {
-    if (const auto* word = node.as_string()) return word->get();
+    if (const auto* word = node.as_string(); word != nullptr && !word->get().empty())
+        return word->get();
+    if (node.is_string()) fail(key, "is an empty text");
     if (node.is_table() || node.is_date() || node.is_time() || node.is_date_time())
         fail(key, "has a value that is no number, text, boolean or list");
     std::ostringstream text;
@@ -124,51 +133,123 @@ void SpaceReader::check_keys(const toml::table& table, const std::string& sectio
                  "is unknown here; see docs/explore.md");
 }
 
-Space SpaceReader::read(const toml::table& tables) const {
-    check_keys(tables, "", {"axes", "set", "clip", "readout"});
-    const toml::table none;
-    const auto section = [&](const std::string& name) -> const toml::table& {
-        const toml::node* node = tables.get(name);
-        if (node != nullptr && !node->is_table()) fail(name, "is no section");
-        return node == nullptr ? none : *node->as_table();
-    };
-    const toml::table& axes = section("axes");
+const toml::table& SpaceReader::section(const toml::table& tables, const std::string& name) const {
+    static const toml::table kNone;
+    const toml::node* node = tables.get(name);
+    if (node != nullptr && !node->is_table()) fail(name, "is no section");
+    return node == nullptr ? kNone : *node->as_table();
+}
+
+void SpaceReader::check_setting(const std::string& name) const {
+    if (!name.starts_with("sensor.") && !name.starts_with("schedule.") &&
+        !name.starts_with("decoder."))
+        fail("set." + name,
+             "begins neither with sensor. nor schedule. nor decoder.; put it "
+             "into quotes: \"sensor.bit_depth\" = [8, 10]");
+}
+
+SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key) const {
+    check_keys(table, key, {"name", "schedule", "method", "set"});
+    SpaceSystem system;
+    for (const char* name : {"name", "schedule", "method"}) {
+        const toml::node* node = table.get(name);
+        if (node == nullptr) fail(key + "." + name, "is missing");
+        const std::string value = text(key + "." + name, *node);
+        if (name == std::string_view("name"))
+            system.name = value;
+        else
+            system.values.emplace_back(name, value);
+    }
+    for (const auto& [setting, node] : section(table, "set")) {
+        const std::string name(setting.str());
+        check_setting(name);
+        system.values.emplace_back(name, text(key + ".set." + name, node));
+    }
+    return system;
+}
+
+/// Adds the axis of the systems, and those of their keys, whose values a system sets.
+void SpaceReader::add_systems(Space& space, const toml::node* list) const {
+    if (list == nullptr) return;
+    const toml::array* tables = list->as_array();
+    if (tables == nullptr || !tables->is_array_of_tables() || tables->empty())
+        fail("systems", "is no list of tables, each headed [[systems]]");
+    SpaceAxis names{"system", {}};
+    for (std::size_t i = 0; i < tables->size(); ++i) {
+        space.systems.push_back(
+            system(*tables->get(i)->as_table(), fmt::format("systems.{}", i + 1)));
+        const std::string& name = space.systems.back().name;
+        if (std::ranges::find(names.values, name) != names.values.end())
+            fail("systems", fmt::format("has two of the name \"{}\"", name));
+        names.values.push_back(name);
+    }
+    space.axes.push_back(std::move(names));
+    for (const SpaceSystem& system : space.systems)
+        for (const auto& [name, value] : system.values)
+            if (std::ranges::find(space.axes, name, &SpaceAxis::name) == space.axes.end())
+                space.axes.push_back({name, {""}});
+}
+
+void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
+    const toml::table& axes = section(tables, "axes");
     check_keys(axes, "axes", {"footage", "sensor", "schedule", "method", "seed"});
-    Space space;
+    const toml::node* systems = tables.get("systems");
     for (const auto& [name, fallback] : kNamedAxes) {
         const toml::node* node = axes.get(name);
+        const bool of_systems = systems != nullptr && (name == "schedule" || name == "method");
+        if (node != nullptr && of_systems)
+            fail("axes." + std::string(name), "is set by each of the systems; leave it out");
         if (node == nullptr && fallback == nullptr)
             fail("axes.sensor",
                  "is missing; name a sensor of \"stipple list sensors\", or several");
-        space.axes.push_back({std::string(name), node == nullptr
-                                                     ? std::vector<std::string>{fallback}
-                                                     : values("axes." + std::string(name), *node)});
+        if (node != nullptr)
+            space.axes.push_back({std::string(name), values("axes." + std::string(name), *node)});
+        else
+            space.axes.push_back({std::string(name), {of_systems ? "" : fallback}});
     }
-    for (const auto& [key, node] : section("set")) {
+    add_systems(space, systems);
+    for (const auto& [key, node] : section(tables, "set")) {
         const std::string name(key.str());
-        if (!name.starts_with("sensor.") && !name.starts_with("schedule.") &&
-            !name.starts_with("decoder."))
-            fail("set." + name,
-                 "begins neither with sensor. nor schedule. nor decoder.; put it "
-                 "into quotes: \"sensor.bit_depth\" = [8, 10]");
+        check_setting(name);
+        if (std::ranges::find(space.axes, name, &SpaceAxis::name) != space.axes.end())
+            fail("set." + name, "is set by a system too; give it in one place");
         space.axes.push_back({name, values("set." + name, node)});
     }
-    const toml::table& clip = section("clip");
+}
+
+Space SpaceReader::read(const toml::table& tables) const {
+    check_keys(tables, "", {"axes", "systems", "set", "clip", "readout"});
+    Space space;
+    add_axes(space, tables);
+    const toml::table& clip = section(tables, "clip");
     check_keys(clip, "clip", {"frames", "rows", "cols", "planes"});
     space.frames = whole(clip, "clip.frames", space.frames, SceneOptions::kMaxSlots);
     space.scene.rows = whole(clip, "clip.rows", space.scene.rows, SceneOptions::kMaxSide);
     space.scene.cols = whole(clip, "clip.cols", space.scene.cols, SceneOptions::kMaxSide);
     space.scene.planes = whole(clip, "clip.planes", space.scene.planes, 3);
-    const toml::table& readout = section("readout");
-    check_keys(readout, "readout", {"rows", "cols"});
+    const toml::table& readout = section(tables, "readout");
+    check_keys(readout, "readout", {"rows", "cols", "sensor"});
     space.readout.rows = whole(readout, "readout.rows", 0, kMaxFrameSide);
     space.readout.cols = whole(readout, "readout.cols", 0, kMaxFrameSide);
     if ((space.readout.rows == 0) != (space.readout.cols == 0))
         fail("readout", "needs both rows and cols");
+    if (const toml::node* sensor = readout.get("sensor"))
+        space.readout_sensor = text("readout.sensor", *sensor);
     return space;
 }
 
 }  // namespace
+
+void Space::replace(const SpaceAxis& other) {
+    const auto found = std::ranges::find(axes, other.name, &SpaceAxis::name);
+    if (found == axes.end()) throw InputError("the space", "has no axis \"" + other.name + "\"");
+    for (const std::string& value : other.values)
+        if (other.name == "system" &&
+            std::ranges::find(systems, value, &SpaceSystem::name) == systems.end())
+            throw InputError(fmt::format("system \"{}\"", value),
+                             "is none of " + joined(found->values));
+    found->values = other.values;
+}
 
 std::uint64_t Space::size() const {
     double points = 1;  // exact as far as it matters
@@ -182,12 +263,14 @@ SpacePoint Space::point(std::uint64_t number) const {
         values[i] = axes[i].values[number % axes[i].values.size()];
         number /= axes[i].values.size();
     }
+    for (const SpaceSystem& system : systems)
+        if (system.name == value(values, "system"))
+            for (const auto& [name, chosen] : system.values) values[axis(name)] = chosen;
     return values;
 }
 
-const std::string& Space::value(const SpacePoint& point, std::string_view name) const {
-    const auto axis = std::ranges::find(axes, name, &SpaceAxis::name);
-    return point[static_cast<std::size_t>(axis - axes.begin())];
+std::size_t Space::axis(std::string_view name) const {
+    return static_cast<std::size_t>(std::ranges::find(axes, name, &SpaceAxis::name) - axes.begin());
 }
 
 Space parse_space(const std::string& text, const std::string& name) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/geometry.h"
@@ -15,25 +17,39 @@ struct SpaceAxis {
     std::vector<std::string> values;
 };
 
-/// A choice of one value of each axis, in their order.
+/// A choice of one value of each axis, in their order. An empty value stands for the default.
 using SpacePoint = std::vector<std::string>;
+
+/// Values that belong together, such as a schedule, the keys that it needs, and a method.
+struct SpaceSystem {
+    std::string name;                                         ///< value of the axis "system"
+    std::vector<std::pair<std::string, std::string>> values;  ///< axis and value
+};
 
 /// All trials of `stipple explore`: each value of each axis with each of the others
 /// (docs/explore.md).
 struct Space {
     static constexpr std::uint64_t kMaxPoints = 100'000;
 
-    std::vector<SpaceAxis> axes;  ///< footage, sensor, schedule, method, seed, then the keys
-    int frames = 32;              ///< slots of each trial, at most
+    std::vector<SpaceAxis> axes;  ///< footage, sensor, schedule, method, seed, system, the keys
+    std::vector<SpaceSystem> systems;  ///< if any, they set schedule, method and some of the keys
+    int frames = 32;                   ///< slots of each trial, at most
     FrameShape scene{.rows = 48, .cols = 64, .planes = 1};  ///< of embedded scenes
     /// The window whose readout is timed; 0: that of the clip.
     FrameShape readout{.rows = 0, .cols = 0, .planes = 1};
+    std::string readout_sensor;  ///< the sensor whose clocks time it; empty: that of the point
 
+    /// Gives an axis other values. \throws InputError if there is none of this name, or no system
+    /// of a name.
+    void replace(const SpaceAxis& axis);
     [[nodiscard]] std::uint64_t size() const;
     /// Point `number` of size(); the last axis changes fastest.
     [[nodiscard]] SpacePoint point(std::uint64_t number) const;
-    /// The value of the axis `name`, which there is.
-    [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const;
+    /// The index of the axis `name`, which there is.
+    [[nodiscard]] std::size_t axis(std::string_view name) const;
+    [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const {
+        return point[axis(name)];
+    }
 };
 
 /// The space that a TOML text describes; messages call it `name`. \throws InputError naming the

@@ -48,7 +48,7 @@ std::vector<std::string> settings_of(const Space& space, const SpacePoint& point
     for (std::size_t i = 0; i < point.size(); ++i) {
         const std::string& name = space.axes[i].name;
         if (name.starts_with(section) && name.size() > section.size() &&
-            name[section.size()] == '.')
+            name[section.size()] == '.' && !point[i].empty())
             settings.push_back(fmt::format("{}={}", name.substr(section.size() + 1), point[i]));
     }
     return settings;
@@ -77,14 +77,31 @@ double dynamic_range_stops(const SensorSetup& setup) {
     return std::log2(setup.params.saturation_e() / shortest * longest / noise_e);
 }
 
+TimedWindow timed_window(const Space& space, SensorChoice choice, const SensorSetup& setup) {
+    TimedWindow window{setup.timing, setup.schedule, setup.shape};
+    if (!space.readout_sensor.empty()) {
+        choice.sensor = space.readout_sensor;
+        choice.settings.clear();
+        const SensorDescription sensor = read_sensor_file(choice);
+        if (!sensor.timing) throw InputError("readout.sensor " + choice.sensor, no_timing_text());
+        window.timing = sensor.timing;
+        window.keys = sensor.origin->keys;
+        window.shape = {.rows = window.timing->rows, .cols = window.timing->cols, .planes = 1};
+    }
+    if (space.readout.rows > 0) window.shape = space.readout;
+    if (window.timing)
+        window.schedule = set_up_schedule(choice, window.shape, window.timing->addressing);
+    return window;
+}
+
 /// Rate, bandwidth and energy, by the timing of the sensor if it has one.
 void add_readout(const Trial& trial, double bits_per_slot, TrialFigures& figures) {
-    const SensorSetup& setup = trial.setup;
-    figures.slots_per_second = 1e6 / setup.params.slot_us;
+    figures.slots_per_second = 1e6 / trial.setup.params.slot_us;
     figures.limited_by = "slot";
-    if (setup.timing) {
-        const ReadoutRate rate = rate_of(*setup.timing, trial.timed.schedule, trial.window);
-        const double period = trial.timed.schedule.period_slots();
+    if (const TimedWindow& window = trial.window; window.timing) {
+        const ReadoutRate rate = rate_of(*window.timing, window.schedule.schedule, window.shape);
+        const double period = window.schedule.schedule.period_slots();
+        figures.readout_slots_per_second = rate.coded_hz;
         if (rate.coded_hz < figures.slots_per_second) {
             figures.slots_per_second = rate.coded_hz;
             figures.limited_by = name_of(rate.slowest.limit);
@@ -171,15 +188,14 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
     const DecodeOptions decoding = read_decode_options(method, config);
     SensorSetup setup = set_up_sensor(choice, light.video.shape());
     const FrameShape shape = light.video.shape();
-    const FrameShape window = space.readout.rows > 0 ? space.readout : setup.shape;
-    NamedSchedule timed =
-        setup.timing ? set_up_schedule(choice, window, setup.timing->addressing) : setup.schedule;
+    TimedWindow window = timed_window(space, choice, setup);
     const int recorded = std::min(slots, light.video.slots());
     std::string identity = fmt::format(
-        "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {}\n{}\nmethod {}\n{}",
-        version(), recorded, shape.rows, shape.cols, shape.planes, window.rows, window.cols,
-        provenance_of(setup, light.origin), space.value(point, "method"), config.as_toml(""));
-    return {std::move(setup), std::move(timed), window, decoding, recorded, std::move(identity)};
+        "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {} {}\n{}\nmethod {}\n{}",
+        version(), recorded, shape.rows, shape.cols, shape.planes, window.shape.rows,
+        window.shape.cols, window.keys, provenance_of(setup, light.origin),
+        space.value(point, "method"), config.as_toml(""));
+    return {std::move(setup), std::move(window), decoding, recorded, std::move(identity)};
 }
 
 TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/flux_video.h"
@@ -42,11 +43,18 @@ struct TrialLight {
 [[nodiscard]] TrialLight read_light(const Space& space, const std::string& footage,
                                     const KeepGoing& keep_going);
 
+/// A window and how it is read.
+struct TimedWindow {
+    std::optional<ReadoutTiming> timing;  ///< none: the sensor has no clocks
+    NamedSchedule schedule;
+    FrameShape shape;
+    std::string keys = {};  ///< of the sensor that `readout.sensor` names, as lines of TOML
+};
+
 /// A point of a space, set up.
 struct Trial {
     SensorSetup setup;
-    NamedSchedule timed;  ///< schedule of the window that is timed
-    FrameShape window;    ///< this window
+    TimedWindow window;  ///< whose rate, bandwidth and energy are computed
     DecodeOptions decoding;
     int slots;             ///< the first ones of the light are recorded
     std::string identity;  ///< all that determines the result; equal for equal trials

@@ -14,6 +14,7 @@ struct TrialFigures {
 
     double slots_per_second = kNone;
     std::string limited_by;  ///< "slot", or the part of the readout that limits the rate
+    double readout_slots_per_second = kNone;  ///< what the readout allows, with timing
     double megabits_per_second = kNone;
     double energy_uj_per_slot = kNone;  ///< of sensors with timing
     double light_throughput = kNone;
@@ -34,8 +35,10 @@ struct FigureColumn {
     Better better;
 };
 
-inline constexpr std::array<FigureColumn, 9> kFigureColumns{
+inline constexpr std::array<FigureColumn, 10> kFigureColumns{
     {{"slots_per_second", "slot rate, 1/s", &TrialFigures::slots_per_second, Better::kMore},
+     {"readout_slots_per_second", "slot rate of the readout, 1/s",
+      &TrialFigures::readout_slots_per_second, Better::kMore},
      {"megabits_per_second", "data rate, Mbit/s", &TrialFigures::megabits_per_second,
       Better::kLess},
      {"energy_uj_per_slot", "energy per slot, uJ", &TrialFigures::energy_uj_per_slot,

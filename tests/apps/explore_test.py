@@ -21,6 +21,14 @@ rows = 32
 cols = 32
 """
 
+SYSTEM = """
+[[systems]]
+name = "a"
+schedule = "random"
+method = "naive"
+set = { "sensor.bit_depth" = 10 }
+"""
+
 
 class ExploreTest(ProgramTest):
     def write_space(self, text=SPACE):
@@ -111,6 +119,39 @@ class ExploreTest(ProgramTest):
         self.assertIn("bit_depth", rows[1]["problem"])
         self.assertIn("nosuch", next(row["problem"] for row in rows if row["sensor"] == "nosuch"))
         self.assertEqual((rows[1]["psnr_db"], rows[0]["problem"]), ("", ""))
+
+    def test_systems_set_values_that_belong_together(self):
+        rows = self.systems_rows("""
+[[systems]]
+name = "flutter"
+schedule = "pixel_flutter"
+method = "naive"
+set = { "schedule.code_slots" = 4, "schedule.open_slots" = 2 }
+[[systems]]
+name = "frames"
+schedule = "full1x"
+method = "fast"
+""")
+        self.assertEqual([(row["system"], row["schedule"], row["method"]) for row in rows],
+                         [("flutter", "pixel_flutter", "naive"), ("frames", "full1x", "fast")])
+        self.assertEqual([row["schedule.code_slots"] for row in rows], ["4", ""])
+        # Half of the slots are open; one in four.
+        self.assertEqual([float(row["light_throughput"]) for row in rows], [0.5, 0.25])
+        self.assertEqual([row["problem"] for row in rows], ["", ""])
+
+    def systems_rows(self, systems):
+        self.explore('[axes]\nsensor = "paper"\n' + systems + SPACE[SPACE.index("[clip]"):])
+        return self.rows()
+
+    def test_the_clocks_of_another_sensor_time_the_readout(self):
+        space = SPACE.replace('["paper", "lux1310"]', '"paper"') + '[readout]\nsensor = "lux1310"\n'
+        self.explore(space)
+        for row in self.rows():
+            timing = self.figures("timing", "--sensor", "lux1310", "--schedule", row["schedule"], "--seed", 1)
+            self.assertAlmostEqual(float(row["readout_slots_per_second"]), timing["coded_readout_hz"], places=6)
+            self.assertEqual((float(row["slots_per_second"]), row["limited_by"]), (200, "slot"))
+        self.explore(space.replace("lux1310", "t6"))
+        self.assertIn("readout.sensor t6", self.rows()[0]["problem"])
 
     def test_a_stopped_run_goes_on(self):
         space = self.write_space(SPACE.replace("frames = 16", "frames = 64") + "[set]\n"
@@ -235,6 +276,13 @@ class ExploreTest(ProgramTest):
                            ('[axes]\nsensor = "paper"\nseed = { from = 0, to = 9, count = 3, log = true }',
                             "is no range"),
                            ('[axes]\nsensor = 1979-05-27', "no number, text"),
+                           ('[axes]\nsensor = ""', "is an empty text"),
+                           ('systems = 3\n[axes]\nsensor = "paper"', "systems: is no list of tables"),
+                           ('[axes]\nsensor = "paper"\n[[systems]]\nname = "a"', "systems.1.schedule: is missing"),
+                           ('[axes]\nsensor = "paper"\nmethod = "fast"\n' + SYSTEM, "axes.method: is set by each"),
+                           ('[axes]\nsensor = "paper"\n' + SYSTEM + SYSTEM, 'two of the name "a"'),
+                           ('[axes]\nsensor = "paper"\n[set]\n"sensor.bit_depth" = 8\n' + SYSTEM,
+                            "set.sensor.bit_depth: is set by a system too"),
                            (".".join("a" * 40) + " = 1", "space.toml:1: a key has more than 32")]:
             with self.subTest(text):
                 self.fails(INPUT, [part], "explore", self.write_space(text), "-o", "results")

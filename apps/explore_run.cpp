@@ -1,0 +1,78 @@
+#include "apps/explore_run.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "apps/interrupt.h"
+#include "apps/report/number_text.h"
+#include "apps/report/own_command.h"
+#include "apps/report/progress.h"
+#include "apps/standard_error.h"
+#include "core/error.h"
+#include "explore/results_page.h"
+#include "report/run_report.h"
+
+namespace stipple {
+namespace {
+
+bool keep_going() {
+    return stop_signal() == 0;
+}
+
+/// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
+void run_point(Exploration& exploration, std::uint64_t number) {
+    const Trial* const trial = exploration.begin(number);
+    if (trial == nullptr) return;
+    try {
+        const auto stream = exploration.store().stream_of(trial->identity);
+        exploration.put(number, run_trial(*trial, exploration.light(), stream, keep_going));
+    } catch (const InputError& e) {
+        if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
+        exploration.fail(number, e.what());
+    }
+}
+
+/// Until all is done, or a signal asks to stop.
+void run_points(Exploration& exploration, Progress& progress) {
+    try {
+        while (exploration.next_rung())
+            for (const std::uint64_t number : exploration.due()) {
+                if (!keep_going()) return;
+                run_point(exploration, number);
+                progress.advance();
+            }
+    } catch (const TrialStopped&) {
+        // What is done stays done.
+    }
+}
+
+}  // namespace
+
+Exploration explored(const ExploreRun& what, const RunOptions& run) {
+    ExploreOptions options = what.options;
+    options.force = run.force;
+    Exploration exploration(what.space, what.results, options, keep_going);
+    run.say(fmt::format("{}: {}", what.space, counted(exploration.space().size(), "point")));
+    {
+        Progress progress(run, "exploring", static_cast<std::int64_t>(exploration.most_trials()),
+                          "point");
+        run_points(exploration, progress);
+    }
+    exploration.store().write("table.csv", exploration.csv());
+    if (!what.no_report) {
+        exploration.store().write("report.html",
+                                  results_page(exploration, what.space, own_command()));
+        say_warning(chart_warning());
+    }
+    return exploration;
+}
+
+std::string counts_text(const ExploreRun& what, const Exploration& exploration) {
+    const auto [trials, known, failed] = exploration.counts();
+    return fmt::format("{}/{}: {} run, {} known before, {} failed", what.results,
+                       what.no_report ? "table.csv" : "report.html", trials, known, failed);
+}
+
+}  // namespace stipple

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "apps/arguments/run_options.h"
+#include "explore/exploration.h"
+
+namespace stipple {
+
+struct ExploreRun {
+    std::string space;    ///< file
+    std::string results;  ///< folder
+    ExploreOptions options;
+    bool no_report = false;
+};
+
+/// Runs all points of the space, until a signal asks to stop, and writes table.csv and report.html
+/// into the results. \throws InputError, DeviceError.
+[[nodiscard]] Exploration explored(const ExploreRun& what, const RunOptions& run);
+
+/// "results/report.html: 4 run, 0 known before, 0 failed"
+[[nodiscard]] std::string counts_text(const ExploreRun& what, const Exploration& exploration);
+
+}  // namespace stipple

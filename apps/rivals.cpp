@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/arguments/sensor.h"
+#include "apps/explore_run.h"
+#include "apps/report/column_width.h"
+#include "apps/report/json_file.h"
+#include "apps/subcommands.h"
+#include "core/config.h"
+
+namespace stipple {
+namespace {
+
+struct RivalsArguments {
+    std::string footage;
+    std::string results;
+    std::string space = "rivals";
+    std::string sensor = "paper";
+    std::vector<std::string> systems = {};  ///< empty: all
+};
+
+/// A column of the table for people.
+struct RivalColumn {
+    const char* heading;
+    double TrialFigures::*value;
+    double scale;
+    int digits;
+};
+constexpr RivalColumn kColumns[] = {{"Mbit/s", &TrialFigures::megabits_per_second, 1, 1},
+                                    {"light %", &TrialFigures::light_throughput, 100, 0},
+                                    {"stops", &TrialFigures::dynamic_range_stops, 1, 1},
+                                    {"PSNR dB", &TrialFigures::psnr_db, 1, 2},
+                                    {"gamma dB", &TrialFigures::psnr_gamma_db, 1, 2},
+                                    {"PU21 dB", &TrialFigures::pu21_psnr_db, 1, 2},
+                                    {"slots/s", &TrialFigures::readout_slots_per_second, 1, 0},
+                                    {"decode s", &TrialFigures::decode_seconds, 1, 1}};
+
+std::string table_of(const Exploration& exploration) {
+    const Space& space = exploration.space();
+    const std::size_t axis = space.axis("system");
+    const std::size_t width =
+        column_width(space.axes[axis].values, [](const std::string& name) { return name; });
+    std::string text(width, ' ');
+    for (const RivalColumn& column : kColumns) text += fmt::format("  {:>8}", column.heading);
+    for (std::uint64_t number = 0; number < space.size(); ++number) {
+        const ExploredPoint& point = exploration.points()[number];
+        text += fmt::format("\n{:<{}}", space.point(number)[axis], width);
+        for (const RivalColumn& column : kColumns) {
+            const double value = point.figures ? point.figures.value().*column.value : NAN;
+            text += fmt::format("  {:>8}",
+                                std::isnan(value)
+                                    ? "-"
+                                    : fmt::format("{:.{}f}", column.scale * value, column.digits));
+        }
+        if (!point.problem.empty()) text += "  " + point.problem;
+    }
+    return text;
+}
+
+nlohmann::ordered_json json_of(const Exploration& exploration) {
+    const Space& space = exploration.space();
+    auto systems = nlohmann::ordered_json::array();
+    for (std::uint64_t number = 0; number < space.size(); ++number) {
+        const ExploredPoint& point = exploration.points()[number];
+        nlohmann::ordered_json entry;
+        for (std::size_t i = 0; const std::string& value : space.point(number))
+            entry[space.axes[i++].name] = value;
+        for (const FigureColumn& column : kFigureColumns)
+            entry[std::string(column.name)] =
+                point.figures ? point.figures.value().*column.value : NAN;
+        entry["problem"] = point.problem;
+        systems.push_back(std::move(entry));
+    }
+    return {{"systems", systems}};
+}
+
+void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
+    ExploreRun what{.space = find_config(ConfigKind::kSpaces, arguments.space).string(),
+                    .results = arguments.results,
+                    .options = {}};
+    what.options.replaced = {{"footage", {arguments.footage}}, {"sensor", {arguments.sensor}}};
+    if (!arguments.systems.empty()) what.options.replaced.push_back({"system", arguments.systems});
+    JsonFile json(run);
+    const Exploration exploration = explored(what, run);
+    json.write(json_of(exploration));
+    run.say(table_of(exploration) + "\n" + counts_text(what, exploration));
+}
+
+}  // namespace
+
+void add_rivals(Command& app, Action& action) {
+    Command command =
+        app.add_command("rivals", "Coded exposure and its rivals at equal bandwidth on a scene");
+    const auto arguments = std::make_shared<RivalsArguments>();
+    command
+        .add_option("FOOTAGE", arguments->footage,
+                    "footage in linear light, or a scene of \"stipple list scenes\"")
+        .required()
+        .input();
+    command
+        .add_option("-o,--output", arguments->results,
+                    "folder of results; those that it has are kept")
+        .type_name("RESULTS")
+        .required()
+        .output();
+    add_sensor(command, arguments->sensor);
+    command
+        .add_option("--space", arguments->space,
+                    "the systems: a name of config/spaces or a file (docs/explore.md)")
+        .shows_default()
+        .type_name("NAME|FILE")
+        .input();
+    command.add_list("--system", arguments->systems, "only this one; may be repeated")
+        .type_name("NAME")
+        .default_text("all");
+    add_threads(command, action.options);
+    command.footer(
+        "Example:\n"
+        "  stipple rivals pan -o results\n"
+        "Each system records the footage with the same bits per second and the same aperture, and\n"
+        "decodes it. A system that cannot do it is a row with the reason (docs/rivals.md).");
+    set_action(command, action, arguments, compare_rivals);
+}
+
+}  // namespace stipple
