@@ -88,7 +88,9 @@ void add_decode(Command& app, Action& action) {
         .output();
     command
         .add_option("--calibration", options->calibration,
-                    "calibration of the chip's pixels, which \"stipple calibrate\" wrote")
+                    "calibration of the chip, which \"stipple calibrate\" wrote; none: do not "
+                    "calibrate")
+        .default_text("NAME.stcal beside a stream NAME.stipple, if it is there")
         .type_name("FILE")
         .input();
     const auto check_schedule = std::make_shared<std::string>();

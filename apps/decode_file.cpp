@@ -194,7 +194,8 @@ nlohmann::ordered_json DecodeRun::figures() const {
                                 {"voxels", report_.voxels},
                                 {"voxels_per_second", voxels_per_second()},
                                 {"peak_memory_bytes", peak_memory_bytes()},
-                                {"threads", thread_count()}};
+                                {"threads", thread_count()},
+                                {"calibration", calibration_json(arguments_)}};
     if (check_) json["schedule_check"] = check_json(*check_);
     if (!stages_.figures().empty()) json["convergence"] = stages_.figures();
     if (const auto levels = writer_.light_levels())
@@ -203,12 +204,13 @@ nlohmann::ordered_json DecodeRun::figures() const {
 }
 
 std::string DecodeRun::summary() const {
-    return fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}", arguments_.output,
+    return fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}{}", arguments_.output,
                        counted(report_.slots, "frame"), arguments_.method, rounded(report_.seconds),
                        rounded(1e-6 * voxels_per_second()), peak_memory_bytes() / 1000000,
                        report_.samples == 0 ? ""
                                             : fmt::format(", {:.2f} % of the samples saturated",
-                                                          100 * saturated_fraction(report_)));
+                                                          100 * saturated_fraction(report_)),
+                       calibrated_text(arguments_));
 }
 
 /// Ends that the user may not expect.

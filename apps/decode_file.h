@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/arguments/run_options.h"
@@ -18,6 +19,9 @@ enum class CheckSchedule : std::uint8_t {
     kFixShift      ///< they are decoded with this shift
 };
 
+/// Of `DecodeArguments::calibration`: do not calibrate.
+inline constexpr std::string_view kNoCalibration = "none";
+
 /// The arguments of `stipple decode`.
 struct DecodeArguments {
     std::string stream;
@@ -32,7 +36,7 @@ struct DecodeArguments {
     PartOfWork part;          ///< of the windows of the stream
     bool follow = false;      ///< the stream is still being written
     double timeout_s = 10;    ///< with `follow`: without growth
-    std::string calibration;  ///< file of the chip's calibration; empty: none
+    std::string calibration;  ///< file of the chip's calibration, or "none"; empty: beside stream
     CheckSchedule check_schedule = CheckSchedule::kNo;
     VideoCoding video;   ///< of .mp4 and .mkv
     ImageCoding images;  ///< of folders and .tif

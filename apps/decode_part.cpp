@@ -48,7 +48,7 @@ WindowIdentity identity_of(const DecodeArguments& arguments, const DecodeSetup& 
     if (!std::filesystem::is_regular_file(arguments.stream))
         throw InputError(arguments.stream, "--part needs a file, which is read more than once");
     const StreamHeader header = StreamReader(arguments.stream).header();
-    const std::string& calibration = arguments.calibration;
+    const std::string calibration = calibration_file(arguments);
     const auto whole = stream_identity(arguments.stream);
     return {.stream_bytes = std::filesystem::file_size(arguments.stream),
             .stream = whole ? *whole : "sha256 " + sha256_of(arguments.stream),
@@ -167,11 +167,12 @@ void PartRun::tell() {
                  {"voxels", static_cast<std::uint64_t>(slots_) * folder_.identity().shape.sites()},
                  {"voxels_per_second", voxels_per_second()},
                  {"peak_memory_bytes", peak_memory_bytes()},
-                 {"threads", thread_count()}});
-    run_.say(fmt::format("{}: part {} of {}, {} of {} decoded, {} kept, method {}, {} s",
+                 {"threads", thread_count()},
+                 {"calibration", calibration_json(arguments_)}});
+    run_.say(fmt::format("{}: part {} of {}, {} of {} decoded, {} kept, method {}, {} s{}",
                          arguments_.output, arguments_.part.number, arguments_.part.count, decoded,
                          counted(windows, "window"), windows - decoded, arguments_.method,
-                         rounded(seconds_)));
+                         rounded(seconds_), calibrated_text(arguments_)));
     read_.tail_bytes = 0;  // it may read beyond the part, not to the end
     if (const auto text = decoded_damage_text(read_, schedule_hint(read_)); !text.empty())
         throw InputError(arguments_.stream, text);

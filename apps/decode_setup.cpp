@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <nlohmann/json.hpp>
+#include <utility>
+
 #include "apps/fixed_pattern.h"
 #include "apps/standard_error.h"
+#include "calibration/calibration_file.h"
 #include "core/config.h"
 #include "core/error.h"
 
@@ -23,11 +27,35 @@ DecodeSetup read_decode_setup(const DecodeArguments& arguments) {
     return setup;
 }
 
+std::string calibration_file(const DecodeArguments& arguments) {
+    if (arguments.calibration == kNoCalibration) return {};
+    return arguments.calibration.empty() ? calibration_beside(arguments.stream).string()
+                                         : arguments.calibration;
+}
+
 void calibrate(StreamReader& reader, const DecodeArguments& arguments) {
-    if (arguments.calibration.empty())
-        say_warning(fixed_pattern_warning(arguments.stream, reader.header()));
-    else
-        reader.use_sites(read_sites(arguments.calibration, reader.header()));
+    const std::string file = calibration_file(arguments);
+    if (file.empty()) return say_warning(fixed_pattern_warning(arguments.stream, reader.header()));
+    try {
+        ChipCalibration calibration = read_calibration(file, reader.header());
+        reader.use_sites(std::move(calibration.sites), std::move(calibration.response));
+    } catch (const InputError& error) {
+        if (!arguments.calibration.empty()) throw;
+        throw InputError(arguments.stream,
+                         fmt::format("the calibration beside it cannot be used (--calibration none "
+                                     "decodes without): {}",
+                                     error.what()));
+    }
+}
+
+nlohmann::ordered_json calibration_json(const DecodeArguments& arguments) {
+    const std::string file = calibration_file(arguments);
+    return file.empty() ? nlohmann::ordered_json{} : nlohmann::ordered_json(file);
+}
+
+std::string calibrated_text(const DecodeArguments& arguments) {
+    const std::string file = calibration_file(arguments);
+    return file.empty() ? "" : fmt::format(", calibrated by {}", file);
 }
 
 std::string_view schedule_hint(const StreamReport& report) {

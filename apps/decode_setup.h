@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -19,9 +20,19 @@ struct DecodeSetup {
 /// \throws InputError as read_decode_options, or if the method has no stages to keep.
 [[nodiscard]] DecodeSetup read_decode_setup(const DecodeArguments& arguments);
 
+/// The calibration file of a stream: the one that is given, or the one beside the stream. Empty
+/// without one, and of "none".
+[[nodiscard]] std::string calibration_file(const DecodeArguments& arguments);
+
 /// Uses the calibration of the chip, or warns what it costs that there is none.
-/// \throws InputError as read_sites.
+/// \throws InputError as read_calibration.
 void calibrate(StreamReader& reader, const DecodeArguments& arguments);
+
+/// The name of its file, or null.
+[[nodiscard]] nlohmann::ordered_json calibration_json(const DecodeArguments& arguments);
+
+/// For a line of results: ", calibrated by FILE"; empty without calibration.
+[[nodiscard]] std::string calibrated_text(const DecodeArguments& arguments);
 
 /// What packets of a wrong size may mean; empty without one.
 [[nodiscard]] std::string_view schedule_hint(const StreamReport& report);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "apps/attached_calibration.h"
 #include "apps/emulate_part.h"
 #include "apps/emulation_input.h"
 #include "apps/interrupt.h"
@@ -59,12 +61,16 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     const auto truth = open_truth(options, setup.footage, run.force);
+    std::optional<AttachedCalibration> calibration;
+    if (!options.calibration.empty())
+        calibration.emplace(options.calibration, options.output, setup, run);
     StreamRecorder recorder =
         open_stream_output(options.output, run, setup, footage_origin(options));
     Progress progress(run, "emulating", slots.slots());
     const bool at_end = expose_slots(slots, recorder, truth.get(), progress, options.footage);
     if (truth) truth->finish();
     recorder.finish();
+    if (calibration) calibration->write();
     if (waveform)
         waveform->write(*recorder.readout_cost(), setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
@@ -80,7 +86,7 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
 
 /// A piece is a part of the stream and of nothing else.
 void check_part(const Command& command, const EmulateArguments& arguments) {
-    command.refuse({"--truth", "--vcd", "--vcd-slots"},
+    command.refuse({"--truth", "--vcd", "--vcd-slots", "--calibration"},
                    "is of all slots, which a part has not; leave out one of them");
     check_part_folder(arguments.output);
 }
@@ -119,6 +125,12 @@ void add_emulate(Command& app, Action& action) {
                     "write the reference light, in the formats of \"decode\"")
         .type_name("OUT")
         .output(kVideoName);
+    command
+        .add_option("--calibration", options->calibration,
+                    "calibration of the chip; a copy, NAME.stcal beside NAME.stipple, tells it to "
+                    "\"decode\"")
+        .type_name("FILE")
+        .input();
     add_waveform_arguments(command, options->waveform);
     add_part(command, options->part,
              "emulate part I of N into pieces of the folder FILE; those that are there are kept "

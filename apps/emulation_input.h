@@ -22,7 +22,8 @@ struct EmulateArguments {
     FootageOptions reading;
     std::optional<Resampling> resampling;  ///< none: each frame is a slot
     SensorChoice sensor;
-    PartOfWork part;  ///< of the pieces of the stream
+    std::string calibration;  ///< file of the chip, for the decoder; empty: none
+    PartOfWork part;          ///< of the pieces of the stream
 };
 
 /// The footage of an emulation and the sensor that it goes through. Warns on standard error of what

@@ -7,6 +7,7 @@
 
 #include "apps/arguments/footage.h"
 #include "apps/file_start.h"
+#include "apps/fixed_pattern.h"
 #include "apps/info_calibration.h"
 #include "apps/info_footage.h"
 #include "apps/info_recording.h"
@@ -14,6 +15,7 @@
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
+#include "apps/report/number_text.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "capture/recording/recording_reader.h"
@@ -42,6 +44,17 @@ std::string stretched_text(const StretchedSlots& stretched, const StreamReader& 
         stretched.mean_us() ? fmt::format(", mean {:.4g} us", *stretched.mean_us()) : "");
 }
 
+/// Of a calibration file beside a stream.
+std::string calibration_line(const std::string& file, const StreamHeader& header) {
+    try {
+        const ChipCalibration calibration = read_calibration(file, header);
+        return fmt::format("calibrated   by {}, from {} and {} of each pixel", file,
+                           counted(calibration.flats, "flat"), counted(calibration.darks, "dark"));
+    } catch (const InputError& error) {
+        return fmt::format("calibrated   not: {}", error.what());
+    }
+}
+
 struct InfoOptions {
     std::string file;
     std::optional<RawFormat> raw;
@@ -64,12 +77,15 @@ void info_stream(const std::string& file, const RunOptions& run) {
     figures["stretched_slots"] = stretched.slots();
     figures["mean_stretched_us"] = or_null(stretched.mean_us());
     figures["command"] = or_null(command);
+    const std::string calibration = calibration_beside(file).string();
+    figures["calibration_file"] = or_null(calibration);
     json.write(figures);
     run.say(stream_text(reader.header(), reader.report()));
     if (stretched.slots() > 0) run.say(stretched_text(stretched, reader));
     const std::string& provenance = reader.header().provenance;
     if (!provenance.empty()) run.say(fmt::format("provenance\n{}", provenance));
     if (!command.empty()) run.say(fmt::format("again        {}", command));
+    if (!calibration.empty()) run.say(calibration_line(calibration, reader.header()));
     if (!undamaged(reader.report()))
         throw InputError(file, damage_text(reader.report()) + leftover_text(file));
     run.say(fmt::format("condition    {}{}", condition_of(reader.report()), leftover_text(file)));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
@@ -48,6 +50,11 @@ void info_calibration(const std::string& file, const RunOptions& run) {
     const MapFigures dark = figures_of(c, &SiteCalibration::dark_dn_per_s);
     const double noise_dn = std::sqrt(figures_of(c, &SiteCalibration::readout_noise_dn2).mean);
     const auto defects = std::ranges::count_if(c.sites, &SiteCalibration::defect);
+    const std::vector<float>& linear = c.response.linear_dn;
+    nlohmann::ordered_json response;  // null: linear
+    if (!linear.empty())
+        response = {{"full_scale_linear_dn", linear.back()},
+                    {"full_scale_error_dn", std::sqrt(c.response.variance_dn2.back())}};
     nlohmann::ordered_json device_id;
     if (c.chip.device_id) device_id = *c.chip.device_id;
     json.write({{"kind", "calibration"},
@@ -65,6 +72,7 @@ void info_calibration(const std::string& file, const RunOptions& run) {
                 {"offset_dn", json_of(offset)},
                 {"dark_dn_per_s", json_of(dark)},
                 {"readout_noise_dn", noise_dn},
+                {"response", response},
                 {"defects", defects}});
     run.say(fmt::format(
         "calibration  {} x {} pixels, {} of {} bits{}{}\n"
@@ -73,13 +81,18 @@ void info_calibration(const std::string& file, const RunOptions& run) {
         "offset       {} +- {} DN\n"
         "dark current {} +- {} DN/s\n"
         "noise        {} DN without light\n"
+        "response     {}\n"
         "defects      {}",
         c.shape.cols, c.shape.rows, counted(c.shape.planes, "plane"), c.bit_depth,
         c.chip.name.empty() ? "" : fmt::format(", sensor {}", terminal_text(c.chip.name)),
         c.chip.device_id ? fmt::format(", device id {}", *c.chip.device_id) : "",
         counted(c.flats, "flat"), counted(c.darks, "dark"), rounded(gain.deviation),
         rounded(gain_error), rounded(offset.mean), rounded(offset.deviation), rounded(dark.mean),
-        rounded(dark.deviation), rounded(noise_dn), defects));
+        rounded(dark.deviation), rounded(noise_dn),
+        linear.empty() ? "linear"
+                       : fmt::format("table; {} DN stand for {} linear DN", linear.size() - 1,
+                                     rounded(static_cast<double>(linear.back()))),
+        defects));
 }
 
 }  // namespace stipple

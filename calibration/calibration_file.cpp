@@ -6,8 +6,10 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <system_error>
 
@@ -22,8 +24,9 @@ namespace stipple {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'C', 'L', 0x0D, 0x0A, 0x1A};
-constexpr std::uint16_t kVersion = 1;
-constexpr std::size_t kFixedBytes = 40;  ///< before the name
+constexpr std::uint16_t kVersion = 2;        ///< with a response table
+constexpr std::uint16_t kLinearVersion = 1;  ///< without
+constexpr std::size_t kFixedBytes = 40;      ///< before the name
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::uint8_t kHasDeviceId = 1;
 
@@ -46,12 +49,18 @@ constexpr std::array<SiteMap, 7> kMaps{{
     {"readout noise variance", &SiteCalibration::readout_noise_dn2, 0, kMaxMagnitude},
 }};
 constexpr std::size_t kSiteBytes = kMaps.size() * sizeof(float) + 1;  // and the defect
+constexpr std::size_t kTableBytes = 2 * sizeof(float);                // of a DN
+constexpr float kMaxLinearDn = 1e6F;
 
 /// The parts of a file before its maps.
 struct Head {
-    ChipCalibration calibration;  ///< without sites
+    ChipCalibration calibration;  ///< without sites, the response of zeros
     std::size_t bytes = 0;
 };
+
+std::size_t dn_count(int bit_depth) {
+    return std::size_t{1} << static_cast<unsigned>(bit_depth);
+}
 
 FrameShape take_shape(ByteCursor& cursor) {
     FrameShape shape;
@@ -86,9 +95,9 @@ std::string take_name(ByteCursor& cursor) {
 Head read_head(std::span<const std::uint8_t> bytes, std::string_view where) {
     ByteCursor cursor(bytes.subspan(kMagic.size()), kMagic.size(), where);
     const auto version = cursor.take<std::uint16_t>();
-    if (version != kVersion)
-        cursor.fail(
-            fmt::format("version {} of a calibration; this program reads {}", version, kVersion));
+    if (version != kLinearVersion && version != kVersion)
+        cursor.fail(fmt::format("version {} of a calibration; this program reads {} and {}",
+                                version, kLinearVersion, kVersion));
     if (cursor.take<std::uint16_t>() != 0) cursor.fail("reserved bytes are not 0");
     Head head;
     ChipCalibration& c = head.calibration;
@@ -109,6 +118,7 @@ Head read_head(std::span<const std::uint8_t> bytes, std::string_view where) {
     c.flats = cursor.take<std::uint32_t>();
     c.darks = cursor.take<std::uint32_t>();
     c.chip.name = take_name(cursor);
+    if (version == kVersion) c.response.linear_dn.resize(dn_count(c.bit_depth));
     head.bytes = bytes.size() - cursor.left();
     return head;
 }
@@ -138,12 +148,34 @@ void take_maps(ByteCursor& cursor, std::vector<SiteCalibration>& sites) {
     }
 }
 
+/// Precondition: the table has its size.
+void take_table(ByteCursor& cursor, ResponseTable& table) {
+    float before = -std::numeric_limits<float>::infinity();
+    for (float& linear_dn : table.linear_dn) {
+        linear_dn = std::bit_cast<float>(cursor.take<std::uint32_t>());
+        if (!(std::abs(linear_dn) <= kMaxLinearDn && linear_dn > before))
+            cursor.fail(
+                fmt::format("linear DN {:g} after {:g} in the response table, which rises "
+                            "and stays within {:g}",
+                            linear_dn, before, kMaxLinearDn));
+        before = linear_dn;
+    }
+    table.variance_dn2.resize(table.linear_dn.size());
+    for (float& variance : table.variance_dn2) {
+        variance = std::bit_cast<float>(cursor.take<std::uint32_t>());
+        if (!(variance >= 0 && variance <= kMaxMagnitude))
+            cursor.fail(fmt::format("variance {:g} of the response table is outside 0..{:g}",
+                                    variance, kMaxMagnitude));
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_chip_calibration(const ChipCalibration& c) {
     assert(c.sites.size() == c.shape.sites());
     std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
-    append(bytes, kVersion);
+    assert(c.response.linear_dn.empty() || c.response.linear_dn.size() == dn_count(c.bit_depth));
+    append(bytes, c.response.linear_dn.empty() ? kLinearVersion : kVersion);
     append(bytes, std::uint16_t{0});
     append(bytes, static_cast<std::uint16_t>(c.shape.rows));
     append(bytes, static_cast<std::uint16_t>(c.shape.cols));
@@ -164,6 +196,8 @@ std::vector<std::uint8_t> encode_chip_calibration(const ChipCalibration& c) {
             append(bytes, std::bit_cast<std::uint32_t>(site.*map.number));
     for (const SiteCalibration& site : c.sites)
         append(bytes, static_cast<std::uint8_t>(site.defect ? 1 : 0));
+    for (const float dn : c.response.linear_dn) append(bytes, std::bit_cast<std::uint32_t>(dn));
+    for (const float v : c.response.variance_dn2) append(bytes, std::bit_cast<std::uint32_t>(v));
     append(bytes, crc32c(bytes));
     return bytes;
 }
@@ -178,7 +212,8 @@ ChipCalibration decode_chip_calibration(std::span<const std::uint8_t> bytes,
         require_size(bytes.size(), kFixedBytes + kCrcBytes, where);
     Head head = read_head(bytes, where);
     const std::size_t sites = head.calibration.shape.sites();
-    require_size(bytes.size(), head.bytes + sites * kSiteBytes + kCrcBytes, where);
+    const std::size_t table_bytes = head.calibration.response.linear_dn.size() * kTableBytes;
+    require_size(bytes.size(), head.bytes + sites * kSiteBytes + table_bytes + kCrcBytes, where);
     const std::size_t crc_at = bytes.size() - kCrcBytes;
     if (load<std::uint32_t>(&bytes[crc_at]) != crc32c(bytes.first(crc_at)))
         throw InputError(fmt::format("{}: byte {}", where, crc_at),
@@ -186,6 +221,7 @@ ChipCalibration decode_chip_calibration(std::span<const std::uint8_t> bytes,
     head.calibration.sites.resize(sites);
     ByteCursor cursor(bytes.subspan(head.bytes), head.bytes, where);
     take_maps(cursor, head.calibration.sites);
+    take_table(cursor, head.calibration.response);
     return std::move(head.calibration);
 }
 
@@ -198,6 +234,13 @@ bool is_chip_calibration(const std::filesystem::path& path) {
            std::equal(start.begin(), start.end(), kMagic.begin(), [](char c, std::uint8_t byte) {
                return static_cast<std::uint8_t>(c) == byte;
            });
+}
+
+std::filesystem::path calibration_beside(const std::filesystem::path& stream) {
+    std::filesystem::path file = stream;
+    file.replace_extension(".stcal");
+    std::error_code error;  // what cannot be looked at is not there
+    return std::filesystem::is_regular_file(file, error) ? file : std::filesystem::path{};
 }
 
 ChipCalibration read_chip_calibration(const std::filesystem::path& file) {

@@ -32,6 +32,7 @@ struct ChipCalibration {
     std::uint32_t flats = 0;  ///< samples of uniform light at the site that has the fewest
     std::uint32_t darks = 0;  ///< the same without light
     std::vector<SiteCalibration> sites;  ///< order (plane, row, col)
+    ResponseTable response = {};         ///< of all sites; empty: linear
 
     bool operator==(const ChipCalibration&) const = default;
 };

@@ -4,139 +4,61 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "calibration/chip_exposures.h"
 #include "calibration/dark_maps.h"
 #include "calibration/field_exposure.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "decoder/pixel_response.h"
+#include "decoder/response_curve.h"
 
 namespace stipple {
 namespace {
 
-constexpr double kMaxZeros = 0.00135;   ///< of dark samples: three standard deviations of noise
-constexpr double kMaxSaturated = 0.01;  ///< of flat samples: more are no defects
-constexpr double kMinGain = 0.1;        ///< of a pixel that is no defect
+constexpr double kMinGain = 0.1;  ///< of a pixel that is no defect
 constexpr double kMaxGain = 10;
-
-constexpr std::string_view kTakeHalf = "take it at about half of saturation";
-
-void require_samples(const FieldSamples& field, std::string_view name) {
-    const std::uint64_t fewest = field.exposures().empty() ? 0 : field.fewest();
-    if (fewest < kMinFieldSamples)
-        throw InputError(name, fmt::format("has too few frames: {} samples of a pixel, and a "
-                                           "calibration needs at least {}",
-                                           fewest, kMinFieldSamples));
-}
-
-std::size_t times_of(const std::vector<FieldExposure>& exposures, std::size_t site) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(exposures, [site](const FieldExposure& e) { return e.has(site); }));
-}
-
-/// The exposures of the dark series. \throws InputError as estimate_chip.
-std::vector<FieldExposure> dark_exposures(const CalibrationSeries& series) {
-    require_samples(series.dark, series.dark_name);
-    std::vector<FieldExposure> dark;
-    double zeros = 0, samples = 0;
-    for (const auto& [time, sums] : series.dark.exposures()) {
-        dark.push_back(field_exposure(time, sums, series.header));
-        zeros += static_cast<double>(sums.zeros);
-        samples += static_cast<double>(sums.samples);
-    }
-    if (zeros > kMaxZeros * samples)
-        throw InputError(
-            series.dark_name,
-            fmt::format("{:.2g} % of the samples are DN 0, so the noise is cut off and "
-                        "offsets cannot be measured; raise the black level",
-                        100 * zeros / samples));
-    for (std::size_t site = 0; series.dark_current && site < series.header.shape.sites(); ++site)
-        if (times_of(dark, site) < 2)
-            throw InputError(series.dark_name,
-                             fmt::format("shows pixels in the dark at one exposure time only ({:g} "
-                                         "ms), which does not tell their dark current; add frames "
-                                         "of another time, or give --no-dark-current",
-                                         1e3 * dark.front().seconds));
-    return dark;
-}
-
-[[noreturn]] void fail_saturated(const CalibrationSeries& series, std::string_view how) {
-    throw InputError(series.flat_name, fmt::format("saturates: {}; {}", how, kTakeHalf));
-}
-
-/// \throws InputError if light adds no noise, as above a full well that the header does not tell.
-void require_shot_noise(const CalibrationSeries& series, const FieldExposure& dark,
-                        const FieldExposure& flat) {
-    constexpr double kShotNoise = 1.1;    ///< least ratio of variances
-    constexpr double kBrightSigmas = 20;  ///< of the dark noise, where shot noise shows
-    double light = 0, sites = 0;
-    for (std::size_t site = 0; site < series.header.shape.sites(); ++site) {
-        if (!dark.has(site) || !flat.has(site)) continue;
-        light += flat.sums->mean(site) - dark.sums->mean(site);
-        ++sites;
-    }
-    if (light > kBrightSigmas * std::sqrt(dark.noise_dn2[0]) * sites &&
-        flat.noise_dn2[0] < kShotNoise * dark.noise_dn2[0])
-        fail_saturated(series, "its noise is that of the dark series");
-}
-
-/// The exposures of the flat series that do not saturate. \throws InputError as estimate_chip.
-std::vector<FieldExposure> flat_exposures(const CalibrationSeries& series,
-                                          const FieldExposure& dark) {
-    require_samples(series.flat, series.flat_name);
-    std::vector<FieldExposure> flat;
-    double min_saturated = 1;
-    for (const auto& [time, sums] : series.flat.exposures()) {
-        const double saturated =
-            static_cast<double>(sums.saturated) / static_cast<double>(sums.samples);
-        min_saturated = std::min(min_saturated, saturated);
-        if (saturated > kMaxSaturated) continue;
-        flat.push_back(field_exposure(time, sums, series.header));
-        if (!series.well_known) require_shot_noise(series, dark, flat.back());
-    }
-    if (flat.empty())
-        fail_saturated(series, fmt::format("{:.2g} % of the samples are at full scale or full well",
-                                           100 * min_saturated));
-    for (std::size_t site = 0; site < series.header.shape.sites(); ++site)
-        if (times_of(flat, site) == 0)
-            fail_saturated(series, "some pixels have no exposure that is short enough");
-    return flat;
-}
 
 /// Gain of a pixel by the tile of unequal pixels.
 double nominal_gain(const StreamHeader& header, std::size_t pixel) {
-    const CalibrationTile& tile = header.calibration.tile;
-    if (tile.pixels.empty()) return 1;
-    const auto cols = index(header.shape.cols);
-    const CalibrationPixel& one = tile.pixels[pixel / cols % index(tile.rows) * index(tile.cols) +
-                                              pixel % cols % index(tile.cols)];
-    return one.responsivity * one.conversion_gain;
+    const CalibrationPixel nominal = nominal_pixel(header, pixel);
+    return nominal.responsivity * nominal.conversion_gain;
 }
 
 /// Light per second of each pixel of a plane in DN, by weighted least squares over the exposure
-/// times t of (y - b - d t) = light t.
+/// times t of (y - b - d t) = light t. The errors of b and d are the same at all times.
 EstimateMap lights(const StreamHeader& header, const std::vector<FieldExposure>& flat,
                    std::size_t first_site, const EstimateMap& offset,
                    const EstimateMap& dark_current) {
     EstimateMap map = offset;
     for (std::size_t i = 0; i < map.value.size(); ++i) {
         const std::size_t site = first_site + i;
-        double sum = 0, weights = 0;
+        double sum = 0, weights = 0, times = 0, noise = 0;
         for (const FieldExposure& e : flat) {
             if (!e.has(site)) continue;
             const double t = e.seconds;
-            const double variance = e.mean_variance(site, light_group(header, site)) +
-                                    offset.variance[i] + t * t * dark_current.variance[i];
-            sum +=
-                t / variance * (e.sums->mean(site) - offset.value[i] - dark_current.value[i] * t);
+            const double own = e.mean_variance(site, light_group(header, site));
+            const double variance = own + offset.variance[i] + t * t * dark_current.variance[i];
+            sum += t / variance * (e.mean(site) - offset.value[i] - dark_current.value[i] * t);
             weights += t * t / variance;
+            times += t / variance;
+            noise += t * t / (variance * variance) * own;
         }
         const double nominal = nominal_gain(header, i);
+        if (weights == 0) {
+            map.value[i] = 0;
+            map.variance[i] = std::numeric_limits<double>::infinity();
+            continue;
+        }
         map.value[i] = sum / weights / nominal;
-        map.variance[i] = 1 / weights / (nominal * nominal);
+        map.variance[i] = ((noise + times * times * offset.variance[i]) / (weights * weights) +
+                           dark_current.variance[i]) /
+                          (nominal * nominal);
     }
     return map;
 }
@@ -173,6 +95,29 @@ void normalise(const CalibrationSeries& series, std::size_t first_site, Estimate
     }
 }
 
+/// Gains of a plane: the mean of those of all series, weighted by their variances.
+EstimateMap gains_of(const CalibrationSeries& series, const ChipExposures& exposures,
+                     std::size_t first_site, const EstimateMap& offset,
+                     const EstimateMap& dark_current) {
+    std::optional<EstimateMap> gain;
+    for (const std::vector<FieldExposure>& flat : exposures.flats) {
+        if (flat.empty()) continue;
+        EstimateMap one = lights(series.header, flat, first_site, offset, dark_current);
+        normalise(series, first_site, one);
+        if (!gain) {
+            gain = std::move(one);
+            continue;
+        }
+        for (std::size_t i = 0; i < one.value.size(); ++i) {
+            const double weight = 1 / gain->variance[i], more = 1 / one.variance[i];
+            if (weight + more == 0) continue;  // no sample yet
+            gain->value[i] = (weight * gain->value[i] + more * one.value[i]) / (weight + more);
+            gain->variance[i] = 1 / (weight + more);
+        }
+    }
+    return *gain;
+}
+
 bool saturated_in_the_dark(const PixelResponse& response, const std::vector<FieldExposure>& dark,
                            std::size_t site) {
     return std::ranges::any_of(dark, [&](const FieldExposure& e) {
@@ -198,9 +143,10 @@ ChipCalibration head_of(const CalibrationSeries& series) {
             .tile_rows = header.calibration.tile.rows,
             .tile_cols = header.calibration.tile.cols,
             .chip = {},
-            .flats = static_cast<std::uint32_t>(series.flat.fewest()),
+            .flats = static_cast<std::uint32_t>(fewest_samples(series.flats)),
             .darks = static_cast<std::uint32_t>(series.dark.fewest()),
-            .sites = std::vector<SiteCalibration>(header.shape.sites())};
+            .sites = std::vector<SiteCalibration>(header.shape.sites()),
+            .response = {}};
 }
 
 /// Of a series without dark current.
@@ -212,20 +158,19 @@ EstimateMap no_dark_currents(FrameShape shape) {
 }
 
 /// Estimates one plane.
-void estimate_plane(const CalibrationSeries& series, const std::vector<FieldExposure>& dark,
-                    const std::vector<FieldExposure>& flat, int plane, ChipEstimate& result) {
+void estimate_plane(const CalibrationSeries& series, const ChipExposures& exposures, int plane,
+                    ChipEstimate& result) {
     const StreamHeader& header = series.header;
     const FrameShape shape = header.shape;
     const std::size_t first = index(plane) * shape.pixels();
-    const DarkMaps maps(header, dark, plane);
+    const DarkMaps maps(header, exposures.dark, plane);
     EstimateMap current = series.dark_current ? maps.dark_currents() : no_dark_currents(shape);
     add(shrink(current), shape.planes, result.dark_dn_per_s);
     EstimateMap offset = maps.offsets(current);
     add(shrink(offset), shape.planes, result.offset_dn);
     EstimateMap noise = maps.readout_noise();
     add(shrink(noise), shape.planes, result.readout_noise_dn2);
-    EstimateMap gain = lights(header, flat, first, offset, current);
-    normalise(series, first, gain);
+    EstimateMap gain = gains_of(series, exposures, first, offset, current);
     const std::vector<double> measured_gain = gain.value;
     add(shrink(gain), shape.planes, result.gain);
     const SiteResponses responses(header);
@@ -235,7 +180,7 @@ void estimate_plane(const CalibrationSeries& series, const std::vector<FieldExpo
             responses.at(plane, static_cast<int>(i / cols), static_cast<int>(i % cols));
         const bool dead = !(measured_gain[i] >= kMinGain && measured_gain[i] <= kMaxGain);
         SiteCalibration& site = result.calibration.sites[first + i];
-        if (dead || saturated_in_the_dark(response, dark, first + i)) {
+        if (dead || saturated_in_the_dark(response, exposures.dark, first + i)) {
             site = {.defect = true};
             ++result.defects;
             continue;
@@ -254,11 +199,21 @@ void estimate_plane(const CalibrationSeries& series, const std::vector<FieldExpo
 }  // namespace
 
 ChipEstimate estimate_chip(const CalibrationSeries& series) {
-    const std::vector<FieldExposure> dark = dark_exposures(series);
-    const std::vector<FieldExposure> flat = flat_exposures(series, dark.front());
-    ChipEstimate result{.calibration = head_of(series)};
+    ChipExposures exposures = chip_exposures(series);
+    ChipEstimate result{.calibration = head_of(series),
+                        .response = chip_response(series, exposures)};
+    std::optional<ResponseCurve> curve;
+    if (!result.response.table.linear_dn.empty()) {
+        curve.emplace(result.response.table);
+        const auto linearise = [&](FieldExposure& exposure) {
+            exposure = linearised(exposure, series.header, &*curve);
+        };
+        std::ranges::for_each(exposures.dark, linearise);
+        for (auto& flat : exposures.flats) std::ranges::for_each(flat, linearise);
+    }
     for (int plane = 0; plane < series.header.shape.planes; ++plane)
-        estimate_plane(series, dark, flat, plane, result);
+        estimate_plane(series, exposures, plane, result);
+    result.calibration.response = result.response.table;
     return result;
 }
 

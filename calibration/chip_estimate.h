@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "calibration/chip_calibration.h"
 #include "calibration/field_samples.h"
+#include "calibration/response_fit.h"
+#include "calibration/response_levels.h"
 #include "calibration/shrinkage.h"
 #include "stream/stream_header.h"
 
@@ -14,7 +17,9 @@ namespace stipple {
 struct CalibrationSeries {
     const StreamHeader& header;  ///< of the chip: shape, colours, bits, tile of unequal pixels
     const FieldSamples& dark;
-    const FieldSamples& flat;
+    std::span<const FieldSamples> flats;  ///< each of constant light
+    /// That tell the response curve; empty: those of `flats`, by the exposure times of each.
+    std::span<const ResponseLevel> levels = {};
     std::string dark_name = "dark series";  ///< in messages
     std::string flat_name = "flat series";
     bool well_known = true;    ///< false: `header` has no full well
@@ -31,11 +36,13 @@ struct ChipEstimate {
     PatternVariances offset_dn = {};
     PatternVariances dark_dn_per_s = {};
     PatternVariances readout_noise_dn2 = {};
+    ResponseFit response = {};  ///< its table is that of `calibration`
     std::size_t defects = 0;
 };
 
-/// Estimates the calibration of each site (docs/calibration.md has the formulas): offset and dark
-/// current by weighted least squares over the exposure times of the dark series, gain by flat-field
+/// Estimates the response curve of the chip, as fit_response, and then, in linear DN, the
+/// calibration of each site (docs/calibration.md has the formulas): offset and dark current by
+/// weighted least squares over the exposure times of the dark series, gain by flat-field
 /// correction, relative to its mean over the sites of one colour; all shrunk by their measurement
 /// variances. Sites are defects if their gain is below 0.1 or above 10 times the mean, or if they
 /// are saturated in the dark.

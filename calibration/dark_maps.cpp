@@ -24,8 +24,7 @@ void DarkMaps::visit_means(std::size_t pixel, const Visit& visit) const {
     const std::size_t group = light_group(header_, site);
     for (const FieldExposure& exposure : dark_)
         if (exposure.has(site))
-            visit(exposure.seconds, exposure.sums->mean(site),
-                  1 / exposure.mean_variance(site, group));
+            visit(exposure.seconds, exposure.mean(site), 1 / exposure.mean_variance(site, group));
 }
 
 EstimateMap DarkMaps::dark_currents() const {
@@ -69,7 +68,7 @@ EstimateMap DarkMaps::readout_noise() const {
             const double n = exposure.sums->count[first_ + i];
             if (n < 2) continue;
             const double noise_dn2 = exposure.noise_dn2[light_group(header_, first_ + i)];
-            map.value[i] = exposure.sums->variance(first_ + i);
+            map.value[i] = exposure.variance(first_ + i);
             map.variance[i] = 2 * noise_dn2 * noise_dn2 / (n - 1);
             break;
         }

@@ -84,7 +84,7 @@ class Collector {
         out_.sum[last_voxel] = response.light(dn, open_slots);
         out_.variance[last_voxel] = response.noise().variance(out_.sum[last_voxel]);
         if (out_.dark_variance.empty()) return;
-        out_.dark_variance[last_voxel] = response.dark_variance(open_slots);
+        out_.dark_variance[last_voxel] = response.dark_variance(dn, open_slots);
         out_.variance_per_light[last_voxel] = response.variance_per_light(out_.sum[last_voxel]);
         out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
     }

@@ -35,13 +35,14 @@ Calibration calibration_of(const Calibration& whole, const CalibrationPixel& pix
     return c;
 }
 
-/// The least DN that the full well or full scale may have clipped.
-double saturation_dn(const Calibration& c) {
-    const double full_scale_dn =
-        static_cast<double>((1U << static_cast<unsigned>(c.bit_depth)) - 1);
+/// The least linear DN that the full well or full scale may have clipped.
+double saturation_dn(const Calibration& c, const ResponseCurve* curve) {
+    const auto largest = static_cast<std::uint16_t>((1U << static_cast<unsigned>(c.bit_depth)) - 1);
+    const double full_scale_dn = curve == nullptr ? largest : curve->linear_dn(largest);
     const double well_dn = c.full_well_e / c.gain_e_per_dn;
-    const double read_dn = c.read_noise_e / c.gain_e_per_dn;
-    const double noise_dn = std::sqrt(read_dn * read_dn + 1.0 / 12);
+    const double slope = curve == nullptr ? 1 : curve->slope_where(c.black_level_dn + well_dn);
+    const double read_dn = slope * c.read_noise_e / c.gain_e_per_dn;
+    const double noise_dn = std::sqrt(read_dn * read_dn + slope * slope / 12);
     // Where noise is as large as the well nothing is known, but half of it is no clipped sample.
     const double clipped_dn = std::max(well_dn - kSaturationSigmas * noise_dn, well_dn / 2);
     return std::min(full_scale_dn, c.black_level_dn + clipped_dn);
@@ -63,13 +64,17 @@ PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& p
     black_level_dn_ = c.black_level_dn - (c.rounding == Rounding::kFloor ? 0.5 : 0.0);
     unit_per_dn_ = c.gain_e_per_dn / c.electrons_per_unit;
     dark_per_slot_ = c.dark_e_per_slot / c.electrons_per_unit;
-    saturation_dn_ = saturation_dn(c);
+    saturation_dn_ = saturation_dn(c, nullptr);
     dark_variance_per_slot_ = static_cast<float>(dark_per_slot_ / c.electrons_per_unit);
 }
 
 PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& pixel,
-                             const SiteCalibration& site, double slot_s)
+                             const SiteCalibration& site, double slot_s, const ResponseCurve* curve)
     : PixelResponse(calibration_of(whole, pixel, site), CalibrationPixel{}) {
+    if (curve != nullptr) {
+        curve_ = curve;
+        saturation_dn_ = saturation_dn(calibration_of(whole, pixel, site), curve);
+    }
     const auto gain = static_cast<double>(site.gain);
     const double electrons_per_unit = whole.electrons_per_unit * pixel.responsivity * gain;
     dark_per_slot_ = static_cast<double>(site.dark_dn_per_s) * slot_s * unit_per_dn_;
@@ -84,6 +89,11 @@ PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& p
     defect_ = site.defect;
 }
 
+SiteResponses::SiteResponses(const StreamHeader& header)
+    : header_(header), pixels_(header.calibration) {
+    if (!header.response.linear_dn.empty()) curve_.emplace(header.response);
+}
+
 PixelResponse SiteResponses::at(int plane, int row, int col) const {
     if (header_.sites.empty()) return pixels_.at(row, col);
     const FrameShape shape = header_.shape;
@@ -93,7 +103,7 @@ PixelResponse SiteResponses::at(int plane, int row, int col) const {
     const CalibrationPixel pixel =
         tile.pixels.empty() ? CalibrationPixel{}
                             : tile.pixels[row_major(row % tile.rows, col % tile.cols, tile.cols)];
-    return {header_.calibration, pixel, site, header_.slot_us * 1e-6};
+    return {header_.calibration, pixel, site, header_.slot_us * 1e-6, curve_ ? &*curve_ : nullptr};
 }
 
 PixelResponses::PixelResponses(const Calibration& calibration) {

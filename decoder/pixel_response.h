@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/index.h"
+#include "decoder/response_curve.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -34,21 +36,22 @@ class SampleNoise {
 class PixelResponse {
   public:
     PixelResponse(const Calibration& calibration, const CalibrationPixel& pixel);
-    /// The response of a calibrated site; `slot_s` is the length of a slot in seconds.
+    /// The response of a calibrated site; `slot_s` is the length of a slot in seconds. `curve` is
+    /// null for a linear chip; else it must outlive this.
     PixelResponse(const Calibration& calibration, const CalibrationPixel& pixel,
-                  const SiteCalibration& site, double slot_s);
+                  const SiteCalibration& site, double slot_s, const ResponseCurve* curve = nullptr);
 
     /// True if the sample is only a lower bound: at full scale, or so near the full well that it
     /// may have been clipped there. Read noise and rounding are added after the well, so clipped
     /// samples scatter around it. One in 3 million lies more than 5 standard deviations below and
     /// is treated as exact.
-    [[nodiscard]] bool saturated(std::uint16_t dn) const { return dn >= saturation_dn_; }
+    [[nodiscard]] bool saturated(std::uint16_t dn) const { return linear_dn(dn) >= saturation_dn_; }
 
-    /// ((DN - black level) K^-1 / g - D n) / (r R): g relative gain, R relative responsivity, D
-    /// dark electrons per slot, n open slots. For a saturated sample this is the bound at which
-    /// saturation begins, independent of its noise.
+    /// ((f(DN) - black level) K^-1 / g - D n) / (r R): response table f, g relative gain, R
+    /// relative responsivity, D dark electrons per slot, n open slots. For a saturated sample this
+    /// is the bound at which saturation begins, independent of its noise.
     [[nodiscard]] float light(std::uint16_t dn, int open_slots) const {
-        const double exact = saturated(dn) ? saturation_dn_ : dn;
+        const double exact = saturated(dn) ? saturation_dn_ : linear_dn(dn);
         return static_cast<float>((exact - black_level_dn_) * unit_per_dn_ -
                                   dark_per_slot_ * open_slots);
     }
@@ -56,12 +59,13 @@ class PixelResponse {
     [[nodiscard]] const SampleNoise& noise() const { return noise_; }
     /// Increase of the variance per open slot by dark electrons.
     [[nodiscard]] float dark_variance_per_slot() const { return dark_variance_per_slot_; }
-    /// Variance of `light` without light: noise, and the uncertainty of a calibration,
+    /// Variance of `light` without shot noise of light: f'(DN)^2 times that of read noise and
+    /// rounding, and the uncertainty of a calibration,
     ///
-    ///     Var(offset) / (K g r R)^2 + n^2 Var(D) / (r R)^2
-    [[nodiscard]] float dark_variance(int open_slots) const {
+    ///     (Var(offset) + Var(f(DN))) / (K g r R)^2 + n^2 Var(D) / (r R)^2
+    [[nodiscard]] float dark_variance(std::uint16_t dn, int open_slots) const {
         const auto n = static_cast<float>(open_slots);
-        return noise_.variance(0) + dark_variance_per_slot_ * n +
+        return read_variance(dn) + dark_variance_per_slot_ * n +
                (offset_variance_ + dark_rate_variance_ * n * n);
     }
     /// Increase of the variance per unit of light near `light`. The uncertain gain a of a
@@ -73,10 +77,21 @@ class PixelResponse {
     [[nodiscard]] bool defect() const { return defect_; }
 
   private:
+    [[nodiscard]] double linear_dn(std::uint16_t dn) const {
+        return curve_ == nullptr ? dn : curve_->linear_dn(dn);
+    }
+    [[nodiscard]] float read_variance(std::uint16_t dn) const {
+        if (curve_ == nullptr) return noise_.variance(0);
+        const float slope = curve_->slope(dn);
+        const auto unit = static_cast<float>(unit_per_dn_);
+        return slope * slope * noise_.variance(0) + unit * unit * curve_->variance_dn2(dn);
+    }
+
+    const ResponseCurve* curve_ = nullptr;
     double black_level_dn_;
     double unit_per_dn_;
     double dark_per_slot_;  ///< light equivalent to the dark electrons of an open slot
-    double saturation_dn_;
+    double saturation_dn_;  ///< linear
     SampleNoise noise_;
     float dark_variance_per_slot_;
     float offset_variance_ = 0;         ///< of `light`, as the next one
@@ -104,14 +119,14 @@ class PixelResponses {
 class SiteResponses {
   public:
     /// `header` must outlive this.
-    explicit SiteResponses(const StreamHeader& header)
-        : header_(header), pixels_(header.calibration) {}
+    explicit SiteResponses(const StreamHeader& header);
 
     [[nodiscard]] PixelResponse at(int plane, int row, int col) const;
 
   private:
     const StreamHeader& header_;
     PixelResponses pixels_;
+    std::optional<ResponseCurve> curve_;  ///< none: linear
 };
 
 }  // namespace stipple

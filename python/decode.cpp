@@ -37,7 +37,7 @@ struct DecodeTask {
     std::string given;  ///< options of the method that were given, as lines of TOML
     bool strict = false;
     std::optional<std::int64_t> until;                      ///< slots; none: all
-    std::optional<std::filesystem::path> calibration = {};  ///< file of the chip's calibration
+    std::optional<std::filesystem::path> calibration = {};  ///< file or "none"; no value: beside
 };
 
 DecodeTask decode_task(const std::string& method, const py::dict& settings, bool fill_gaps,
@@ -59,15 +59,23 @@ std::string warning_of(const StreamReport& report, bool to_end) {
     return to_end ? no_end_text(report) : "";
 }
 
-/// The calibration of the sites of a stream's chip.
-std::vector<SiteCalibration> read_sites(const std::filesystem::path& file,
-                                        const StreamHeader& header) {
+/// The calibration of a stream's chip.
+ChipCalibration read_calibration(const std::filesystem::path& file, const StreamHeader& header) {
     const auto bytes = reading(file, [&] { return read_file(file); });
     ChipCalibration calibration = decode_chip_calibration(bytes, file.string());
     const ChipOrigin chip = chip_of(header.provenance);
     require_same_chip(calibration, header, {.name = chip.name, .device_id = chip.device_id},
                       file.string());
-    return std::move(calibration.sites);
+    return calibration;
+}
+
+/// Uses the calibration that is given, or the one beside the stream.
+void calibrate(StreamReader& reader, const StreamFile& stream, const DecodeTask& task) {
+    const std::filesystem::path file =
+        task.calibration ? *task.calibration : calibration_beside(stream.path());
+    if (file.empty() || file == "none") return;
+    ChipCalibration calibration = read_calibration(file, reader.header());
+    reader.use_sites(std::move(calibration.sites), std::move(calibration.response));
 }
 
 /// Appends the frames that are decoded. Without the GIL.
@@ -84,7 +92,7 @@ void decode_frames(StreamReader& reader, const DecodeTask& task, CallProgress& p
 
 py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const py::object& tell) {
     StreamReader reader = stream.reader(task.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant);
-    if (task.calibration) reader.use_sites(read_sites(*task.calibration, reader.header()));
+    calibrate(reader, stream, task);
     const FrameShape shape = decoded_shape(reader.header());
     const auto known = reader.slots();
     const auto slots = task.until ? std::min(*task.until, known.value_or(*task.until)) : known;

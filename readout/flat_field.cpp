@@ -40,14 +40,23 @@ std::vector<CalibrationExposure> calibration_exposures(const SensorParams& param
                                                        std::uint64_t seed) {
     constexpr int kLongSlots = 16;
     constexpr std::uint64_t kSeeds = 0x9E3779B97F4A7C15;  // no seed that somebody chooses
+    constexpr double kBrightest = 0.9;
     const double saturation = params.saturation_e() / params.physical.quantum_efficiency;
-    return {
+    std::vector<CalibrationExposure> exposures{
         {.slot_us = params.slot_us, .images = images.darks, .seed = seed + kSeeds},
         {.slot_us = params.slot_us * kLongSlots, .images = images.darks, .seed = seed + 2 * kSeeds},
         {.slot_us = params.slot_us,
          .photons = saturation / 2,
          .images = images.flats,
          .seed = seed + 3 * kSeeds}};
+    for (int level = 1; level <= images.levels; ++level) {
+        const double saturations = kBrightest * level / images.levels;
+        exposures.push_back({.slot_us = params.slot_us * saturations * 2,
+                             .photons = saturation * saturations,
+                             .images = std::max(images.flats / 10, 8),
+                             .seed = seed + static_cast<std::uint64_t>(3 + level) * kSeeds});
+    }
+    return exposures;
 }
 
 struct FlatField::Impl {

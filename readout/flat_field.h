@@ -33,10 +33,13 @@ struct CalibrationExposure {
 struct CalibrationImages {
     int darks = 100;  ///< of each exposure time
     int flats = 100;
+    int levels = 0;  ///< of light, for the response curve; 0: none
 };
 
-/// Images without light in one slot and as many in 16 slots; flats at half of saturation. Their
-/// noise is not that of a stream with the same `seed`.
+/// Images without light in one slot and as many in 16 slots; flats at half of saturation in one
+/// slot. Levels: exposure times at the light of the flats, in equal steps up to 0.9 of saturation,
+/// each with a tenth of the flats, eight at least. The noise is not that of a stream with the same
+/// `seed`.
 [[nodiscard]] std::vector<CalibrationExposure> calibration_exposures(
     const SensorParams& params, const CalibrationImages& images, std::uint64_t seed);
 

@@ -185,7 +185,8 @@ ChipOrigin chip_of(const std::string& provenance) {
     ChipOrigin chip{.name = text_of(sensor["name"]),
                     .prnu = number("prnu"),
                     .dsnu_e = number("dsnu_e"),
-                    .column_noise_e = number("column_noise_e")};
+                    .column_noise_e = number("column_noise_e"),
+                    .response_loss = number("response_loss")};
     const auto device_id = sensor["device_id"].value<std::int64_t>();
     if (device_id && *device_id >= 0 && *device_id <= std::numeric_limits<std::uint32_t>::max())
         chip.device_id = static_cast<std::uint32_t>(*device_id);

@@ -41,6 +41,7 @@ struct ChipOrigin {
     double prnu = 0;                              ///< as the keys of docs/physics.md
     double dsnu_e = 0;
     double column_noise_e = 0;
+    double response_loss = 0;
 };
 
 [[nodiscard]] ChipOrigin chip_of(const std::string& provenance);

@@ -63,6 +63,15 @@ struct SiteCalibration {
     bool operator==(const SiteCalibration&) const = default;
 };
 
+/// The non-linear response of a chip as a table: to each DN the one that a linear chip would give,
+/// with the slope of the chip in the dark (docs/calibration.md).
+struct ResponseTable {
+    std::vector<float> linear_dn;  ///< of each DN, 2^bit depth, strictly rising; empty: linear
+    std::vector<float> variance_dn2 = {};  ///< of these, as they are estimates; as many
+
+    bool operator==(const ResponseTable&) const = default;
+};
+
 /// Limits of the format (docs/stream_format.md): exposures of a tile, exposures of the array of a
 /// random schedule, bytes of the name of a schedule.
 inline constexpr std::size_t kMaxTileExposures = std::size_t{1} << 24U;
@@ -93,6 +102,8 @@ struct StreamHeader {
     /// Calibration of each site of the array, order (plane, row, col); empty: none. Not part of a
     /// stream: a reader is told it.
     std::vector<SiteCalibration> sites = {};
+    /// Likewise; offset, dark current and noise of `sites` are in linear DN. Empty without `sites`.
+    ResponseTable response = {};
 
     bool operator==(const StreamHeader&) const = default;
 };

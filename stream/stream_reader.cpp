@@ -348,10 +348,14 @@ void StreamReader::use_schedule(ExposureSchedule schedule) {
     impl_->stream.counts.reset();
 }
 
-void StreamReader::use_sites(std::vector<SiteCalibration> sites) {
+void StreamReader::use_sites(std::vector<SiteCalibration> sites, ResponseTable response) {
     assert(impl_->report.packets == 0);
     assert(sites.empty() || sites.size() == impl_->stream.header.shape.sites());
+    assert(response.linear_dn.empty() ||
+           response.linear_dn.size() ==
+               std::size_t{1} << static_cast<unsigned>(impl_->stream.header.calibration.bit_depth));
     impl_->stream.header.sites = std::move(sites);
+    impl_->stream.header.response = std::move(response);
 }
 
 std::optional<std::int64_t> StreamReader::slots() const {

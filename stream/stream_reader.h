@@ -85,8 +85,9 @@ class StreamReader {
     /// Replaces the schedule of the file for later calls of `header` and `next`.
     /// Precondition: no packet has been read.
     void use_schedule(ExposureSchedule schedule);
-    /// Sets `header().sites`. Precondition: no packet has been read; none, or one for each site.
-    void use_sites(std::vector<SiteCalibration> sites);
+    /// Sets `header().sites` and `header().response`. Precondition: no packet has been read; no
+    /// site, or one calibration for each; an empty table, or a number for each DN of the bit depth.
+    void use_sites(std::vector<SiteCalibration> sites, ResponseTable response = {});
     /// Number of slots in the stream. Known at once if the file ends with a good index (then less
     /// than the bytes of the file / 36, since each slot has a packet), else once the end marker has
     /// been read. Nothing if the stream was interrupted, is still growing, or comes through a pipe.

@@ -189,7 +189,8 @@ def decode(
     until: decode only so many slots.
     fill_gaps: decode slots that are missing, however many they are.
     strict: raise ValueError at the first damage. Else damage costs its own samples and is a UserWarning.
-    calibration: of the chip's pixels, a file that "stipple calibrate" wrote (docs/calibration.md).
+    calibration: of the chip, a file that "stipple calibrate" wrote (docs/calibration.md), or "none". By
+        default NAME.stcal beside a stream NAME.stipple, if it is there.
     threads: 0 means all cores. The values do not depend on it.
     progress: as for `emulate`.
     """

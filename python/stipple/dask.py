@@ -35,7 +35,7 @@ class _Job(NamedTuple):
     method: str
     options: Mapping[str, object]
     fill_gaps: bool
-    calibration: Optional[str]
+    calibration: str
     threads: int
 
     def task(self, until: int) -> _stipple.DecodeTask:
@@ -60,11 +60,18 @@ class _Job(NamedTuple):
         return None, said
 
 
+def _calibration_of(stream: str, calibration: Optional[Name]) -> str:
+    """The file that `stipple.decode` would use, or "none"."""
+    if calibration is None:
+        beside = path.splitext(stream)[0] + ".stcal"
+        return beside if path.isfile(beside) else "none"
+    return "none" if calibration == "none" else path.abspath(fsdecode(calibration))
+
+
 def _job(client: Any, stream: Name, method: str, more: Mapping[str, Any]) -> _Job:
     caller = check_workers(client)
     name = path.abspath(fsdecode(stream))
-    calibration = more["calibration"]
-    chip = None if calibration is None else path.abspath(fsdecode(calibration))
+    chip = _calibration_of(name, more["calibration"])
     slots = Stream.open(name).slots()
     if slots == 0:
         raise ValueError(f"{name}: holds no slot to decode")
@@ -156,7 +163,7 @@ def _identity(job: _Job) -> Mapping[str, Any]:
         "stream": _stipple.stream_identity(job.stream) or f"sha256 {_sha256(job.stream)}",
         "method": job.method,
         "options": job.task(job.slots).given,
-        "calibration_sha256": "" if job.calibration is None else _sha256(job.calibration),
+        "calibration_sha256": "" if job.calibration == "none" else _sha256(job.calibration),
         "fill_gaps": job.fill_gaps,
         "slots": job.slots,
         "rows": rows,

@@ -101,6 +101,109 @@ class CalibrateTest(ProgramTest):
         self.fails(INPUT, ["paper.stipple: is of another sensor"], "calibrate", "--dark", "none.stipple",
                    "--flat", "paper.stipple", "-o", "other.stcal")
 
+    def bent(self, *more):
+        """A flat field of 0.8 on a chip that bends by 16 %; 8 slots collect 0.44 of its well."""
+        self.write_flat("light.npy", 30, 24, 32, 0.8)
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", *SENSOR, "--set", "sensor.response_loss=0.16",
+                     "--force", *more)
+
+    def test_levels_of_light_undo_a_non_linear_response(self):
+        bend = ("--set", "sensor.response_loss=0.16")
+        figures = self.calibrate("bent.stcal", *bend)["response"]
+        self.assertEqual((figures["levels"] > 8, figures["linear"]), (True, False))
+        # q = Q (1 - 0.16 Q / w) is solved for Q; the well has 3647 DN, the black level is 64.
+        w, q = 3647, figures["brightest_dn"] - 64
+        charge = (1 - np.sqrt(1 - 4 * 0.16 * q / w)) * w / (2 * 0.16)
+        self.assertAlmostEqual(figures["bend_dn"] / (charge - q), 1, delta=0.02)
+        self.assertIsNotNone(self.figures("info", "bent.stcal")["response"])
+        flat = self.calibrate("flat.stcal", *bend, "--levels", 0)
+        self.assertIsNone(flat["response"])
+        self.bent()
+        done = self.run_program("decode", "clip.stipple", "-o", "decoded.npy", "--method", "naive", "--force")
+        self.assertIn("non-linear; without --calibration bright light decodes up to 16 % too dark", done.stderr)
+        # Without the table the light of 8 slots is 7 % too dark: 0.016 of 0.8 in the mean over exposures.
+        self.decoded_error("--calibration", "bent.stcal")
+        self.assertAlmostEqual(self.array("decoded.npy").mean(), 0.8, delta=0.003)
+        self.decoded_error("--calibration", "flat.stcal")
+        self.assertGreater(abs(self.array("decoded.npy").mean() - 0.8), 0.01)
+        # A linear chip has no table, and its file is that of version 1.
+        self.assertIsNone(self.calibrate("linear.stcal", "--levels", 0)["response"])
+        self.assertTrue(self.calibrate("linear.stcal", "--levels", 6, "--force")["response"]["linear"])
+        self.assertEqual((self.folder / "linear.stcal").read_bytes()[8], 1)
+        self.assertEqual((self.folder / "bent.stcal").read_bytes()[8], 2)
+
+    def test_streams_tell_the_response_by_their_exposure_times(self):
+        bend = ("--set", "sensor.response_loss=0.16")
+        for name, light in ("none", 0), ("dim", 0.3), ("bright", 1.4):
+            self.write_flat(f"{name}.npy", 120, 24, 32, light)
+            self.succeed("emulate", f"{name}.npy", "-o", f"{name}.stipple", *SENSOR, *bend, "--seed", 8)
+        figures = self.figures("calibrate", "--dark", "none.stipple", "--flat", "dim.stipple", "--flat",
+                               "bright.stipple", "-o", "chip.stcal")
+        response = figures["response"]
+        self.assertFalse(response["linear"])
+        w, q = 3647, response["brightest_dn"] - 64
+        charge = (1 - np.sqrt(1 - 4 * 0.16 * q / w)) * w / (2 * 0.16)
+        self.assertAlmostEqual(response["bend_dn"] / (charge - q), 1, delta=0.05)
+        self.write_flat("short.npy", 8, 24, 32, 0.3)
+        self.succeed("emulate", "short.npy", "-o", "short.stipple", *SENSOR, *bend)
+        self.fails(INPUT, ["short.stipple: has too few frames"], "calibrate", "--dark", "none.stipple", "--flat",
+                   "dim.stipple", "--flat", "short.stipple", "-o", "none.stcal")
+
+    def test_photons_of_images_tell_the_response(self):
+        random = np.random.default_rng(4)
+
+        def images(count, photons):
+            charge = 0.5 * photons * np.ones((12, 16))
+            charge = charge + np.sqrt(charge + 4) * random.standard_normal((count, 12, 16))
+            return list(np.round(64 + charge * (1 - 0.1 * charge / 4000)))
+
+        bright = [(f"b 5000000 {photons}", images(4, photons)) for photons in range(600, 6601, 600)]
+        write_series(self.folder, [("d 5000000", images(20, 0)), *bright, ("b 5000000 3000", images(40, 3000))])
+        figures = self.figures("calibrate", "--series", "series.txt", "-o", "camera.stcal", "--no-dark-current")
+        response = figures["response"]
+        self.assertEqual((response["levels"], response["linear"]), (12, False))
+        q = response["brightest_dn"] - 64
+        charge = (1 - np.sqrt(1 - 4 * 0.1 * q / 4000)) * 4000 / (2 * 0.1)
+        self.assertAlmostEqual(response["bend_dn"] / (charge - q), 1, delta=0.05)
+        bright[5] = ("b 5000000 3600", images(4, 2700))  # the lamp has faltered
+        write_series(self.folder, [("d 5000000", images(20, 0)), *bright, ("b 5000000 3000", images(40, 3000))])
+        self.fails(INPUT, ["series.txt: falls from", "tells no response curve"], "calibrate", "--series",
+                   "series.txt", "-o", "none.stcal", "--no-dark-current")
+
+    def test_a_calibration_beside_the_stream_is_used(self):
+        self.emulate()
+        self.calibrate("chip.stcal")
+        decode = ("decode", "clip.stipple", "--method", "naive", "--force", "-o")
+        self.succeed(*decode, "given.npy", "--calibration", "chip.stcal")
+        self.assertIsNone(self.figures(*decode, "plain.npy")["calibration"])
+        self.assertIsNone(self.figures("info", "clip.stipple")["calibration_file"])
+        self.emulate("--calibration", "chip.stcal")
+        self.assertEqual((self.folder / "clip.stcal").read_bytes(), (self.folder / "chip.stcal").read_bytes())
+        done = self.run_program(*decode, "beside.npy")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("calibrated by clip.stcal", done.stdout)
+        np.testing.assert_array_equal(self.array("beside.npy"), self.array("given.npy"))
+        self.assertEqual(self.figures(*decode, "beside.npy")["calibration"], "clip.stcal")
+        self.succeed(*decode, "none.npy", "--calibration", "none")
+        np.testing.assert_array_equal(self.array("none.npy"), self.array("plain.npy"))
+        self.assertEqual(self.figures("info", "clip.stipple")["calibration_file"], "clip.stcal")
+        self.assertIn("calibrated   by clip.stcal", self.run_program("info", "clip.stipple").stdout)
+        self.succeed("decode", "clip.stipple", "--method", "naive", "-o", "windows", "--part", "1/1")
+        self.succeed("join", "windows", "-o", "joined.npy")
+        np.testing.assert_array_equal(self.array("joined.npy"), self.array("given.npy"))
+
+    def test_a_wrong_calibration_beside_the_stream_is_named(self):
+        self.emulate()
+        self.succeed("calibrate", "--sensor", "t6", "--size", SIZE, "-o", "clip.stcal")
+        decode = ("decode", "clip.stipple", "--method", "naive", "-o", "out.npy")
+        self.fails(INPUT, ["clip.stipple: the calibration beside it cannot be used (--calibration none",
+                           "clip.stcal: ", "device_id 0, and the stream of 4"], *decode)
+        self.assertIn("calibrated   not: clip.stcal", self.run_program("info", "clip.stipple").stdout)
+        self.succeed(*decode, "--calibration", "none")
+        self.fails(INPUT, ["clip.stcal: ", "device_id 0, and the stream of 4"], "emulate", "light.npy", "-o",
+                   "other.stipple", *SENSOR, "--calibration", "clip.stcal")
+        self.assertEqual([name for name in self.names() if name.startswith("other")], [])
+
     def test_the_scene_itself_tells_gains(self):
         self.emulate()
         self.succeed("calibrate", "--scene", "clip.stipple", "--method", "fast", "-o", "scene.stcal")

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 #include <string>
 
@@ -37,6 +38,14 @@ ChipCalibration example() {
     return c;
 }
 
+/// The same chip with 2 bits and a response table.
+ChipCalibration bent_example() {
+    ChipCalibration c = example();
+    c.bit_depth = 2;
+    c.response = {.linear_dn = {-1, 1, 2.5F, 5}, .variance_dn2 = {0, 0.25F, 0.5F, 1}};
+    return c;
+}
+
 std::string message(const std::vector<std::uint8_t>& bytes) {
     return message_of<InputError>([&] { return decode_chip_calibration(bytes, "chip.stcal"); });
 }
@@ -54,6 +63,8 @@ TEST(CalibrationFileTest, WhatIsWrittenIsRead) {
     ChipCalibration unknown = c;
     unknown.chip = {};
     EXPECT_EQ(decode_chip_calibration(encode_chip_calibration(unknown), "chip.stcal"), unknown);
+    EXPECT_EQ(decode_chip_calibration(encode_chip_calibration(bent_example()), "chip.stcal"),
+              bent_example());
 }
 
 // The numbers of docs/calibration.md.
@@ -70,11 +81,50 @@ TEST(CalibrationFileTest, HasTheLayoutOfItsPage) {
     EXPECT_EQ(bytes[42 + 6 * 28 + 4], 1);                     // the defect
 }
 
-TEST(CalibrationFileTest, NamesATruncatedFile) {
+TEST(CalibrationFileTest, AResponseTableMakesItVersionTwo) {
     const auto bytes = encode_chip_calibration(example());
-    for (std::size_t n = 1; n < bytes.size(); ++n)
-        expect_parts(message({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n)}),
-                     {"chip.stcal: byte " + std::to_string(n) + ": ", "truncated"});
+    EXPECT_EQ(load<std::uint16_t>(&bytes[8]), 1);
+    const auto bent = encode_chip_calibration(bent_example());
+    ASSERT_EQ(bent.size(), bytes.size() + 4 * 8);
+    EXPECT_EQ(load<std::uint16_t>(&bent[8]), 2);
+    const std::size_t table = 42 + 6 * 29;
+    EXPECT_EQ(load<std::uint32_t>(&bent[table]), 0xBF800000U);       // -1
+    EXPECT_EQ(load<std::uint32_t>(&bent[table + 20]), 0x3E800000U);  // 0.25
+}
+
+TEST(CalibrationFileTest, RefusesATableThatDoesNotRise) {
+    const auto bytes = encode_chip_calibration(bent_example());
+    const auto with = [&](std::size_t at, std::uint32_t value) {
+        auto changed = bytes;
+        store(&changed[at], value);
+        return mended(changed);
+    };
+    const std::size_t table = 42 + 6 * 29;
+    constexpr std::uint32_t kNan = 0x7FC00000, kMinusOne = 0xBF800000;
+    expect_parts(message(with(table + 4, kMinusOne)), {"linear DN -1 after -1", "rises"});
+    expect_parts(message(with(table + 8, kNan)), {"linear DN nan after 1"});
+    expect_parts(message(with(table + 16, kMinusOne)), {"variance -1 of the response table"});
+    // Of another bit depth the file has another size.
+    auto deeper = bytes;
+    deeper[18] = 3;
+    expect_parts(message(mended(deeper)), {"truncated"});
+}
+
+TEST(CalibrationFileTest, NamesATruncatedFile) {
+    for (const auto& bytes :
+         {encode_chip_calibration(example()), encode_chip_calibration(bent_example())})
+        for (std::size_t n = 1; n < bytes.size(); ++n)
+            expect_parts(message({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n)}),
+                         {"chip.stcal: byte " + std::to_string(n) + ": ", "truncated"});
+}
+
+TEST(CalibrationFileTest, IsFoundBesideAStream) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(calibration_beside(folder / "clip.stipple"), "");
+    std::ofstream(folder / "clip.stcal") << "x";
+    EXPECT_EQ(calibration_beside(folder / "clip.stipple"), folder / "clip.stcal");
+    EXPECT_EQ(calibration_beside(folder / "clip"), folder / "clip.stcal");
+    EXPECT_EQ(calibration_beside(folder / "clip_2.stipple"), "");
 }
 
 TEST(CalibrationFileTest, NamesDamageAndForeignFiles) {
@@ -92,8 +142,8 @@ TEST(CalibrationFileTest, NamesDamageAndForeignFiles) {
     foreign[1] = 'X';
     expect_parts(message(foreign), {"no calibration file"});
     auto newer = bytes;
-    newer[8] = 2;
-    expect_parts(message(mended(newer)), {"version 2"});
+    newer[8] = 3;
+    expect_parts(message(mended(newer)), {"version 3"});
 }
 
 TEST(CalibrationFileTest, RefusesValuesOutsideTheirLimits) {

@@ -61,7 +61,7 @@ TEST(PixelResponseTest, ACalibratedSiteHasItsOwnResponseAndNoise) {
     // 3 DN of read noise and rounding; 15 DN = 30 e of dark signal; 2 DN of the offset; 100 DN/s of
     // the dark current, 1.5 DN in 15 ms.
     const double dn2 = 9 + 1.0 / 12 + 30.0 / 4 + 4 + 1.5 * 1.5;
-    EXPECT_NEAR(static_cast<double>(response.dark_variance(3)), dn2 * 1.6e-3 * 1.6e-3, 1e-9);
+    EXPECT_NEAR(static_cast<double>(response.dark_variance(415, 3)), dn2 * 1.6e-3 * 1.6e-3, 1e-9);
     // Shot noise of 1250 e per unit; 4 % of the gain: at a light of 0.5 as much as 0.0016 x 0.5.
     EXPECT_NEAR(static_cast<double>(response.variance_per_light(0.5F)), 1.0 / 1250 + 0.0016 * 0.5,
                 1e-8);
@@ -85,9 +85,42 @@ TEST(PixelResponseTest, ASiteOfTheHeadersValuesHasTheHeadersResponse) {
             EXPECT_FLOAT_EQ(calibrated.light(dn, 2), nominal.light(dn, 2)) << dn;
             EXPECT_EQ(calibrated.saturated(dn), nominal.saturated(dn)) << dn;
         }
-        EXPECT_FLOAT_EQ(calibrated.dark_variance(2), nominal.dark_variance(2));
+        EXPECT_FLOAT_EQ(calibrated.dark_variance(100, 2), nominal.dark_variance(100, 2));
         EXPECT_FLOAT_EQ(calibrated.variance_per_light(1), nominal.variance_per_light(1));
     }
+}
+
+/// linear DN 100 + (DN - 100) (1 + (DN - 100) / 4000), with a variance of 9 DN^2, of 12 bits.
+ResponseTable bent_table() {
+    ResponseTable table;
+    for (int dn = 0; dn < 4096; ++dn) {
+        const auto y = static_cast<float>(dn - 100);
+        table.linear_dn.push_back(y < 0 ? static_cast<float>(dn) : 100 + y * (1 + y / 4000));
+        table.variance_dn2.push_back(9);
+    }
+    return table;
+}
+
+// 2 e/DN and 1000 e per unit: 2 thousandths of a unit per DN.
+TEST(PixelResponseTest, AResponseTableIsAppliedBeforeOffsetAndGain) {
+    Calibration calibration;
+    calibration.bit_depth = 12;
+    calibration.gain_e_per_dn = 2;
+    calibration.full_well_e = 7200;
+    const ResponseTable table = bent_table();
+    const ResponseCurve curve(table);
+    const SiteCalibration site{.gain = 1, .offset_dn = 100, .readout_noise_dn2 = 4};
+    const PixelResponse response(calibration, {}, site, 0.005, &curve);
+    EXPECT_FLOAT_EQ(response.light(1100, 1), 1250 * 2e-3F);
+    EXPECT_FLOAT_EQ(response.light(100, 1), 0);
+    // Slope 1 + 2 x 1000 / 4000: noise of 4 DN^2 counts 2.25 times. The table adds 9.
+    EXPECT_NEAR(static_cast<double>(response.dark_variance(1100, 1)), (2.25 * 4 + 9) * 4e-6, 1e-10);
+    EXPECT_NEAR(static_cast<double>(response.variance_per_light(2)), 1e-3, 1e-9);
+    // The well of 3600 linear DN is where y (1 + y / 4000) = 3600, y = 2289.5, slope 2.145. Noise
+    // is 2 x 2.145 DN there, so clipping begins at 3600 - 5 x 4.29 = 3578.6: y = 2279.5, DN 2379.5.
+    EXPECT_FALSE(response.saturated(2379));
+    EXPECT_TRUE(response.saturated(2380));
+    EXPECT_EQ(response.light(2400, 1), response.light(4095, 1));
 }
 
 // What clips at the full well scatters around it by the read noise. Were one of these samples taken

@@ -21,12 +21,12 @@ FluxVideo render() {
     return video;
 }
 
-double psnr(const FluxVideo& video, const SensorParams& sensor,
-            std::vector<SiteCalibration> sites) {
+double psnr(const FluxVideo& video, const SensorParams& sensor, std::vector<SiteCalibration> sites,
+            ResponseTable response = {}) {
     const TemporaryFolder folder;
     write_recording(video, schedule_of("random", video.shape()), sensor, folder / "clip.stipple");
-    const FluxVideo decoded =
-        read_recording(folder / "clip.stipple", DecodeMethod::kFast, std::move(sites));
+    const FluxVideo decoded = read_recording(folder / "clip.stipple", DecodeMethod::kFast,
+                                             std::move(sites), std::move(response));
     return quality_of(decoded, video).psnr_gamma_db;
 }
 
@@ -45,6 +45,24 @@ TEST(CalibratedChipTest, AHundredFlatsUndoTheFixedPattern) {
     RecordProperty("calibrated_db", std::to_string(calibrated));
     EXPECT_GT(calibrated, equal - 0.3);
     EXPECT_LT(uncalibrated, equal - 0.6);
+}
+
+// Bright, so that the response bends by up to its 10 %.
+TEST(CalibratedChipTest, LevelsOfLightUndoANonLinearResponse) {
+    const FluxVideo video = render();
+    const SensorParams sensor = sensor_of("t6", {"response_loss=0.1"}, 4);
+    const ChipEstimate estimate =
+        calibrated_chip(sensor, video.shape(), {.darks = 50, .flats = 50, .levels = 12});
+    const ChipEstimate linear = calibrated_chip(sensor, video.shape(), {.darks = 50, .flats = 50});
+    const double equal = psnr(video, without_fixed_pattern(sensor), {});
+    const double straight = psnr(video, sensor, linear.calibration.sites);
+    const double calibrated =
+        psnr(video, sensor, estimate.calibration.sites, estimate.calibration.response);
+    RecordProperty("equal_db", std::to_string(equal));
+    RecordProperty("straight_db", std::to_string(straight));
+    RecordProperty("calibrated_db", std::to_string(calibrated));
+    EXPECT_GT(calibrated, equal - 0.3);
+    EXPECT_LT(straight, equal - 0.6);
 }
 
 TEST(CalibratedChipTest, FootageItselfGainsBackHalfOfWhatUnequalGainsCost) {

@@ -13,7 +13,7 @@ ChipEstimate calibrated_chip(const SensorParams& sensor, FrameShape shape,
         for (int i = 0; i < exposure.images; ++i) collector.add(field.expose(exposure.photons));
     }
     const StreamHeader header = FlatField(sensor, 1, shape).header();
-    return estimate_chip({.header = header, .dark = dark, .flat = flat});
+    return estimate_chip({.header = header, .dark = dark, .flats = {&flat, 1}});
 }
 
 SensorParams without_fixed_pattern(SensorParams sensor) {
@@ -24,6 +24,7 @@ SensorParams without_fixed_pattern(SensorParams sensor) {
     terms.read_noise_spread = 0;
     terms.hot_pixel_fraction = 0;
     terms.dead_pixel_fraction = 0;
+    terms.response_loss = 0;
     return sensor;
 }
 

@@ -13,7 +13,7 @@ namespace stipple {
 [[nodiscard]] ChipEstimate calibrated_chip(const SensorParams& sensor, FrameShape shape,
                                            const CalibrationImages& images);
 
-/// The same sensor with equal pixels, without defects.
+/// The same sensor with equal, linear pixels, without defects.
 [[nodiscard]] SensorParams without_fixed_pattern(SensorParams sensor);
 
 }  // namespace stipple

@@ -126,9 +126,9 @@ void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule&
 }
 
 FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,
-                         std::vector<SiteCalibration> sites) {
+                         std::vector<SiteCalibration> sites, ResponseTable response) {
     StreamReader reader(file, ReadPolicy::kStrict);
-    reader.use_sites(std::move(sites));
+    reader.use_sites(std::move(sites), std::move(response));
     FluxVideo video(static_cast<int>(reader.slots().value()), decoded_shape(reader.header()));
     decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
         std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());

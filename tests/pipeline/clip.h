@@ -56,9 +56,10 @@ void write_recording(const FluxVideo& video, const NamedSchedule& schedule,
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& schedule,
                   const std::filesystem::path& file);
 
-/// Decoded with this calibration of the sites, if there is one.
+/// Decoded with this calibration of the sites, if there is one, and this response.
 [[nodiscard]] FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,
-                                       std::vector<SiteCalibration> sites = {});
+                                       std::vector<SiteCalibration> sites = {},
+                                       ResponseTable response = {});
 
 /// Quality without the first and last 4 frames, light clipped at 2.0.
 [[nodiscard]] VideoQuality quality_of(const FluxVideo& decoded, const FluxVideo& truth);

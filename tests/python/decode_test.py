@@ -41,6 +41,20 @@ class DecodeTest(ProgramTest):
         with self.assertRaises(FileNotFoundError):
             self.decodes("naive", calibration=self.folder / "none.stcal")
 
+    def test_a_bent_chip_and_a_calibration_beside_the_stream_decode_as_in_the_program(self):
+        bent = ("--set", "sensor.response_loss=0.2")
+        self.write_flat("light.npy", 20, 8, 8, 0.8)
+        self.succeed("calibrate", "--sensor", "t6", "--size", "8x8", *bent, "-o", "chip.stcal")
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--sensor", "t6", *bent, "--calibration",
+                     "chip.stcal")
+        result = self.decodes("naive")
+        np.testing.assert_array_equal(result, self.program_decodes("--method", "naive"))
+        np.testing.assert_array_equal(result, self.decodes("naive", calibration=self.folder / "chip.stcal"))
+        plain = self.decodes("naive", calibration="none")
+        np.testing.assert_array_equal(
+            plain, self.program_decodes("--method", "naive", "--calibration", "none"))
+        self.assertGreater(np.abs(plain - result).max(), 0.01)
+
     def test_each_method_gives_the_values_of_the_program(self):
         self.write_clip()
         for method in ("naive", "fast", "best"):

@@ -1,0 +1,29 @@
+#include "apps/attached_calibration.h"
+
+#include "apps/fixed_pattern.h"
+#include "apps/report/text_file.h"
+#include "calibration/calibration_file.h"
+#include "readout/emulator.h"
+#include "readout/provenance.h"
+
+namespace stipple {
+namespace {
+
+/// The bytes of a calibration of the chip of `setup`.
+std::string bytes_of(const std::string& file, const SensorSetup& setup) {
+    const auto bytes = encode_chip_calibration(
+        read_calibration(file, stream_header_of(setup, provenance_of(setup, {}))));
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+AttachedCalibration::AttachedCalibration(const std::string& file, std::filesystem::path stream,
+                                         const SensorSetup& setup, const RunOptions& run)
+    : bytes_(bytes_of(file, setup)), output_(stream.replace_extension(".stcal"), run.force) {}
+
+void AttachedCalibration::write() {
+    write_text(output_, bytes_);
+}
+
+}  // namespace stipple

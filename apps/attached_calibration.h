@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/arguments/run_options.h"
+#include "io/pending_output.h"
+#include "readout/sensor_file.h"
+
+namespace stipple {
+
+/// A copy of a calibration file that goes with a new stream: calibration_beside finds it.
+class AttachedCalibration {
+  public:
+    /// \throws InputError as read_calibration for the stream of `setup`, and as PendingOutput.
+    AttachedCalibration(const std::string& file, std::filesystem::path stream,
+                        const SensorSetup& setup, const RunOptions& run);
+    /// Puts it in place. \throws DeviceError.
+    void write();
+
+  private:
+    std::string bytes_;
+    PendingOutput output_;
+};
+
+}  // namespace stipple
