@@ -135,11 +135,11 @@ std::string Footage::name() const {
 }
 
 ResampledFootage Footage::resampled(double slot_us) {
-    return {FrameSource{.shape = shape(),
-                        .filter = filter(),
-                        .frames = slots(),
-                        .frames_hz = files_ ? files_->frames_hz() : std::nullopt,
-                        .next = [this] { return next(); }},
+    return {FootageSource{.shape = shape(),
+                          .filter = filter(),
+                          .frames = slots(),
+                          .frames_hz = files_ ? files_->frames_hz() : std::nullopt,
+                          .next = [this] { return next(); }},
             name(),
             {.method = reading_.resampling,
              .frames_hz = reading_.options.frames_hz,

@@ -14,10 +14,11 @@ ResampledFootage::ResampledFootage(ReadAhead& footage, const std::string& name,
                         .filter = footage.filter(),
                         .frames = footage.slots(),
                         .frames_hz = footage.frames_hz(),
-                        .next = [&footage] { return footage.next(); }},
+                        .next = [&footage] { return footage.next(); },
+                        .skip = [&footage](int frames) { footage.skip(frames); }},
                        name, options) {}
 
-ResampledFootage::ResampledFootage(FrameSource source, const std::string& name,
+ResampledFootage::ResampledFootage(FootageSource source, const std::string& name,
                                    const SlotOptions& options)
     : source_(std::move(source)) {
     if (!options.method) return;
@@ -54,8 +55,8 @@ std::span<const float> ResampledFootage::next() {
 }
 
 void ResampledFootage::skip(int slots) {
-    if (!resampler_) return footage_.skip(slots);
-    for (int i = 0; i < slots && !resampler_->next().empty(); ++i) {
+    if (!resampler_ && source_.skip) return source_.skip(slots);
+    for (int i = 0; i < slots && !next().empty(); ++i) {
     }
 }
 

@@ -22,12 +22,13 @@ struct SlotOptions {
 };
 
 /// Frames, and what is known of them before they are read.
-struct FrameSource {
+struct FootageSource {
     FrameShape shape;
     ColourFilter filter = ColourFilter::kNone;
     std::optional<std::int64_t> frames = {};
     std::optional<double> frames_hz = {};
     std::function<std::span<const float>()> next;  ///< as ReadAhead::next
+    std::function<void(int)> skip = {};            ///< as ReadAhead::skip; none: reads them
 };
 
 /// Frames as slots of a sensor.
@@ -35,7 +36,7 @@ class ResampledFootage {
   public:
     /// Messages call the source `name`. \throws InputError if a method needs the frame rate and it
     /// is unknown or out of range, or if kFlow would mix the colours of a mosaic.
-    ResampledFootage(FrameSource source, const std::string& name, const SlotOptions& options);
+    ResampledFootage(FootageSource source, const std::string& name, const SlotOptions& options);
     /// The same of footage or a recording, which must outlive it.
     ResampledFootage(ReadAhead& footage, const std::string& name, const SlotOptions& options);
 
@@ -49,7 +50,7 @@ class ResampledFootage {
     void skip(int slots);
 
   private:
-    FrameSource source_;
+    FootageSource source_;
     double frames_per_slot_ = 1;
     std::optional<FrameResampler> resampler_;  ///< none: each frame is a slot
 };
