@@ -7,6 +7,7 @@
 #include "apps/arguments/video_output.h"
 #include "apps/decode_file.h"
 #include "apps/decode_part.h"
+#include "apps/rig_folder.h"
 #include "apps/subcommands.h"
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
@@ -41,6 +42,20 @@ void add_reading(Command& command, DecodeArguments& arguments, std::string& chec
         .one_of({"true", "fix"});
 }
 
+/// The method and its options.
+void add_method(Command& command, DecodeArguments& arguments) {
+    command.add_option("--method", arguments.method, "decoding method")
+        .shows_default()
+        .one_of(names_of(decode_methods()))
+        .type_name("NAME");
+    command
+        .add_option("--options", arguments.options,
+                    "options of the method, a TOML file (docs/decoder_options.md)")
+        .type_name("FILE")
+        .input();
+    add_settings(command, {{"decoder", &arguments.settings}}, "change one option of the method");
+}
+
 /// Windows are .npy files, and "join" makes what else is wanted of them.
 void check_part(const Command& command, const DecodeArguments& arguments) {
     command.refuse({"--until", "--follow", "--stages", "--check-schedule"},
@@ -49,6 +64,13 @@ void check_part(const Command& command, const DecodeArguments& arguments) {
                     "--samples", "--full-scale", "--pixel-um"},
                    "is an option of \"stipple join\", which makes the video of all parts");
     check_part_folder(arguments.output);
+}
+
+/// The streams of a rig are decoded as they lie in its folder.
+void check_rig(const Command& command) {
+    command.refuse({"--part", "--follow", "--calibration", "--check-schedule", "--stages"},
+                   "is an option for one stream, but this is the folder of a rig; leave it out, or "
+                   "decode one of its streams");
 }
 
 void decode_all_or_part(const DecodeArguments& arguments, const RunOptions& run) {
@@ -63,23 +85,16 @@ void decode_all_or_part(const DecodeArguments& arguments, const RunOptions& run)
 void add_decode(Command& app, Action& action) {
     Command command = app.add_command("decode", "Sample stream to high-speed video");
     const auto options = std::make_shared<DecodeArguments>();
-    command.add_option("STREAM", options->stream, "sample stream").required().input();
+    command.add_option("STREAM", options->stream, "sample stream, or the folder of a rig")
+        .required()
+        .input();
     command
         .add_option("-o,--output", options->output,
                     "folder of images, .npy or .tif (linear), .mp4 or .mkv (video)")
         .type_name("OUT")
         .required()
         .output(kVideoName);
-    command.add_option("--method", options->method, "decoding method")
-        .shows_default()
-        .one_of(names_of(decode_methods()))
-        .type_name("NAME");
-    command
-        .add_option("--options", options->options,
-                    "options of the method, a TOML file (docs/decoder_options.md)")
-        .type_name("FILE")
-        .input();
-    add_settings(command, {{"decoder", &options->settings}}, "change one option of the method");
+    add_method(command, *options);
     command
         .add_option("--stages", options->stages,
                     "keep the estimate of each stage of portz2013 as DIR/start.npy, "
@@ -107,6 +122,7 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode clip.stipple -o preview --method fast --until 60\n"
         "  stipple decode clip.stipple -o clean --calibration chip.stcal\n"
         "  stipple decode live.stipple -o live --method fast --follow\n"
+        "  stipple decode tocci -o hdr.npy\n"
         "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
         "  stipple decode film.stipple -o windows --part 3/16\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
@@ -114,6 +130,7 @@ void add_decode(Command& app, Action& action) {
         if (!check_schedule->empty())
             options->check_schedule =
                 *check_schedule == "fix" ? CheckSchedule::kFixShift : CheckSchedule::kRefuseShift;
+        if (is_rig_folder(options->stream)) check_rig(command);
         if (!options->follow)
             command.refuse({"--timeout"}, "needs --follow; add it, or leave this out");
         if (options->part.count > 0)

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "apps/decode_schedule.h"
 #include "apps/decode_setup.h"
@@ -18,6 +19,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
+#include "apps/rig_folder.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -46,6 +48,16 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
             // Its writer has completed it meanwhile, and given it its name.
         }
     }
+}
+
+/// The streams of the folder of a rig; of any other input the one stream.
+RigFolder open_streams(const DecodeArguments& arguments, GrowingFile& growing) {
+    const ReadPolicy policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant;
+    if (is_rig_folder(arguments.stream)) return open_rig_folder(arguments.stream, policy);
+    RigFolder alone;
+    alone.rig.sensors.resize(1);
+    alone.readers.push_back(open_stream(arguments, policy, growing));
+    return alone;
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -99,6 +111,7 @@ class DecodeRun {
     [[nodiscard]] std::string summary() const;
     void warn_of_end() const;
     void tell_faults() const;
+    void tell_faults_of(const StreamReader& reader) const;
 
     const DecodeArguments& arguments_;
     const RunOptions& run_;
@@ -106,7 +119,8 @@ class DecodeRun {
     GrowingFile growing_;
     JsonFile json_;
     std::optional<ScheduleCheck> check_;
-    StreamReader reader_;
+    RigFolder input_;
+    StreamReader& reader_;  ///< of the stream, or of the first one of a rig
     FrameWriter writer_;
     StageOutputs stages_;
     DecodeReport report_;
@@ -120,14 +134,18 @@ DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
       growing_(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; }),
       json_(run),
       check_(check_schedule()),
-      reader_(open_stream(arguments, arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant,
-                          growing_)),
+      input_(open_streams(arguments, growing_)),
+      reader_(input_.readers.front()),
       writer_(arguments.output, decoded_shape(reader_.header()),
               writer_options(arguments, run, reader_.header())),
       stages_(arguments.stages, decoded_shape(reader_.header()), run.force) {
     if (check_ && check_->verdict == ScheduleCheck::Verdict::kShifted)
         reader_.use_schedule(shifted_schedule(reader_.header().schedule, check_->shift));
-    calibrate(reader_, arguments);
+    for (StreamReader& reader : input_.readers) {
+        DecodeArguments own = arguments;
+        if (input_.readers.size() > 1) own.stream = reader.name();
+        calibrate(reader, own);
+    }
     say_leftover(arguments.output);
     options_.stages = stages_.sink();
 }
@@ -154,8 +172,9 @@ DecodeReport DecodeRun::decode_frames() {
     if (until > 0) total = std::min(total.value_or(until), until);
     Progress progress(run_, "decoding", total);
     std::int64_t written = 0;
-    return decode(
-        reader_, options_,
+    const std::vector<RigStream> streams = input_.streams();
+    return decode_rig(
+        streams, options_,
         [&](std::int64_t slot, std::span<const float> frame) {
             writer_.write(frame);
             written = slot + 1;
@@ -196,6 +215,7 @@ nlohmann::ordered_json DecodeRun::figures() const {
                                 {"peak_memory_bytes", peak_memory_bytes()},
                                 {"threads", thread_count()},
                                 {"calibration", calibration_json(arguments_)}};
+    if (input_.readers.size() > 1) json["sensors"] = input_.readers.size();
     if (check_) json["schedule_check"] = check_json(*check_);
     if (!stages_.figures().empty()) json["convergence"] = stages_.figures();
     if (const auto levels = writer_.light_levels())
@@ -226,15 +246,20 @@ void DecodeRun::warn_of_end() const {
 }
 
 void DecodeRun::tell_faults() const {
-    StreamReport found = reader_.report();
+    for (const StreamReader& reader : input_.readers) tell_faults_of(reader);
+}
+
+void DecodeRun::tell_faults_of(const StreamReader& reader) const {
+    StreamReport found = reader.report();
+    const std::string& name = arguments_.follow ? arguments_.stream : reader.name();
     if (const auto text = no_sample_text(found); !text.empty())
-        say_warning(fmt::format("{}: {}", arguments_.stream, text));
+        say_warning(fmt::format("{}: {}", name, text));
     if (const auto text = no_end_text(found); end_ == DecodeEnd::kStream && !text.empty())
-        say_error("{}: {} (--follow)", arguments_.stream, text);
+        say_error("{}: {} (--follow)", name, text);
     if (end_ == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
     if (const auto text = decoded_damage_text(found, schedule_hint(found)); !text.empty())
-        throw InputError(arguments_.stream, text);
+        throw InputError(name, text);
 }
 
 }  // namespace

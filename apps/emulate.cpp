@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/attached_calibration.h"
 #include "apps/emulate_part.h"
+#include "apps/emulate_rig.h"
 #include "apps/emulation_input.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
@@ -91,8 +94,40 @@ void check_part(const Command& command, const EmulateArguments& arguments) {
     check_part_folder(arguments.output);
 }
 
+/// The sensors of a rig have their options in its file.
+void check_rig(const Command& command, const EmulateArguments& options) {
+    if (options.rig.empty() && !options.rig_settings.empty())
+        throw UsageError("--set", "rig." + options.rig_settings.front() +
+                                      ": needs --rig; add it, or leave this out");
+    if (options.rig.empty()) return;
+    command.refuse({"--sensor", "--schedule", "--seed", "--overrun", "--vcd", "--calibration"},
+                   "is that of one sensor; write it into the file of the rig, or leave it out");
+    command.refuse({"--part"}, "makes pieces of one stream; leave out one of them");
+    if (!options.sensor.settings.empty() || !options.sensor.schedule_settings.empty())
+        throw UsageError("--set", "changes one sensor; write --set rig.NAME.set=[...]");
+    if (std::filesystem::path(options.output).extension() == ".stipple")
+        throw UsageError("--output", "with --rig it is a folder, and has no extension");
+}
+
+/// `--rig`, and `--set` of all that has keys.
+void add_rig(Command& command, EmulateArguments& arguments) {
+    command
+        .add_option("--rig", arguments.rig,
+                    "several sensors on the scene, of \"stipple list rigs\"; FILE is a folder "
+                    "(docs/rig.md)")
+        .type_name("NAME|FILE")
+        .listed("rigs")
+        .input();
+    auto sections = sensor_sections(arguments.sensor);
+    sections.push_back({"rig", &arguments.rig_settings});
+    add_settings(command, std::move(sections),
+                 "change a key of the sensor, of the schedule or of the rig");
+}
+
 void emulate_all_or_part(const EmulateArguments& arguments, const RunOptions& run) {
-    if (arguments.part.count > 0)
+    if (!arguments.rig.empty())
+        emulate_rig(arguments, run);
+    else if (arguments.part.count > 0)
         emulate_part(arguments, run);
     else
         emulate(arguments, run);
@@ -115,8 +150,7 @@ void add_emulate(Command& app, Action& action) {
         .required()
         .output(kStreamName);
     add_sensor_arguments(command, options->sensor);
-    add_settings(command, sensor_sections(options->sensor),
-                 "change a key of the sensor or of the schedule");
+    add_rig(command, *options);
     add_footage_arguments(command, options->reading);
     add_resample_arguments(command, options->resampling, options->reading);
     add_max_value(command, options->reading.max_value);
@@ -144,8 +178,10 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate hdr.mp4 -o clip.stipple --transfer auto --resample flow --scale 2\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8\n"
+        "  stipple emulate scene -o tocci --rig tocci2011\n"
         "  stipple emulate film.npy -o pieces --part 3/16");
     set_action(command, action, options, emulate_all_or_part, [command, options] {
+        check_rig(command, *options);
         if (options->part.count > 0) check_part(command, *options);
     });
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/arguments/footage.h"
 #include "apps/arguments/sensor.h"
@@ -22,8 +23,10 @@ struct EmulateArguments {
     FootageOptions reading;
     std::optional<Resampling> resampling;  ///< none: each frame is a slot
     SensorChoice sensor;
-    std::string calibration;  ///< file of the chip, for the decoder; empty: none
-    PartOfWork part;          ///< of the pieces of the stream
+    std::string calibration;                ///< file of the chip, for the decoder; empty: none
+    PartOfWork part;                        ///< of the pieces of the stream
+    std::string rig;                        ///< name or file; empty: one sensor
+    std::vector<std::string> rig_settings;  ///< "key=value", laid over the rig's file
 };
 
 /// The footage of an emulation and the sensor that it goes through. Warns on standard error of what

@@ -11,11 +11,13 @@
 #include "apps/info_calibration.h"
 #include "apps/info_footage.h"
 #include "apps/info_recording.h"
+#include "apps/info_rig.h"
 #include "apps/info_settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
+#include "apps/rig_folder.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "capture/recording/recording_reader.h"
@@ -102,6 +104,7 @@ bool may_be_stream(const std::string& file) {
 
 void info(const InfoOptions& options, const RunOptions& run) {
     const std::string& file = options.file;
+    if (!options.raw && is_rig_folder(file)) return info_rig(file, run);
     const bool ours = !options.raw && (is_recording(file) || is_stream(file));
     if (options.raw || (!ours && is_footage(file)))
         return info_footage(file, options.raw, options.header_only, run);
@@ -125,8 +128,8 @@ void add_info(Command& app, Action& action) {
     const auto options = std::make_shared<InfoOptions>();
     command
         .add_option("FILE", options->file,
-                    "stream, recording, calibration, footage, sensor or schedule, or the name of "
-                    "one")
+                    "stream, recording, calibration, footage, folder of a rig, sensor, schedule or "
+                    "rig, or the name of one")
         .required()
         .input();
     add_raw_argument(command, options->raw, "FILE");

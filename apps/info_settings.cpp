@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "apps/info_rig.h"
 #include "apps/key_list.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
@@ -52,17 +53,21 @@ SettingsKind kind_of_name(const std::string& name) {
                                      find_config(ConfigKind::kSchedules, name).string()));
     if (sensor) return SettingsKind::kSensor;
     if (schedule) return SettingsKind::kSchedule;
+    if (is_listed(ConfigKind::kRigs, name)) return SettingsKind::kRig;
     return is_scene(name) ? SettingsKind::kScene : SettingsKind::kNone;
 }
 
 SettingsKind kind_of_keys(const std::string& file) {
     const Config config(file, {});
     if (config.contains("kind")) return SettingsKind::kSchedule;
+    if (config.contains("sensors")) return SettingsKind::kRig;
     for (const KeyList& list : key_lists("sensor", ""))
         for (const KnownKey& key : list.keys)
             if (config.contains(key.name)) return SettingsKind::kSensor;
-    throw InputError(file,
-                     "holds the keys of neither a sensor nor a schedule (\"stipple list keys\")");
+    throw InputError(
+        file,
+        "holds the keys of neither a sensor nor a schedule (\"stipple list keys\"), nor "
+        "of a rig");
 }
 
 /// The values of the keys with their units, as if they were the defaults of a file without keys.
@@ -257,6 +262,7 @@ void info_settings(SettingsKind kind, const std::string& name, const RunOptions&
     if (kind == SettingsKind::kSensor) info_sensor(name, run);
     if (kind == SettingsKind::kSchedule) info_schedule(name, run);
     if (kind == SettingsKind::kScene) info_scene(name, run);
+    if (kind == SettingsKind::kRig) info_rig_file(name, run);
 }
 
 }  // namespace stipple

@@ -6,9 +6,9 @@
 
 namespace stipple {
 
-/// What `name` is, if it is a sensor, a schedule or a scene: a file of settings by its keys, a
-/// compiled schedule (.mem, .hex) by its extension, else a name of `stipple list`.
-enum class SettingsKind { kNone, kSensor, kSchedule, kScene };
+/// What `name` is, if it is a sensor, a schedule, a rig or a scene: a file of settings by its keys,
+/// a compiled schedule (.mem, .hex) by its extension, else a name of `stipple list`.
+enum class SettingsKind { kNone, kSensor, kSchedule, kScene, kRig };
 
 /// \throws InputError for a name that both a sensor and a schedule have, and for a .toml file whose
 /// keys are of neither.

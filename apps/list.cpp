@@ -68,7 +68,9 @@ std::vector<Entry> entries_of(const std::string& kind) {
         for (const NamedDecodeMethod& method : decode_methods())
             entries.push_back({std::string(method.name), std::string(method.text)});
     else
-        entries = configurations(kind == "sensors" ? ConfigKind::kSensors : ConfigKind::kSchedules);
+        entries = configurations(kind == "sensors" ? ConfigKind::kSensors
+                                 : kind == "rigs"  ? ConfigKind::kRigs
+                                                   : ConfigKind::kSchedules);
     return entries;
 }
 
@@ -136,11 +138,11 @@ void list(const ListOptions& options, const RunOptions& run) {
 }  // namespace
 
 void add_list(Command& app, Action& action) {
-    Command command =
-        app.add_command("list", "Names of sensors, schedules, scenes or methods, keys of --set");
+    Command command = app.add_command(
+        "list", "Names of sensors, schedules, rigs, scenes or methods, keys of --set");
     const auto options = std::make_shared<ListOptions>();
     command.add_option("KIND", options->kind, "list of names, or of the keys of --set")
-        .one_of({"sensors", "schedules", "scenes", "methods", "keys"})
+        .one_of({"sensors", "schedules", "rigs", "scenes", "methods", "keys"})
         .required();
     command.add_option("SECTION", options->section, "section of the keys")
         .default_text("all")

@@ -100,9 +100,9 @@ class Config {
 };
 
 /// Kinds of configuration files.
-enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces };
+enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces, kRigs };
 
-/// The folder of a kind: "sensors", "schedules", "spaces".
+/// The folder of a kind: "sensors", "schedules", "spaces", "rigs".
 [[nodiscard]] std::string_view folder_of(ConfigKind kind);
 
 /// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`.

@@ -13,7 +13,7 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Folders that hold sensors/, schedules/ and spaces/; the first one that has a name wins.
+/// Folders that hold sensors/, schedules/, spaces/ and rigs/; the first one that has a name wins.
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
@@ -35,6 +35,8 @@ std::string_view folder_of(ConfigKind kind) {
             return "schedules";
         case ConfigKind::kSpaces:
             return "spaces";
+        case ConfigKind::kRigs:
+            return "rigs";
     }
     return {};
 }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
@@ -25,20 +26,28 @@ struct Slice {
     const float* step;
     const float* weight;  ///< null without weights
     float* v;
+    float* dual;  ///< null without
+};
+
+/// Arrays that the map reads and writes.
+struct Arrays {
+    const float* step;
+    float* v;
+    float* dual;
 };
 
 template <bool kWeighted>
-Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const float* step,
-            float* v) {
+Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const Arrays& arrays) {
     const std::size_t voxel = slot * m.shape.sites() + run.begin;
     const std::size_t pixels = m.shape.pixels();
     return {.sites = run.end - run.begin,
             .state = &m.state[voxel],
             .y = &m.sum[voxel],
             .variance = &m.variance[voxel],
-            .step = step + slot * pixels + run.begin % pixels,
+            .step = arrays.step + slot * pixels + run.begin % pixels,
             .weight = kWeighted ? &m.weight[voxel] : nullptr,
-            .v = v + voxel};
+            .v = arrays.v + voxel,
+            .dual = arrays.dual == nullptr ? nullptr : arrays.dual + voxel};
 }
 
 /// The chains of exposures that are looked at; the voxels of others count as unobserved.
@@ -53,7 +62,9 @@ std::uint8_t state_in(std::uint8_t state) {
 
 /// Adds a slot to the sums of w v and w^2 step over each exposure, w the weight of a voxel;
 /// `correction` is (y - sum w v) / (variance + sum w^2 step) where an exposure ends, else anything.
-template <Chain kChain, bool kWeighted>
+/// With duals v has the part of the last one, which is taken out first: `correction` is the
+/// increase of the dual.
+template <Chain kChain, bool kWeighted, bool kDual>
 void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_step,
             float* HWY_RESTRICT correction) {
     const std::uint8_t* HWY_RESTRICT states = s.state;
@@ -64,9 +75,12 @@ void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_s
         const float open = (state & Measurements::kOpen) != 0 ? weight : 0.0F;
         sum_v[i] = keep * sum_v[i] + open * s.v[i];
         sum_step[i] = keep * sum_step[i] + (kWeighted ? open * weight : open) * s.step[i];
-        const float missing = s.y[i] - sum_v[i];
+        const float before = kDual ? s.dual[i] : 0.0F;
+        const float missing = kDual ? s.y[i] - sum_v[i] + before * sum_step[i] : s.y[i] - sum_v[i];
         const bool explained = (state & Measurements::kSaturated) != 0 && missing < 0;
-        correction[i] = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
+        const float dual = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
+        correction[i] = kDual ? dual - before : dual;
+        if (kDual) s.dual[i] = (state & Measurements::kLast) != 0 ? dual : before;
     }
 }
 
@@ -84,32 +98,62 @@ void distribute(const Slice& s, const float* HWY_RESTRICT ending, float* HWY_RES
     }
 }
 
-template <Chain kChain, bool kWeighted>
-void prox_chain(const Measurements& m, const SiteRun& run, const float* step, float* v) {
+template <Chain kChain, bool kWeighted, bool kDual>
+void prox_chain(const Measurements& m, const SiteRun& run, const Arrays& arrays) {
     const auto slots = static_cast<std::size_t>(m.slots);
     // 128 KB, of which each slot uses a row: to zero all would take longer than the sums.
     __attribute__((uninitialized)) float ending[kMaxRunSlots][kMaxRunSites];
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up<kChain, kWeighted>(slice<kWeighted>(m, run, slot, step, v), sum_v, sum_step,
-                                  ending[slot]);
+        add_up<kChain, kWeighted, kDual>(slice<kWeighted>(m, run, slot, arrays), sum_v, sum_step,
+                                         ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
-        distribute<kChain, kWeighted>(slice<kWeighted>(m, run, slot, step, v), ending[slot],
+        distribute<kChain, kWeighted>(slice<kWeighted>(m, run, slot, arrays), ending[slot],
                                       correction);
 }
 
-/// Chains share no voxel, so one after the other is both at once.
-template <bool kWeighted>
-void prox_chains(const Measurements& m, const SiteRun& run, const float* step, float* v) {
-    if (!m.interleaved) return prox_chain<Chain::kOnly, kWeighted>(m, run, step, v);
-    prox_chain<Chain::kFirst, kWeighted>(m, run, step, v);
-    prox_chain<Chain::kSecond, kWeighted>(m, run, step, v);
+/// v + step A^T dual.
+template <Chain kChain, bool kWeighted>
+void add_duals(const Measurements& m, const SiteRun& run, const Arrays& arrays) {
+    float correction[kMaxRunSites] = {};
+    for (auto slot = static_cast<std::size_t>(m.slots); slot-- > 0;) {
+        const Slice s = slice<kWeighted>(m, run, slot, arrays);
+        distribute<kChain, kWeighted>(s, s.dual, correction);
+    }
+}
+
+/// Calls body(chain, weighted), both std::integral_constant, for each chain. Chains share no voxel,
+/// so one after the other is both at once.
+template <typename Body>
+void for_each_chain(const Measurements& m, const Body& body) {
+    const auto chains = [&](auto weighted) {
+        if (!m.interleaved) return body(std::integral_constant<Chain, Chain::kOnly>{}, weighted);
+        body(std::integral_constant<Chain, Chain::kFirst>{}, weighted);
+        body(std::integral_constant<Chain, Chain::kSecond>{}, weighted);
+    };
+    m.weight.empty() ? chains(std::false_type{}) : chains(std::true_type{});
 }
 
 void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
-    m.weight.empty() ? prox_chains<false>(m, run, step, v) : prox_chains<true>(m, run, step, v);
+    for_each_chain(m, [&](auto chain, auto weighted) {
+        prox_chain<chain(), weighted(), false>(m, run, {step, v, nullptr});
+    });
+}
+
+void prox_dual_run(const Measurements& m, const SiteRun& run, const float* step, float* v,
+                   float* dual) {
+    for_each_chain(m, [&](auto chain, auto weighted) {
+        prox_chain<chain(), weighted(), true>(m, run, {step, v, dual});
+    });
+}
+
+void add_dual_run(const Measurements& m, const SiteRun& run, const float* step, float* v,
+                  float* dual) {
+    for_each_chain(m, [&](auto chain, auto weighted) {
+        add_duals<chain(), weighted()>(m, run, {step, v, dual});
+    });
 }
 
 }  // namespace stipple::HWY_NAMESPACE
@@ -119,6 +163,8 @@ HWY_AFTER_NAMESPACE();
 namespace stipple {
 
 HWY_EXPORT(prox_run);
+HWY_EXPORT(prox_dual_run);
+HWY_EXPORT(add_dual_run);
 
 std::vector<SiteRun> site_runs(FrameShape shape) {
     std::vector<SiteRun> runs;
@@ -134,6 +180,20 @@ void data_prox(const Measurements& measurements, const SiteRun& run, std::span<c
     assert(run.end - run.begin <= kMaxRunSites && measurements.slots <= kMaxRunSlots);
     assert(v.size() == measurements.voxels());
     HWY_DYNAMIC_DISPATCH(prox_run)(measurements, run, step.data(), v.data());
+}
+
+void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
+               const DualVideo& x) noexcept {
+    assert(run.end - run.begin <= kMaxRunSites && measurements.slots <= kMaxRunSlots);
+    assert(x.v.size() == measurements.voxels() && x.dual.size() == measurements.voxels());
+    HWY_DYNAMIC_DISPATCH(prox_dual_run)
+    (measurements, run, step.data(), x.v.data(), x.dual.data());
+}
+
+void add_duals(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
+               const DualVideo& x) noexcept {
+    HWY_DYNAMIC_DISPATCH(add_dual_run)
+    (measurements, run, step.data(), x.v.data(), x.dual.data());
 }
 
 }  // namespace stipple

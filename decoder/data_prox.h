@@ -33,4 +33,21 @@ inline constexpr int kMaxRunSlots = 128;
 void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
                std::span<float> v) noexcept;
 
+/// A video that sensors share, x = v + step A^T dual, with the duals of one of them: a number for
+/// each exposure, at its last voxel.
+struct DualVideo {
+    std::span<float> v;  ///< x
+    std::span<float> dual;
+};
+
+/// The same map for one of several sensors, after its last result has been taken out of x: the
+/// maximum of the dual problem over the duals of this sensor, the others held. Changes x.v and
+/// x.dual.
+void data_prox(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
+               const DualVideo& x) noexcept;
+
+/// Adds the part of a sensor, step A^T dual, to x.v.
+void add_duals(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
+               const DualVideo& x) noexcept;
+
 }  // namespace stipple

@@ -57,6 +57,11 @@ struct Measurements {
     /// empty, and all weights are 1.
     std::vector<float> weight = {};
 
+    /// If several sensors see the scene (docs/rig.md): the samples of the others, in the same
+    /// window. All of them have `dark_variance` and `one_dn`, and none has others of its own.
+    std::vector<Measurements> others = {};
+    float one_dn = 0;  ///< light of one DN, of a sensor among several; otherwise 0
+
     [[nodiscard]] float weight_at(std::size_t voxel) const {
         return weight.empty() ? 1.0F : weight[voxel];
     }
@@ -67,6 +72,13 @@ struct Measurements {
 
     [[nodiscard]] std::size_t voxels() const { return state.size(); }
 };
+
+/// Calls body(measurements of a sensor) for each of them, the first one first.
+template <typename Sensors, typename Body>
+void for_each_sensor(Sensors& measurements, const Body& body) {
+    body(measurements);
+    for (auto& other : measurements.others) body(other);
+}
 
 /// Shape of the decoded frames of a stream: three planes if its plane is a mosaic of colours, else
 /// the shape of the array.

@@ -25,9 +25,11 @@ std::optional<FluxVideo> decode_with_prior(
     const BlockTask& block, std::optional<FluxVideo> (*decode)(const PriorTask& task)) {
     const SampleNoise noise(block.calibration);
     Measurements& measurements = block.measurements;
-    const auto exposures = frame_exposures(measurements);
+    const auto exposures = measurements.others.empty()
+                               ? frame_exposures(measurements)
+                               : std::optional<std::vector<FrameExposure>>();
     if (!exposures) {
-        mask_defects(measurements);
+        for_each_sensor(measurements, [](Measurements& sensor) { mask_defects(sensor); });
         DecodeOptions options = block.options;
         if (block.calibration.noise_free) options.best = without_noise(options.best);
         return decode({measurements, noise, options, block.progress});

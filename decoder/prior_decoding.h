@@ -18,8 +18,8 @@ struct PriorTask {
 };
 
 /// Decodes a block by such a method, after the samples of stuck pixels are removed. If all pixels
-/// have the same exposures, as in a conventional camera, `decode` restores the frames, and the
-/// video is interpolated between them.
+/// have the same exposures, as in a conventional camera (one sensor), `decode` restores the frames,
+/// and the video is interpolated between them.
 [[nodiscard]] std::optional<FluxVideo> decode_with_prior(
     const BlockTask& block, std::optional<FluxVideo> (*decode)(const PriorTask& task));
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -80,6 +81,48 @@ class PacketBuffer {
     std::int64_t present_ = 0;  ///< slots of these with a packet
     std::int64_t missing_ = 0;
     std::vector<SamplePacket> packets_;
+};
+
+/// The same of all sensors of a rig; slots are those of the first one.
+class RigBuffer {
+  public:
+    RigBuffer(std::span<const RigStream> rig, const DecodeOptions& options, std::int64_t first_slot)
+        : rig_(rig) {
+        for (const RigStream& stream : rig)
+            buffers_.emplace_back(stream.reader, options, first_slot - stream.view.phase_slots);
+    }
+
+    void read_up_to(std::int64_t slot) {
+        for_each(
+            [&](PacketBuffer& buffer, std::int64_t phase) { buffer.read_up_to(slot - phase); });
+    }
+    void drop_below(std::int64_t slot) {
+        for_each(
+            [&](PacketBuffer& buffer, std::int64_t phase) { buffer.drop_below(slot - phase); });
+    }
+    [[nodiscard]] const PacketBuffer& first() const { return buffers_.front(); }
+    /// Valid until the next call.
+    [[nodiscard]] std::vector<SensorSamples> samples() const {
+        std::vector<SensorSamples> samples;
+        for (std::size_t i = 0; i < rig_.size(); ++i)
+            samples.push_back({rig_[i].reader.header(), buffers_[i].packets(), rig_[i].view});
+        return samples;
+    }
+    void count(DecodeReport& report) const {
+        for (const PacketBuffer& buffer : buffers_) {
+            report.samples += buffer.counts().samples();
+            report.saturated_samples += buffer.counts().saturated();
+        }
+    }
+
+  private:
+    template <typename Body>
+    void for_each(const Body& body) {
+        for (std::size_t i = 0; i < rig_.size(); ++i) body(buffers_[i], rig_[i].view.phase_slots);
+    }
+
+    std::span<const RigStream> rig_;
+    std::deque<PacketBuffer> buffers_;
 };
 
 using Block = std::optional<FluxVideo>;  ///< nothing if stopped
@@ -159,14 +202,20 @@ VideoWindow window_of(const Tile& tile, const HaloRange& slots, int planes) {
                       .planes = planes}};
 }
 
+bool has_samples(const SensorSamples& sensor, const HaloRange& slots) {
+    return std::ranges::any_of(sensor.packets, [&](const SamplePacket& packet) {
+        return packet.slot + sensor.view.phase_slots < slots.end;
+    });
+}
+
 /// Decodes the cores of all tiles of a block of slots. No packet is older than the block.
-Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> packets,
-                   const DecodeOptions& options, const HaloRange& slots,
-                   const ProgressCallback& progress) {
-    const FrameShape shape = decoded_shape(header);
+Block decode_slots(std::span<const SensorSamples> sensors, const DecodeOptions& options,
+                   const HaloRange& slots, const ProgressCallback& progress) {
+    const FrameShape shape = decoded_shape(sensors.front().header);
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
-    const auto in_block = [&](const SamplePacket& packet) { return packet.slot < slots.end; };
-    if (std::ranges::none_of(packets, in_block)) return video;  // a long gap: nothing is known
+    const auto in_block = [&](const SensorSamples& sensor) { return has_samples(sensor, slots); };
+    if (std::ranges::none_of(sensors, in_block)) return video;  // a long gap: nothing is known
+    const Calibration calibration = joint_calibration(sensors);
     const std::vector<Tile> tiles = frame_tiles(shape, named(options.method).max_tile_sites);
     StageRelay stages(options.stages, shape, slots);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -175,9 +224,8 @@ Block decode_slots(const StreamHeader& header, std::span<const SamplePacket> pac
                             static_cast<double>(tiles.size()));
         };
         const VideoWindow window = window_of(tiles[i], slots, shape.planes);
-        const Block block =
-            decode_block(collect_measurements(header, packets, window), header.calibration, options,
-                         tile_progress, stages.observer(tiles[i], i));
+        const Block block = decode_block(collect_joint(sensors, window), calibration, options,
+                                         tile_progress, stages.observer(tiles[i], i));
         if (!block || !tile_progress(1)) return {};
         copy_core(*block, {tiles[i], slots}, video);
     }
@@ -206,8 +254,11 @@ void check_proportion(const StreamReader& reader, const DecodeOptions& options, 
 
 /// \throws InputError as check_memory for a block of slots. A small file is one for it that has
 /// less than a byte for 32 voxels, as no common schedule and bit depth make it.
-void check_block(const StreamReader& reader, const DecodeOptions& options, const HaloRange& slots) {
+void check_block(std::span<const RigStream> rig, const DecodeOptions& options,
+                 const HaloRange& slots) {
     constexpr std::uint64_t kVoxelsAByte = 32;
+    constexpr std::uint64_t kSensorBytes = 46;  // a voxel of a further sensor, at its most
+    const StreamReader& reader = rig.front().reader;
     const FrameShape shape = decoded_shape(reader.header());
     std::uint64_t tile_pixels = 0;
     for (const auto& [rows, cols] : frame_tiles(shape, named(options.method).max_tile_sites))
@@ -218,13 +269,70 @@ void check_block(const StreamReader& reader, const DecodeOptions& options, const
     const std::uint64_t voxels =
         block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
     const bool small = voxels / kVoxelsAByte > reader.input_bytes();
-    const std::uint64_t weight_bytes = reader.header().schedule.weighted() ? sizeof(float) : 0;
+    std::uint64_t more_bytes = (rig.size() - 1) * kSensorBytes;
+    for (const RigStream& stream : rig)
+        if (stream.reader.header().schedule.weighted()) more_bytes += sizeof(float);
     check_memory(core_slots * shape.sites() * sizeof(float) +
-                     voxels * (named(options.method).voxel_bytes + weight_bytes),
+                     voxels * (named(options.method).voxel_bytes + more_bytes),
                  reader.name(),
                  fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
                              shape.rows, named(options.method).name),
                  small ? reader.input_bytes() : kEndlessInput);
+}
+
+int longest_span_slots(std::span<const RigStream> rig) {
+    int longest = 0;
+    for (const RigStream& stream : rig)
+        longest = std::max(longest, stream.reader.header().schedule.longest_span_slots());
+    return longest;
+}
+
+/// \throws InputError if a sensor cannot be decoded with the first one.
+void check_like_first(const RigStream& stream, const StreamReader& first) {
+    const StreamHeader& header = stream.reader.header();
+    const FrameShape shape = decoded_shape(header), wanted = decoded_shape(first.header());
+    const auto fail = [&](const std::string& problem) {
+        throw InputError(stream.reader.name(), problem);
+    };
+    if (header.slot_us != first.header().slot_us)
+        fail(fmt::format("has slots of {} us, but {} has {} us; all sensors of a rig have the same",
+                         header.slot_us, first.name(), first.header().slot_us));
+    if (shape != wanted)
+        fail(
+            fmt::format("decodes to {} x {} x {}, but {} to {} x {} x {} (width x height x "
+                        "planes); all sensors of a rig have the same",
+                        shape.cols, shape.rows, shape.planes, first.name(), wanted.cols,
+                        wanted.rows, wanted.planes));
+    const Homography& map = stream.view.from_reference;
+    if (map.is_singular() || !map.is_finite_on(shape) || overlap_pixels(map, shape) == 0)
+        fail("sees no pixel of the first sensor; its offset or homography leads out of the frame");
+    if (const auto slots = first.slots(); slots && stream.view.phase_slots >= *slots)
+        fail(fmt::format("begins at slot {}, but the first sensor has {} slots",
+                         stream.view.phase_slots, *slots));
+}
+
+bool joins_sensors(DecodeMethod method) {
+    return method == DecodeMethod::kNaive || method == DecodeMethod::kFast ||
+           method == DecodeMethod::kBest;
+}
+
+/// \throws InputError as `decode_rig`.
+void check_rig(std::span<const RigStream> rig, const DecodeOptions& options) {
+    const RigStream& first = rig.front();
+    if (!first.view.from_reference.is_identity() || first.view.phase_slots != 0)
+        throw InputError(first.reader.name(), "is the first sensor of a rig, so it is not moved");
+    const NamedDecodeMethod& method = named(options.method);
+    if (rig.size() == 1) {
+        if (method.check_schedule != nullptr)
+            method.check_schedule(first.reader.header().schedule, first.reader.name(), method.name);
+        return;
+    }
+    if (!joins_sensors(options.method))
+        throw InputError(first.reader.name(),
+                         fmt::format("is one of {} sensors, but method {} decodes one; take naive, "
+                                     "fast or best",
+                                     rig.size(), method.name));
+    for (const RigStream& stream : rig.subspan(1)) check_like_first(stream, first.reader);
 }
 
 }  // namespace
@@ -236,41 +344,46 @@ std::optional<FluxVideo> decode_block(Measurements measurements, const Calibrati
     return named(options.method).decode({measurements, calibration, options, progress, observer});
 }
 
-DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
-                    const ProgressCallback& progress) {
+DecodeReport decode_rig(std::span<const RigStream> rig, const DecodeOptions& options,
+                        const FrameSink& sink, const ProgressCallback& progress) {
     const auto begin = std::chrono::steady_clock::now();
-    const StreamHeader& header = reader.header();
-    const NamedDecodeMethod& method = named(options.method);
-    if (method.check_schedule != nullptr)
-        method.check_schedule(header.schedule, reader.name(), method.name);
-    const std::int64_t halo = halo_slots(header.schedule.longest_span_slots());
+    check_rig(rig, options);
+    const StreamReader& reader = rig.front().reader;
+    const std::int64_t halo = halo_slots(longest_span_slots(rig));
     const std::int64_t first_packet = std::max<std::int64_t>(options.first_slot - halo, 0);
-    PacketBuffer buffer(reader, options, first_packet);
+    RigBuffer buffer(rig, options, first_packet);
     DecodeReport report;
     std::int64_t next = options.first_slot;
     for (bool more = true; more;) {
         buffer.read_up_to(next + kCoreSlots + std::max(kRestSlots, halo));
-        const HaloRange slots = slot_range(next, buffer.slots(), halo);
+        const HaloRange slots = slot_range(next, buffer.first().slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
-        check_proportion(reader, options, slots.core_end - first_packet, buffer.counts().samples());
-        check_block(reader, options, slots);
+        check_proportion(reader, options, slots.core_end - first_packet,
+                         buffer.first().counts().samples());
+        check_block(rig, options, slots);
         buffer.drop_below(slots.begin);
         const auto block_progress = [&](double fraction) {
             return progress(static_cast<double>(slots.core_begin) +
                             fraction * static_cast<double>(slots.core_end - slots.core_begin));
         };
-        const Block video = decode_slots(header, buffer.packets(), options, slots, block_progress);
+        const Block video = decode_slots(buffer.samples(), options, slots, block_progress);
         if (!video) break;
         for (int slot = 0; slot < video->slots() && more; ++slot)
             more = sink(next++, video->frame(slot));
     }
     report.slots = next - options.first_slot;
-    report.voxels = static_cast<std::uint64_t>(report.slots) * decoded_shape(header).sites();
-    report.samples = buffer.counts().samples();
-    report.saturated_samples = buffer.counts().saturated();
+    report.voxels =
+        static_cast<std::uint64_t>(report.slots) * decoded_shape(reader.header()).sites();
+    buffer.count(report);
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return report;
+}
+
+DecodeReport decode(StreamReader& reader, const DecodeOptions& options, const FrameSink& sink,
+                    const ProgressCallback& progress) {
+    const RigStream alone{reader};
+    return decode_rig({&alone, 1}, options, sink, progress);
 }
 
 DecodeReport decode(StreamReader& reader, DecodeMethod method, const FrameSink& sink,

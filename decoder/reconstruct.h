@@ -7,6 +7,7 @@
 
 #include "core/flux_video.h"
 #include "decoder/decode_method.h"
+#include "decoder/joint/joint_measurements.h"
 #include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
@@ -45,6 +46,22 @@ DecodeReport decode(
 /// Uses the defaults of a method.
 DecodeReport decode(
     StreamReader& reader, DecodeMethod method, const FrameSink& sink,
+    const ProgressCallback& progress = [](double) { return true; });
+
+/// A sensor of a rig.
+struct RigStream {
+    StreamReader& reader;
+    SensorView view = {};
+};
+
+/// Decodes the streams of several sensors that see one scene (docs/rig.md) to one video, on the
+/// grid and in the slots of the first one, as `decode` does one stream; for one sensor it has the
+/// same bits. What a sensor does not see is unobserved by it. Counts are those of all sensors.
+/// 	hrows InputError as `decode`; if the streams differ in `slot_us` or in the shape of the
+/// decoded frames, if the first sensor is moved, or another one sees none of its pixels or none of
+/// its slots; if the method decodes one sensor only.
+DecodeReport decode_rig(
+    std::span<const RigStream> rig, const DecodeOptions& options, const FrameSink& sink,
     const ProgressCallback& progress = [](double) { return true; });
 
 /// Decodes one block as `decode` does; the result may be slightly negative. Returns nothing if

@@ -113,6 +113,7 @@ void refresh_variances(Measurements& measurements, const SampleNoise& noise,
                     : own_noise ? measurements.variance_at(i, measurements.variance[i])
                                 : noise.variance(measurements.variance[i]);
     });
+    for (Measurements& other : measurements.others) refresh_variances(other, noise, x);
 }
 
 }  // namespace stipple

@@ -19,7 +19,7 @@ void sample(const Measurements& measurements, std::span<const float> x, std::spa
 void spread(const Measurements& measurements, std::span<const float> sums, std::span<float> x);
 
 /// Sets each variance to that of the light of its exposure in the estimate x, which has less noise
-/// than the sample.
+/// than the sample. Of all sensors.
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,
                        std::span<const float> x);
 

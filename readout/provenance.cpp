@@ -178,6 +178,16 @@ std::string command_of(const std::string& provenance) {
     return command;
 }
 
+std::string footage_of(const std::string& provenance) {
+    const toml::table table = table_of(provenance);
+    const auto* footage = table["footage"].as_table();
+    if (footage == nullptr) return {};
+    std::ostringstream text;
+    text.exceptions(std::ios::badbit);
+    text << *footage;
+    return text.str();
+}
+
 ChipOrigin chip_of(const std::string& provenance) {
     const toml::table table = table_of(provenance);
     const auto sensor = table["sensor"];

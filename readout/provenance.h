@@ -30,6 +30,9 @@ struct FootageOrigin {
 /// without control characters, because `provenance` is not trusted.
 [[nodiscard]] std::string command_of(const std::string& provenance);
 
+/// The section [footage] of `provenance`, as TOML: the origin of the light. Empty if there is none.
+[[nodiscard]] std::string footage_of(const std::string& provenance);
+
 /// The keys of the section [timing] in `provenance`, as overrides of a Config; empty if there are
 /// none.
 [[nodiscard]] std::vector<std::string> timing_settings(const std::string& provenance);

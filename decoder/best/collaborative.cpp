@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <list>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "decoder/best/variance_stabilisation.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
+#include "decoder/joint/joint_prox.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
@@ -35,13 +37,15 @@ class CollaborativeSolver {
                                  options.min_sigma, kMaxSigma)),
           first_sigma_(std::max(options.first_sigma, last_sigma_)),
           x_(x),
-          censored_(measurements, noise),
-          sampled_(measurements.sum),
           noisy_(x.slots(), x.shape()),
           filtered_(x.slots(), x.shape()),
           pilot_(x.slots(), x.shape()),
           runs_(site_runs(x.shape())),
-          step_(index(x.slots()) * x.shape().pixels()) {}
+          step_(index(x.slots()) * x.shape().pixels()),
+          prox_(measurements) {
+        for_each_sensor(measurements,
+                        [&](Measurements& sensor) { sensors_.emplace_back(sensor, noise); });
+    }
 
     /// Filters the estimate. All iterations but the last end with the data-consistency step.
     void iterate(int iteration) {
@@ -57,13 +61,25 @@ class CollaborativeSolver {
         });
         refresh_variances(measurements_, noise_, x_.data());
         if (last) return;
-        censored_.expect(x_.data(), sampled_);
-        add_residuals();
+        for (Sensor& sensor : sensors_) {
+            sensor.censored.expect(x_.data(), sensor.sampled);
+            add_residuals(sensor);
+        }
         enforce_data_consistency(sigma);
     }
-    void restore_samples() { measurements_.sum = sampled_; }
+    void restore_samples() {
+        for (Sensor& sensor : sensors_) sensor.measurements.sum = sensor.sampled;
+    }
 
   private:
+    struct Sensor {
+        Sensor(Measurements& m, const SampleNoise& noise)
+            : measurements(m), censored(m, noise), sampled(m.sum) {}
+        Measurements& measurements;
+        CensoredSamples censored;
+        std::vector<float> sampled;  ///< sums of the samples, without their residuals
+    };
+
     [[nodiscard]] FrameShape shape() const { return x_.shape(); }
 
     static RootScale scale_for(const SampleNoise& noise, const CollaborativeOptions& options) {
@@ -119,17 +135,19 @@ class CollaborativeSolver {
     /// Residual feedback: a share of (samples - forward model of the estimate) is added to the
     /// samples, as in generalised alternating projection (Liao et al., SIAM J. Imaging Sci. 7(2),
     /// 2014). What was added decays, so that the noise does not return.
-    void add_residuals() {
+    void add_residuals(Sensor& sensor) {
+        Measurements& m = sensor.measurements;
         FluxVideo& explained = noisy_;  // which is not needed until the next iteration
-        sample(measurements_, x_.data(), explained.data());
+        sample(m, x_.data(), explained.data());
         for_each_slot([&](int slot) {
             const std::size_t begin = index(slot) * shape().sites();
             for (std::size_t i = begin; i < begin + shape().sites(); ++i) {
-                const bool saturated = (measurements_.state[i] & Measurements::kSaturated) != 0;
-                float residual = sampled_[i] - explained.data()[i];
+                const bool saturated = (m.state[i] & Measurements::kSaturated) != 0;
+                const float sampled = sensor.sampled[i];
+                float residual = sampled - explained.data()[i];
                 if (saturated) residual = std::max(residual, 0.0F);
-                float& sum = measurements_.sum[i];
-                sum = sampled_[i] + options_.residual_decay * (sum - sampled_[i]) +
+                float& sum = m.sum[i];
+                sum = sampled + options_.residual_decay * (sum - sampled) +
                       options_.residual_gain * residual;
             }
         });
@@ -147,7 +165,7 @@ class CollaborativeSolver {
             }
         });
         parallel_for(0, static_cast<int>(runs_.size()),
-                     [&](int i) { data_prox(measurements_, runs_[index(i)], step_, x_.data()); });
+                     [&](int i) { prox_(runs_[index(i)], step_, x_.data()); });
     }
 
     Measurements& measurements_;
@@ -157,13 +175,13 @@ class CollaborativeSolver {
     float last_sigma_;
     float first_sigma_;
     FluxVideo& x_;
-    CensoredSamples censored_;
-    std::vector<float> sampled_;  ///< sums of the samples, without their residuals
+    std::list<Sensor> sensors_;
     FluxVideo noisy_;
     FluxVideo filtered_;
     FluxVideo pilot_;  ///< the last filtered estimate
     std::vector<SiteRun> runs_;
     std::vector<float> step_;
+    JointProx prox_;
     std::vector<MotionField> motion_;
     PatchGroups groups_;
 };

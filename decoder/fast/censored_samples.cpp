@@ -52,7 +52,8 @@ float inverse_mills_ratio(float z) {
 }
 
 CensoredSamples::CensoredSamples(Measurements& measurements, const SampleNoise& noise)
-    : measurements_(measurements), half_dn_(noise.one_dn() / 2) {
+    : measurements_(measurements),
+      half_dn_((measurements.one_dn > 0 ? measurements.one_dn : noise.one_dn()) / 2) {
     for (std::size_t i = 0; i < measurements.voxels(); ++i)
         if ((measurements.state[i] & Measurements::kZero) != 0)
             samples_.push_back({i, measurements.sum[i], measurements.sum[i]});

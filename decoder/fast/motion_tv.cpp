@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <list>
 #include <span>
 #include <vector>
 
@@ -156,7 +157,9 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     WorkCount work(options, progress);
     FluxVideo x = nearest_samples(measurements);
     const PresumedSamples presumed(measurements, x, noise);
-    CensoredSamples censored(measurements, noise);
+    std::list<CensoredSamples> censored;
+    for_each_sensor(measurements,
+                    [&](Measurements& sensor) { censored.emplace_back(sensor, noise); });
     TotalVariationSolver solver(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
@@ -169,7 +172,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
     for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {
         refresh_variances(measurements, noise, x.data());
-        censored.expect(x.data());
+        for (CensoredSamples& samples : censored) samples.expect(x.data());
         const bool last = round + 1 == options.rounds;
         auto motion = estimate_motion(x, motion_options(round, last));
         work.add_motion();

@@ -22,13 +22,17 @@ namespace {
 constexpr float kUnsampledDoubt = 8;
 constexpr float kSaturatedDoubt = 0.7F;
 
-/// Slots in which no site collects light.
-std::vector<bool> closed_slots(const Measurements& m) {
-    std::vector<bool> closed(index(m.slots));
-    for (std::size_t slot = 0; slot < closed.size(); ++slot)
-        closed[slot] = std::ranges::none_of(
-            std::span(m.state).subspan(slot * m.shape.sites(), m.shape.sites()),
-            [](std::uint8_t state) { return (state & Measurements::kOpen) != 0; });
+/// Slots in which no site of any sensor collects light.
+std::vector<bool> closed_slots(const Measurements& measurements) {
+    std::vector<bool> closed(index(measurements.slots), true);
+    for_each_sensor(measurements, [&](const Measurements& m) {
+        for (std::size_t slot = 0; slot < closed.size(); ++slot)
+            closed[slot] =
+                closed[slot] &&
+                std::ranges::none_of(
+                    std::span(m.state).subspan(slot * m.shape.sites(), m.shape.sites()),
+                    [](std::uint8_t state) { return (state & Measurements::kOpen) != 0; });
+    });
     return closed;
 }
 
@@ -53,7 +57,7 @@ class SitePresumption {
 
     /// Of the next site, before any is added to.
     void note_changes(std::size_t site) {
-        list_exposures(m_, site, exposures_);
+        list_all_exposures(m_, site, exposures_);
         note_known_changes(site);
         for (std::size_t k = 1; k < exposures_.size(); ++k) {
             const SiteExposure& a = exposures_[k - 1];
@@ -68,7 +72,7 @@ class SitePresumption {
     bool presume(std::size_t site) {
         list_exposures(m_, site, exposures_);
         if (exposures_.empty()) return false;
-        settle_saturated(site);
+        if (m_.others.empty()) settle_saturated(site);
         return !m_.interleaved && fill_unsampled(site);
     }
 
@@ -107,6 +111,14 @@ class SitePresumption {
         return false;
     }
 
+    /// By any sensor.
+    [[nodiscard]] bool is_sampled(std::size_t voxel) const {
+        const auto open = [&](const Measurements& m) {
+            return (m.state[voxel] & Measurements::kOpen) != 0;
+        };
+        return open(m_) || std::ranges::any_of(m_.others, open);
+    }
+
     /// Where there are no gaps, what is unsampled at both ends are exposures that were cut off
     /// there: a few slots, in which the prior knows more of what moves.
     bool fill_unsampled(std::size_t site) {
@@ -118,7 +130,7 @@ class SitePresumption {
         for (int slot = begin; slot < end; ++slot) {
             while (next != exposures_.end() && next->last_slot < slot) ++next;
             const std::size_t i = voxel(site, slot);
-            if ((m_.state[i] & Measurements::kOpen) != 0) continue;
+            if (is_sampled(i)) continue;
             const bool within = next != exposures_.end() && next->first_slot < slot;
             if (within && !changes_.closed_slots[index(slot)]) continue;
             closed = closed || within;

@@ -24,7 +24,10 @@ struct Measurements;
 /// sample plus a multiple of the squared change between successive samples of a site; this change
 /// is averaged over the 7 x 7 sites around and reduced by the part of the noise. So presumed
 /// samples have little influence on moving objects. Streams with two exposures of a pixel at once
-/// have no voxel without a sample, and none is added. The same bits for any thread count.
+/// have no voxel without a sample, and none is added. Of several sensors a voxel counts as sampled
+/// if one of them has a sample of it; saturated samples remain bounds, as other sensors have the
+/// light. The presumed samples become those of the first sensor. The same bits for any thread
+/// count.
 class PresumedSamples {
   public:
     PresumedSamples(Measurements& measurements, const FluxVideo& nearest, const SampleNoise& noise);

@@ -7,9 +7,9 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/data_prox.h"
 #include "decoder/fast/gradient_kernels.h"
 #include "decoder/fast/motion_kernels.h"
+#include "decoder/joint/joint_prox.h"
 #include "decoder/measurements.h"
 #include "decoder/opponent_planes.h"
 
@@ -45,7 +45,8 @@ class TotalVariationSolver::Impl {
           extrapolated_(new_array()),
           gradient_(new_array()),
           dual_col_(new_array()),
-          dual_row_(new_array()) {}
+          dual_row_(new_array()),
+          prox_(measurements) {}
 
     /// What `minimise` of the solver does, up to the first iteration.
     void begin(std::span<const MotionField> motion, std::span<const float> step,
@@ -161,8 +162,8 @@ class TotalVariationSolver::Impl {
             }
         }
         for (std::size_t plane = 0; plane < shape_.sites(); plane += shape_.pixels())
-            data_prox(measurements_, {plane + pixels.begin, plane + pixels.end}, step_,
-                      {gradient_.get(), measurements_.voxels()});
+            prox_({plane + pixels.begin, plane + pixels.end}, step_,
+                  {gradient_.get(), measurements_.voxels()});
         for (int slot = 0; slot < measurements_.slots; ++slot) {
             for (int plane = 0; plane < shape_.planes; ++plane) {
                 const std::size_t i = frame(slot) + index(plane) * shape_.pixels() + pixels.begin;
@@ -186,6 +187,7 @@ class TotalVariationSolver::Impl {
     Array dual_col_;
     Array dual_row_;
     std::vector<Array> dual_link_;
+    JointProx prox_;
 };
 
 TotalVariationSolver::TotalVariationSolver(const Measurements& measurements)

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
+#include "decoder/naive/joint_nearest.h"
 #include "decoder/naive/site_exposures.h"
 #include "decoder/naive/unsampled_sites.h"
 
@@ -19,7 +21,6 @@ constexpr std::array<float, 17> kCloseness = {
     1.0F,           5.13417119e-1F, 2.63597138e-1F, 1.35335283e-1F, 6.94834512e-2F, 3.56739933e-2F,
     1.83156389e-2F, 9.40356255e-3F, 4.82794999e-3F, 2.47875218e-3F, 1.27263380e-3F, 6.53391981e-4F,
     3.35462628e-4F, 1.72232257e-4F, 8.84270376e-5F, 4.53999298e-5F, 2.33091012e-5F};
-constexpr int kNearSlots = 8;
 
 /// What the exposures of a site say of one slot; `own` is the exposure that the slot is in, or
 /// none.
@@ -36,9 +37,8 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
             continue;
         }
         near = near || distance <= kNearSlots;
-        const auto i = std::min(static_cast<std::size_t>(distance), kCloseness.size() - 1);
-        light += e.mean_weight * kCloseness[i] * e.light_per_slot;
-        weight += e.mean_weight * kCloseness[i];
+        light += e.mean_weight * closeness(distance) * e.light_per_slot;
+        weight += e.mean_weight * closeness(distance);
     }
     if (weight == 0 || (bound > 0 && !near)) return bound;
     return own != nullptr && own->saturated ? std::max(light / weight, own->light_per_slot)
@@ -64,7 +64,12 @@ bool estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExpo
 
 }  // namespace
 
+float closeness(int distance_slots) noexcept {
+    return kCloseness[std::min(index(distance_slots), kCloseness.size() - 1)];
+}
+
 FluxVideo nearest_samples(const Measurements& measurements) {
+    if (!measurements.others.empty()) return joint_nearest_samples(measurements);
     FluxVideo x(measurements.slots, measurements.shape);
     std::vector<std::uint8_t> sampled(measurements.shape.sites());
     const auto cols = static_cast<std::size_t>(measurements.shape.cols);

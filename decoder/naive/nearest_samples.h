@@ -15,7 +15,13 @@ struct Measurements;
 /// is their highest bound. So the frames of a conventional camera are held during their exposure
 /// and interpolated between exposures. Sites without any sample, such as two of three colours under
 /// a colour filter, are interpolated from their surroundings (unsampled_sites.h). Without any
-/// sample the video is 0.
+/// sample the video is 0. Of several sensors: joint_nearest.h.
 [[nodiscard]] FluxVideo nearest_samples(const Measurements& measurements);
+
+/// exp(-d / 1.5) at a distance of d slots, constant from 16 on. Precondition: d >= 0.
+[[nodiscard]] float closeness(int distance_slots) noexcept;
+
+/// Saturated exposures further away are no bound.
+inline constexpr int kNearSlots = 8;
 
 }  // namespace stipple

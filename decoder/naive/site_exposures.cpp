@@ -1,11 +1,14 @@
 #include "decoder/naive/site_exposures.h"
 
+#include <algorithm>
+
 #include "decoder/measurements.h"
 
 namespace stipple {
 
-void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
-    list.clear();
+namespace {
+
+void append_exposures(const Measurements& m, std::size_t site, std::vector<SiteExposure>& list) {
     SiteExposure chains[2];  // where exposures interleave, two are under way at once
     for (int slot = 0; slot < m.slots; ++slot) {
         const std::size_t i = static_cast<std::size_t>(slot) * m.shape.sites() + site;
@@ -23,6 +26,22 @@ void list_exposures(const Measurements& m, std::size_t site, std::vector<SiteExp
         e.variance_per_slot = m.variance[i] / (n * n);
         list.push_back(e);
     }
+}
+
+}  // namespace
+
+void list_exposures(const Measurements& measurements, std::size_t site,
+                    std::vector<SiteExposure>& list) {
+    list.clear();
+    append_exposures(measurements, site, list);
+}
+
+void list_all_exposures(const Measurements& measurements, std::size_t site,
+                        std::vector<SiteExposure>& list) {
+    list_exposures(measurements, site, list);
+    if (measurements.others.empty()) return;
+    for (const Measurements& other : measurements.others) append_exposures(other, site, list);
+    std::ranges::stable_sort(list, {}, &SiteExposure::last_slot);
 }
 
 }  // namespace stipple

@@ -24,4 +24,8 @@ struct SiteExposure {
 void list_exposures(const Measurements& measurements, std::size_t site,
                     std::vector<SiteExposure>& list);
 
+/// The same of all sensors, in the order of their ends, then of the sensors.
+void list_all_exposures(const Measurements& measurements, std::size_t site,
+                        std::vector<SiteExposure>& list);
+
 }  // namespace stipple

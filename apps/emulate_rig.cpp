@@ -1,0 +1,168 @@
+#include "apps/emulate_rig.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/arguments/footage.h"
+#include "apps/interrupt.h"
+#include "apps/report/emulation_text.h"
+#include "apps/report/json_file.h"
+#include "apps/report/leftovers.h"
+#include "apps/report/number_text.h"
+#include "apps/report/progress.h"
+#include "apps/report/text_file.h"
+#include "apps/standard_error.h"
+#include "capture/recording/footage_notes.h"
+#include "core/config.h"
+#include "core/error.h"
+#include "io/frame_writer.h"
+#include "io/pending_output.h"
+#include "readout/footage_origin.h"
+#include "readout/light_warp.h"
+#include "readout/rig.h"
+#include "readout/rig_figures.h"
+#include "readout/stream_recorder.h"
+#include "report/json_figures.h"
+
+namespace stipple {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_rig_file(std::string_view name) {
+    return name == kRigFile || name.ends_with(".stipple");
+}
+
+/// A sensor at work: the light is warped to it, from its first slot on.
+class SensorRun {
+  public:
+    SensorRun(const RigSensor& sensor, const SensorSetup& setup, const fs::path& folder,
+              const FootageOrigin& origin)
+        : sensor_(sensor),
+          warp_(sensor.from_reference, setup.footage),
+          recorder_(folder / sensor.file(), setup, {.provenance = provenance_of(setup, origin)}) {}
+
+    void expose(std::int64_t slot, std::span<const float> frame) {
+        if (slot >= sensor_.phase_slots) recorder_.expose(warp_(frame));
+    }
+    /// \throws InputError if the footage ends before its first slot.
+    void check(std::int64_t slots) const {
+        if (recorder_.stats().slots == 0)
+            throw InputError(fmt::format("sensor \"{}\" of the rig", sensor_.name),
+                             fmt::format("begins at slot {}, but the footage has {}",
+                                         sensor_.phase_slots, counted(slots, "slot")));
+    }
+    void finish() { recorder_.finish(); }
+    [[nodiscard]] const RigSensor& sensor() const { return sensor_; }
+    [[nodiscard]] const StreamRecorder& recorder() const { return recorder_; }
+
+  private:
+    const RigSensor& sensor_;
+    LightWarp warp_;
+    StreamRecorder recorder_;
+};
+
+/// True at the end of the footage, false after a signal.
+bool expose_all(ResampledFootage& slots, std::list<SensorRun>& runs, FrameWriter* truth,
+                Progress& progress) {
+    auto frame = slots.next();
+    for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
+        for (SensorRun& sensor : runs) sensor.expose(progress.done(), frame);
+        if (truth != nullptr) truth->write(frame);
+        progress.advance();
+    }
+    return frame.empty();
+}
+
+/// The rig as it was read, with what identifies its streams.
+std::string rig_text(const Config& config, const Rig& rig, const fs::path& folder) {
+    std::string text = config.as_toml("");
+    for (const RigSensor& sensor : rig.sensors)
+        text +=
+            fmt::format("{}.sha256 = \"{}\"\n", sensor.name,
+                        origin_of(folder / sensor.file(), {}, [] { throw_if_stopped(); }).sha256);
+    return text;
+}
+
+nlohmann::ordered_json rig_json(const std::list<SensorRun>& runs, const RigTotals& totals,
+                                double slots_per_second) {
+    nlohmann::ordered_json json{{"sensors", nlohmann::ordered_json::array()}};
+    for (const SensorRun& run : runs) {
+        nlohmann::ordered_json figures{{"name", run.sensor().name}, {"share", run.sensor().share}};
+        figures.update(emulation_json(run.recorder(), slots_per_second));
+        json["sensors"].push_back(figures);
+    }
+    json.update(json_of([&](const auto& add) { visit_rig_figures(totals, add); }));
+    return json;
+}
+
+std::string totals_text(const RigTotals& totals) {
+    return fmt::format(
+        "rig: {:.1f} % of the light of an aperture collected, {} bits a slot, {} "
+        "Mbit/s{}",
+        100 * totals.light_collected, rounded(totals.bits_per_slot),
+        rounded(totals.bits_per_second * 1e-6),
+        totals.energy_uj ? fmt::format(", {} uJ", rounded(*totals.energy_uj)) : "");
+}
+
+/// Says what there is to say of each sensor and of the rig.
+void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& json,
+          const std::list<SensorRun>& runs, double slots_per_second) {
+    RigTotals totals;
+    for (const SensorRun& sensor : runs) totals.add(sensor.recorder(), sensor.sensor().share);
+    json.write(rig_json(runs, totals, slots_per_second));
+    for (const SensorRun& sensor : runs)
+        run.say(fmt::format("{}: {}",
+                            (fs::path(arguments.output) / sensor.sensor().file()).string(),
+                            emulation_text(sensor.recorder(), slots_per_second)));
+    run.say(totals_text(totals));
+}
+
+}  // namespace
+
+void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
+    Config config(find_config(ConfigKind::kRigs, arguments.rig), arguments.rig_settings, "rig");
+    const Rig rig = read_rig(config);
+    ReadAhead footage = read_footage(arguments.footage, arguments.reading);
+    const auto setups = set_up_rig(rig, footage.shape(), footage.filter());
+    const SensorSetup& first = setups.front();
+    say_warning(mosaic_warning(first, footage.filter()));
+    for (const std::string& note :
+         sensor_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
+        say_warning(note);
+    ResampledFootage slots = slots_of(footage, arguments, first.params.slot_us);
+    JsonFile json(run);
+    PendingOutput folder(arguments.output, run.force, OutputKind::kFolder, is_rig_file);
+    say_leftover(arguments.output);
+    std::unique_ptr<FrameWriter> truth;
+    if (!arguments.truth.empty())
+        truth = std::make_unique<FrameWriter>(arguments.truth, first.footage,
+                                              FrameWriterOptions{.force = run.force});
+    const FootageOrigin origin = footage_origin(arguments);
+    std::list<SensorRun> runs;
+    for (std::size_t i = 0; i < setups.size(); ++i)
+        runs.emplace_back(rig.sensors[i], setups[i], folder.partial(), origin);
+    Progress progress(run, "emulating", slots.slots());
+    const bool at_end = expose_all(slots, runs, truth.get(), progress);
+    if (progress.done() == 0) {
+        throw_if_stopped();
+        refuse_short_footage(arguments.footage);
+    }
+    for (const SensorRun& sensor : runs) sensor.check(progress.done());
+    if (truth) truth->finish();
+    for (SensorRun& sensor : runs) sensor.finish();
+    write_whole(folder.partial() / kRigFile, (fs::path(arguments.output) / kRigFile).string(),
+                rig_text(config, rig, folder.partial()));
+    folder.commit();
+    if (at_end)
+        for (const std::string& note :
+             end_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
+            say_warning(note);
+    tell(arguments, run, json, runs, static_cast<double>(progress.done()) / progress.seconds());
+}
+
+}  // namespace stipple

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/homography.h"
+#include "decoder/measurements.h"
+
+namespace stipple {
+
+/// Where and when a sensor of a rig sees the scene, relative to the first one.
+struct SensorView {
+    Homography from_reference = {};  ///< places of the first sensor to those of this one
+    std::int64_t phase_slots = 0;    ///< slots of the first sensor before its slot 0
+};
+
+/// What a sensor has said so far.
+struct SensorSamples {
+    const StreamHeader& header;
+    std::span<const SamplePacket> packets;
+    SensorView view;
+};
+
+/// The samples of all sensors in a window of the first one. A pixel of the window takes the
+/// exposures of the pixel of each sensor that is nearest to its place there, and none beyond its
+/// frame: exact for whole-pixel offsets, otherwise up to half a pixel wrong (docs/rig.md).
+/// Exposures of the same slots are merged (merged_exposures.h). For one sensor as
+/// `collect_measurements`. \throws InputError likewise. Precondition: the decoded shapes are equal.
+[[nodiscard]] Measurements collect_joint(std::span<const SensorSamples> sensors,
+                                         const VideoWindow& window);
+
+/// The calibration of one sensor with the photons of all, and the noise of their weighted mean; for
+/// one sensor its own.
+[[nodiscard]] Calibration joint_calibration(std::span<const SensorSamples> sensors);
+
+}  // namespace stipple
