@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/dictionary_file.h"
 #include "apps/fixed_pattern.h"
 #include "apps/standard_error.h"
 #include "calibration/calibration_file.h"
@@ -23,6 +24,7 @@ DecodeSetup read_decode_setup(const DecodeArguments& arguments) {
                         ? Config(arguments.settings, "decoder")
                         : Config(arguments.options, arguments.settings, "decoder");
     DecodeSetup setup{.options = read_decode_options(method, config), .given = config.as_toml("")};
+    read_dictionary(setup.options);
     setup.options.fill_gaps = arguments.fill_gaps;
     return setup;
 }

@@ -41,10 +41,11 @@ void add_schedule(Command& app, Action& action);  ///< exposure schedules: its o
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
 /// EMVA 1288 figures of an emulated sensor or of images
 void add_characterize(Command& app, Action& action);
-void add_calibrate(Command& app, Action& action);  ///< gain, offset and defects of each pixel
-void add_capture(Command& app, Action& action);    ///< cameras: its own subcommands
-void add_demo(Command& app, Action& action);       ///< all of it on an embedded scene
-void add_explore(Command& app, Action& action);    ///< a table of many trials
+void add_calibrate(Command& app, Action& action);   ///< gain, offset and defects of each pixel
+void add_dictionary(Command& app, Action& action);  ///< patches of footage, for hitomi2011
+void add_capture(Command& app, Action& action);     ///< cameras: its own subcommands
+void add_demo(Command& app, Action& action);        ///< all of it on an embedded scene
+void add_explore(Command& app, Action& action);     ///< a table of many trials
 /// Coded exposure and its rivals on a scene
 void add_rivals(Command& app, Action& action);
 void add_report(Command& app, Action& action);  ///< a run as an HTML page

@@ -49,6 +49,19 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
                                  block.progress);
      }},
+    {"reddy2011", DecodeMethod::kReddy2011,
+     "P2C2 (Reddy, Veeraraghavan, Chellappa, CVPR 2011): wavelets and optical flow", kMaxCoreSites,
+     64, [](Config& config, DecodeOptions& options) { read_options(config, options.reddy2011); },
+     [](const BlockTask& block) {
+         return decode_reddy2011(block.measurements, block.options.reddy2011, block.observer,
+                                 block.progress);
+     }},
+    {"hitomi2011", DecodeMethod::kHitomi2011,
+     "patches of a learned dictionary (Hitomi et al., ICCV 2011); needs one", kMaxCoreSites, 64,
+     [](Config& config, DecodeOptions& options) { read_options(config, options.hitomi2011); },
+     [](const BlockTask& block) {
+         return decode_hitomi2011(block.measurements, block.options.hitomi2011, block.progress);
+     }},
     {"interpolated", DecodeMethod::kInterpolated,
      "conventional cameras only: frames as delivered, interpolated along motion", kMaxCoreSites, 60,
      [](Config&, DecodeOptions&) {},

@@ -22,6 +22,9 @@ enum class DecodeMethod {
     kFast,       ///< motion-compensated total variation
     kBest,       ///< collaborative filter of similar patches
     kPortz2013,  ///< the method of the paper, in two stages
+    // Of other coded cameras.
+    kReddy2011,   ///< wavelets and brightness constancy
+    kHitomi2011,  ///< patches of a learned dictionary
     // Of conventional cameras; see rivals/.
     kInterpolated,  ///< frames as delivered
     kBennett2005,   ///< adaptive spatio-temporal accumulation

@@ -4,7 +4,9 @@
 #include "decoder/best/collaborative.h"
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
+#include "decoder/hitomi2011/hitomi2011.h"
 #include "decoder/portz2013/portz2013.h"
+#include "decoder/reddy2011/reddy2011.h"
 #include "decoder/rivals/bennett2005.h"
 #include "decoder/rivals/shahar2011.h"
 #include "decoder/rivals/vbm4d.h"
@@ -19,6 +21,8 @@ struct DecodeOptions {
     MotionTvOptions fast = {};
     CollaborativeOptions best = {};
     Portz2013Options portz2013 = {};
+    Reddy2011Options reddy2011 = {};
+    Hitomi2011Options hitomi2011 = {};
     Bennett2005Options bennett2005 = {};
     Zhang2009Options zhang2009 = {};
     Vbm4dOptions vbm4d = {};

@@ -17,6 +17,7 @@
 #include "decoder/reconstruct.h"
 #include "explore/trial_picture.h"
 #include "io/footage_reader.h"
+#include "io/npy_volume.h"
 #include "readout/stream_recorder.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
@@ -185,7 +186,12 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
                               .seed = seed_of(space.value(point, "seed"))};
     const DecodeMethod method = decode_method_from_name(space.value(point, "method"));
     Config config(settings_of(space, point, "decoder"), "decoder");
-    const DecodeOptions decoding = read_decode_options(method, config);
+    DecodeOptions decoding = read_decode_options(method, config);
+    if (const std::string& file = decoding.hitomi2011.dictionary_file; !file.empty()) {
+        const NpyVolume volume = read_npy_volume(file);
+        decoding.hitomi2011.dictionary =
+            patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
+    }
     SensorSetup setup = set_up_sensor(choice, light.video.shape());
     const FrameShape shape = light.video.shape();
     TimedWindow window = timed_window(space, choice, setup);
@@ -195,7 +201,8 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
         version(), recorded, shape.rows, shape.cols, shape.planes, window.shape.rows,
         window.shape.cols, window.keys, provenance_of(setup, light.origin),
         space.value(point, "method"), config.as_toml(""));
-    return {std::move(setup), std::move(window), decoding, recorded, std::move(identity)};
+    return {std::move(setup), std::move(window), std::move(decoding), recorded,
+            std::move(identity)};
 }
 
 TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,

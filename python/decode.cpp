@@ -18,6 +18,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "io/npy_volume.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
@@ -48,6 +49,11 @@ DecodeTask decode_task(const std::string& method, const py::dict& settings, bool
                     .given = config.as_toml(""),
                     .strict = strict,
                     .until = until};
+    if (const std::string& file = task.options.hitomi2011.dictionary_file; !file.empty()) {
+        const NpyVolume volume = reading(file, [&] { return read_npy_volume(file); });
+        task.options.hitomi2011.dictionary =
+            patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
+    }
     task.options.fill_gaps = fill_gaps;
     return task;
 }

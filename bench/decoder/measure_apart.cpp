@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "apps/dictionary_file.h"
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/parallel.h"
@@ -47,12 +48,13 @@ void decode_and_print(const RecordedClip& clip, const MethodRun& run) {
     const auto output = clip.stream.parent_path() / "decoded.npy";
     NpyWriter video(output, output.string(), decoded_shape(reader.header()));
     const std::clock_t begin = std::clock();
+    DecodeOptions options = read_decode_options(decode_method_from_name(run.method), config);
+    read_dictionary(options);
     const DecodeReport report =
-        decode(reader, read_decode_options(decode_method_from_name(run.method), config),
-               [&](std::int64_t, std::span<const float> frame) {
-                   video.write(frame);
-                   return true;
-               });
+        decode(reader, options, [&](std::int64_t, std::span<const float> frame) {
+            video.write(frame);
+            return true;
+        });
     const double seconds = run.one_thread
                                ? static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC
                                : report.seconds;

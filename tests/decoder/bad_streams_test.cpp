@@ -14,6 +14,7 @@
 #include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
+#include "tests/decoder/hitomi2011/cosine_dictionary.h"
 #include "tests/decoder/recordings.h"
 #include "tests/support/temporary_folder.h"
 
@@ -26,14 +27,20 @@ struct Outcome {
     StreamReport report;
 };
 
-/// Full scale of a sample is 2.0 of light in one slot; the priors may overshoot.
+/// Full scale of a sample is 2.0 of light in one slot; the priors may overshoot, those of other
+/// cameras, made for samples of equal length, twice as far.
 constexpr float kBrightest = 2.6F;
+
+bool of_other_cameras(DecodeMethod method) {
+    return method == DecodeMethod::kReddy2011 || method == DecodeMethod::kHitomi2011;
+}
 
 class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
   protected:
     /// What fails does so in the first iterations.
     static DecodeOptions options() {
         DecodeOptions options{.method = GetParam().method};
+        options.hitomi2011.dictionary = cosine_dictionary({.slots = 8, .side_px = 4}, 3);
         options.portz2013.stage1.admm.iterations = 2;
         options.portz2013.stage2.admm.iterations = 2;
         options.portz2013.stage1.max_matches = 3;
@@ -60,6 +67,7 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
     /// As many slots as were recorded, of light from 0 to `brightest`.
     static void expect_light(const Outcome& outcome, const Recorded& recorded,
                              float brightest = kBrightest) {
+        if (brightest == kBrightest && of_other_cameras(GetParam().method)) brightest *= 2;
         EXPECT_EQ(outcome.slots, static_cast<std::int64_t>(recorded.packets.size()));
         ASSERT_EQ(outcome.light.size(), recorded.packets.size() * recorded.header.shape.sites());
         for (const float light : outcome.light)
@@ -124,7 +132,9 @@ TEST_P(BadStreamsTest, SaturatedFramesAreBright) {
     expect_light(outcome, recorded);
     double sum = 0;
     for (const float light : outcome.light) sum += static_cast<double>(light);
-    EXPECT_GE(sum, 1.8 * static_cast<double>(outcome.light.size()));  // ends of clips say less
+    // Ends of clips say less. hitomi2011 takes a bound that it would violate for exact.
+    const double least = GetParam().method == DecodeMethod::kHitomi2011 ? 1.3 : 1.8;
+    EXPECT_GE(sum, least * static_cast<double>(outcome.light.size()));
 }
 
 TEST_P(BadStreamsTest, DarkFramesStayDark) {

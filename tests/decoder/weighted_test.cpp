@@ -14,6 +14,7 @@
 #include "decoder/portz2013/patch_distance.h"
 #include "decoder/reconstruct.h"
 #include "tests/decoder/hand_made.h"
+#include "tests/decoder/hitomi2011/cosine_dictionary.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/temporary_folder.h"
@@ -21,8 +22,9 @@
 namespace stipple {
 namespace {
 
-constexpr DecodeMethod kMethods[] = {DecodeMethod::kNaive, DecodeMethod::kFast, DecodeMethod::kBest,
-                                     DecodeMethod::kPortz2013};
+constexpr DecodeMethod kMethods[] = {DecodeMethod::kNaive,     DecodeMethod::kFast,
+                                     DecodeMethod::kBest,      DecodeMethod::kPortz2013,
+                                     DecodeMethod::kReddy2011, DecodeMethod::kHitomi2011};
 constexpr FrameShape kShape{.rows = 16, .cols = 20, .planes = 1};
 
 /// The masks of 8 slots of a coded aperture: every pixel open in every slot, in some greys.
@@ -49,6 +51,7 @@ SensorParams exact_sensor() {
 /// The defaults; of portz2013, which would take long, with a smaller window.
 DecodeOptions options_of(DecodeMethod method) {
     DecodeOptions options{.method = method};
+    options.hitomi2011.dictionary = cosine_dictionary({.slots = 8, .side_px = 4}, 3);
     options.portz2013.stage1.search.window_px = 4;
     options.portz2013.stage1.search.window_slots = 2;
     options.portz2013.stage2.search.window_px = 4;

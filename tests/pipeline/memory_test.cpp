@@ -9,6 +9,7 @@
 #include "decoder/decode_method.h"
 #include "decoder/decode_options.h"
 #include "readout/schedules/full_schedule.h"
+#include "tests/decoder/hitomi2011/cosine_dictionary.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"
 
@@ -41,6 +42,8 @@ std::uint64_t decoding_bytes(const std::filesystem::path& file, DecodeMethod met
     for (MotionTvOptions* fast : {&options.fast, &options.best.start})  // more take no more
         fast->static_tv.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
     options.best.iterations = 2;
+    options.hitomi2011.dictionary = cosine_dictionary({.slots = 8, .side_px = 4}, 3);
+    options.reddy2011.first_iterations = options.reddy2011.iterations = 2;
     options.bennett2005.radius_px = 1;
     options.zhang2009.step_px = 6;
     options.vbm4d.step_px = 8;
@@ -95,7 +98,8 @@ TEST_P(MemoryTest, ABlockTakesWhatTheTableOfMethodsSays) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, MemoryTest,
                          testing::Values(DecodeMethod::kNaive, DecodeMethod::kFast,
-                                         DecodeMethod::kBest, DecodeMethod::kInterpolated,
+                                         DecodeMethod::kBest, DecodeMethod::kReddy2011,
+                                         DecodeMethod::kHitomi2011, DecodeMethod::kInterpolated,
                                          DecodeMethod::kBennett2005, DecodeMethod::kZhang2009,
                                          DecodeMethod::kVbm4d, DecodeMethod::kShahar2011),
                          [](const auto& method) { return std::string(named(method.param).name); });
