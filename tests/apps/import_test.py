@@ -101,7 +101,7 @@ class ImportTest(ProgramTest):
     def test_every_method_takes_it(self):
         self.write()
         self.imported()
-        for method in ("naive", "fast", "best", "portz2013"):
+        for method in ("naive", "fast", "best", "portz2013", "reddy2011"):
             self.assertTrue(np.isfinite(self.decoded(method)).all())
 
     def refuse(self, parts, measurements=None, masks=None, options=()):

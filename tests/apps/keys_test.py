@@ -88,7 +88,7 @@ class KeysTest(ProgramTest):
         self.succeed("emulate", "light.npy", "-o", "clip.stipple")
         self.assertEqual(self.keys("decoder", "naive"), [])
         self.assertEqual(self.succeed("list", "keys", "decoder", "naive"), "decoder naive: no keys\n")
-        for method in ("fast", "best", "portz2013"):
+        for method in ("fast", "best", "portz2013", "reddy2011"):
             decoded = []
             for settings in ([], self.defaults("decoder", method)):
                 self.succeed("decode", "clip.stipple", "-o", "out.npy", "--force", "--method", method, *settings)

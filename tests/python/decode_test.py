@@ -57,7 +57,7 @@ class DecodeTest(ProgramTest):
 
     def test_each_method_gives_the_values_of_the_program(self):
         self.write_clip()
-        for method in ("naive", "fast", "best"):
+        for method in ("naive", "fast", "best", "reddy2011"):
             self.assertIn(method, stipple.decode_methods())
             with self.subTest(method):
                 result = self.decodes(method)
