@@ -51,7 +51,8 @@ std::string table_of(const Exploration& exploration) {
         const ExploredPoint& point = exploration.points()[number];
         text += fmt::format("\n{:<{}}", space.point(number)[axis], width);
         for (const RivalColumn& column : kColumns) {
-            const double value = point.figures ? point.figures.value().*column.value : NAN;
+            const double value =
+                point.figures ? point.figures.value().*column.value : TrialFigures::kNone;
             text += fmt::format("  {:>8}",
                                 std::isnan(value)
                                     ? "-"
@@ -72,7 +73,7 @@ nlohmann::ordered_json json_of(const Exploration& exploration) {
             entry[space.axes[i++].name] = value;
         for (const FigureColumn& column : kFigureColumns)
             entry[std::string(column.name)] =
-                point.figures ? point.figures.value().*column.value : NAN;
+                point.figures ? point.figures.value().*column.value : TrialFigures::kNone;
         entry["problem"] = point.problem;
         systems.push_back(std::move(entry));
     }

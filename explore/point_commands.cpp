@@ -77,7 +77,7 @@ std::string point_space(const Space& space, const SpacePoint& point, int slots) 
     if (!set.empty()) text.insert("set", set);
     toml::table readout;
     if (space.readout.rows > 0)
-        readout = {{"rows", space.readout.rows}, {"cols", space.readout.cols}};
+        readout = toml::table{{"rows", space.readout.rows}, {"cols", space.readout.cols}};
     if (!space.readout_sensor.empty()) readout.insert("sensor", space.readout_sensor);
     if (!readout.empty()) text.insert("readout", readout);
     std::ostringstream stream;
