@@ -63,7 +63,7 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_hitomi2011(block.measurements, block.options.hitomi2011, block.progress);
      }},
     {"interpolated", DecodeMethod::kInterpolated,
-     "conventional cameras only: frames as delivered, interpolated along motion", kMaxCoreSites, 60,
+     "conventional cameras only: frames as delivered, interpolated along motion", kMaxCoreSites, 38,
      [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) {
          return decode_frames(block, [](const DeliveredFrames& frames, const ProgressCallback&) {

@@ -19,15 +19,12 @@ namespace {
 /// Which frames are compared: `target` of the frames, `example` of the coarse ones, both relative
 /// to the frame; which finer frames the examples give.
 struct Pattern {
-    int compared;
-    std::array<int, 4> target;
-    std::array<int, 4> example;
-    int first_example;
-    int last_example;
+    std::array<int, 3> target;
+    std::array<int, 3> example;
     std::array<bool, 2> gives;
 };
-constexpr Pattern kSplitPattern{3, {0, -1, 1, 0}, {0, -2, 2, 0}, -2, 2, {true, true}};
-constexpr Pattern kInsertPattern{4, {0, 1, -1, 2}, {0, 2, -2, 4}, -2, 4, {false, true}};
+constexpr Pattern kSplitPattern{{0, -1, 1}, {0, -2, 2}, {true, true}};
+constexpr Pattern kInsertPattern{{0, 1, 1}, {0, 2, 2}, {false, true}};
 
 constexpr float kStill = 1.2F;       ///< of a patch without motion, in its noise
 constexpr float kStillRoot = 0.01F;  ///< on the scale 2 sqrt(light)
@@ -173,9 +170,9 @@ class OctaveSolver {
 
     void search(const Place& target, const Scale& scale, std::vector<Example>& examples) const {
         const int first =
-            std::max({target.frame - options_.search_frames, -pattern_.first_example});
+            std::max({target.frame - options_.search_frames, -pattern_.example[1], 0});
         const int last = std::min(target.frame + options_.search_frames,
-                                  scale.coarse.slots() - 1 - pattern_.last_example);
+                                  scale.coarse.slots() - 1 - pattern_.example[2]);
         const int middle = options_.patch_px / 2;
         const auto centre = [&](int at) { return (at + middle) / scale.shrink - middle; };
         const FrameShape shape = scale.coarse.shape();
@@ -196,13 +193,12 @@ class OctaveSolver {
         const bool full = examples.size() == index(options_.examples);
         const float limit = full ? examples.back().distance : kFarthest;
         float sum = 0;
-        const auto compared = static_cast<float>(pattern_.compared);
-        for (std::size_t i = 0; i < index(pattern_.compared); ++i) {
+        for (std::size_t i = 0; i < pattern_.target.size(); ++i) {
             sum += difference(scale.coarse, {at.frame + pattern_.example[i], at.row, at.col}, root_,
                               {clamped(target.frame + pattern_.target[i]), target.row, target.col});
-            if (sum >= compared * limit * scale.noise) return;
+            if (sum >= 3 * limit * scale.noise) return;
         }
-        const Example example{sum / (compared * scale.noise), &scale, at};
+        const Example example{sum / (3 * scale.noise), &scale, at};
         const auto place =
             std::ranges::upper_bound(examples, example.distance, {}, &Example::distance);
         examples.insert(place, example);
