@@ -57,7 +57,7 @@ struct RigStream {
 /// Decodes the streams of several sensors that see one scene (docs/rig.md) to one video, on the
 /// grid and in the slots of the first one, as `decode` does one stream; for one sensor it has the
 /// same bits. What a sensor does not see is unobserved by it. Counts are those of all sensors.
-/// 	hrows InputError as `decode`; if the streams differ in `slot_us` or in the shape of the
+/// \throws InputError as `decode`; if the streams differ in `slot_us` or in the shape of the
 /// decoded frames, if the first sensor is moved, or another one sees none of its pixels or none of
 /// its slots; if the method decodes one sensor only.
 DecodeReport decode_rig(

@@ -34,7 +34,7 @@ TEST_F(StreamIdentityTest, DiffersByHeaderAndByPackets) {
 
 TEST_F(StreamIdentityTest, NeedsTheEndOfTheStream) {
     const std::string whole = stream("a");
-    for (const std::size_t lacking : {1, 20, 30})
+    for (const std::size_t lacking : {1U, 20U, 30U})
         EXPECT_EQ(identity(whole.substr(0, whole.size() - lacking)), std::nullopt);
     EXPECT_EQ(identity(whole + "x"), std::nullopt);
     EXPECT_THROW(identity("no stream, but long enough"), InputError);
