@@ -95,9 +95,9 @@ void learn(const DictionaryArguments& arguments, const RunOptions& run) {
     if (count < static_cast<std::size_t>(learning.atoms))
         throw InputError(
             arguments.sources.front(),
-            fmt::format("{} with contrast are too few for {} atoms; give more footage, "
+            fmt::format("{} patches with contrast are too few for {} atoms; give more footage, "
                         "or --atoms",
-                        counted(static_cast<std::int64_t>(count), "patch"), learning.atoms));
+                        count, learning.atoms));
     Progress progress(run, "learning", learning.iterations, "iteration");
     std::vector<double> errors;
     learning.keep_going = [&](int, double error) {

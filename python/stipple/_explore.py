@@ -139,9 +139,11 @@ def _rows(exploration: _stipple.Exploration) -> "list[dict[str, Any]]":
 
 def _value(text: str) -> Union[int, float, str]:
     """A value of an axis: a number if it is one."""
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text
+    try:
+        return int(text)
+    except ValueError:
+        pass
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -54,7 +54,10 @@ class _Job(NamedTuple):
         return frames, [str(warning.message) for warning in said]
 
     def store(self, number: int, output: BlockOutput) -> Tuple[None, List[str]]:
-        """On a worker: the same, stored there."""
+        """On a worker: the same, stored there. What is there stays: a cluster repeats the tasks whose results a
+        killed worker held."""
+        if output.holds(number):
+            return None, []
         frames, said = self.decode(number)
         output.write(number, frames)
         return None, said

@@ -67,7 +67,8 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
     /// As many slots as were recorded, of light from 0 to `brightest`.
     static void expect_light(const Outcome& outcome, const Recorded& recorded,
                              float brightest = kBrightest) {
-        if (brightest == kBrightest && of_other_cameras(GetParam().method)) brightest *= 2;
+        // Sums of patterns overshoot; but no slot has more light than all of an exposure.
+        if (brightest == kBrightest && of_other_cameras(GetParam().method)) brightest *= 8;
         EXPECT_EQ(outcome.slots, static_cast<std::int64_t>(recorded.packets.size()));
         ASSERT_EQ(outcome.light.size(), recorded.packets.size() * recorded.header.shape.sites());
         for (const float light : outcome.light)
@@ -181,8 +182,11 @@ TEST_P(BadStreamsTest, CalibrationsAtTheLimitsGiveFiniteLight) {
             }
     Recorded recorded = honest;
     recorded.header.calibration.black_level_dn = 65535;  // all samples say less than no light
-    const bool stops_early = GetParam().method == DecodeMethod::kPortz2013;  // see options()
-    expect_decoded(recorded, stops_early ? std::numeric_limits<float>::max() : 0);
+    // See options(); the methods of other cameras fit negative samples by patterns, which
+    // overshoot.
+    const bool is_zero =
+        GetParam().method != DecodeMethod::kPortz2013 && !of_other_cameras(GetParam().method);
+    expect_decoded(recorded, is_zero ? 0 : std::numeric_limits<float>::max());
 }
 
 // A prior that is switched off divides by no weight.

@@ -30,7 +30,7 @@ TEST(SpaceTest, TheExamplesCanBeRead) {
         EXPECT_GT(parse_space(text, entry.path().string()).size(), 1);
         ++examples;
     }
-    EXPECT_EQ(examples, 4);
+    EXPECT_EQ(examples, 5);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class StreamTest(ProgramTest):
                 told = stream.header | stream.counts()
                 self.assertEqual(told, {key: info[key] for key in told})
                 self.assertEqual(set(info) - set(told),
-                                 {"kind", "stretched_slots", "mean_stretched_us", "command"})
+                                 {"kind", "stretched_slots", "mean_stretched_us", "command", "calibration_file"})
 
     def test_a_slot_holds_the_samples_whose_exposures_end_in_it(self):
         stream = stipple.emulate(np.full((25, 6, 10, 3), 0.2), schedule="tiled")

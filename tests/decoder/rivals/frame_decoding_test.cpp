@@ -111,7 +111,8 @@ TEST_P(FrameMethodsTest, FewFramesAndSmallOnesAreDecoded) {
 
 TEST_P(FrameMethodsTest, AClipShorterThanItsExposureIsBlack) {
     const FluxVideo video = flat(3, kShape, 0.5F);
-    for (const float light : decoded(video, full_schedule(4, 4)).data()) ASSERT_EQ(light, 0);
+    const FluxVideo x = decoded(video, full_schedule(4, 4));
+    for (const float light : x.data()) ASSERT_EQ(light, 0);
 }
 
 // Full scale of the paper's sensor is light 2.0 in a slot.
