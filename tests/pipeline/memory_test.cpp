@@ -43,6 +43,8 @@ std::uint64_t decoding_bytes(const std::filesystem::path& file, DecodeMethod met
         fast->static_tv.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
     options.best.iterations = 2;
     options.hitomi2011.dictionary = cosine_dictionary({.slots = 8, .side_px = 4}, 3);
+    options.hitomi2011.step_px = 4;
+    options.hitomi2011.max_atoms = 2;
     options.reddy2011.first_iterations = options.reddy2011.iterations = 2;
     options.bennett2005.radius_px = 1;
     options.zhang2009.step_px = 6;
