@@ -134,9 +134,11 @@ class CollaborativeSolver {
 
     /// Residual feedback: a share of (samples - forward model of the estimate) is added to the
     /// samples, as in generalised alternating projection (Liao et al., SIAM J. Imaging Sci. 7(2),
-    /// 2014). What was added decays, so that the noise does not return.
+    /// 2014). What was added decays, so that the noise does not return. The residuals of several
+    /// sensors add up in a voxel, so each has its part of the gain.
     void add_residuals(Sensor& sensor) {
         Measurements& m = sensor.measurements;
+        const float gain = options_.residual_gain / static_cast<float>(sensors_.size());
         FluxVideo& explained = noisy_;  // which is not needed until the next iteration
         sample(m, x_.data(), explained.data());
         for_each_slot([&](int slot) {
@@ -147,8 +149,7 @@ class CollaborativeSolver {
                 float residual = sampled - explained.data()[i];
                 if (saturated) residual = std::max(residual, 0.0F);
                 float& sum = m.sum[i];
-                sum = sampled + options_.residual_decay * (sum - sampled) +
-                      options_.residual_gain * residual;
+                sum = sampled + options_.residual_decay * (sum - sampled) + gain * residual;
             }
         });
     }
