@@ -89,9 +89,9 @@ class Decoder {
             std::vector<std::vector<SparseCode>> codes(rows.size());
             parallel_for(0, static_cast<int>(rows.size()), [&](int i) {
                 for (const int col : cols)
-                    codes[index(i)].push_back(
-                        samples_.code({layer.first_slot, plane, rows[index(i)], col},
-                                      {options_.max_atoms, options_.noise_factor}));
+                    codes[index(i)].push_back(samples_.code(
+                        {layer.first_slot, plane, rows[index(i)], col},
+                        {options_.max_atoms, static_cast<double>(options_.noise_factor)}));
             });
             parallel_for(layer.begin, layer.end, [&](int slot) {
                 for (std::size_t i = 0; i < rows.size(); ++i)

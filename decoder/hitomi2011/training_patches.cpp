@@ -60,7 +60,7 @@ void TrainingPatches::begin_clip(FrameShape shape) {
 
 void TrainingPatches::add_frame(std::span<const float> frame) {
     if (frames_.size() == index(shape_.slots)) {
-        std::ranges::rotate(frames_, frames_.begin() + 1);
+        std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
         std::ranges::copy(frame, frames_.back().begin());
     } else {
         frames_.emplace_back(frame.begin(), frame.end());
