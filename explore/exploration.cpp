@@ -91,6 +91,7 @@ std::vector<std::uint64_t> Exploration::better_half() const {
     std::vector<std::uint64_t> best = by_rank(tried);
     const double growth = static_cast<double>(rungs_[rung_]) / rungs_[rung_ - 1];
     std::vector<double> costs;
+    costs.reserve(best.size());
     for (const std::uint64_t number : best)
         costs.push_back(options_.budget->unit == Budget::Unit::kClips
                             ? static_cast<double>(rungs_[rung_]) / space_.frames

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/index.h"
 #include "io/tone_map.h"
 
 namespace stipple {
@@ -19,8 +20,8 @@ FrameShape shown(FrameShape frame) {
 /// Index of the value of a frame that the tile shows at (row, col).
 std::size_t index_of(FrameShape frame, int plane, int row, int col) {
     const FrameShape tile = shown(frame);
-    const auto at_row = static_cast<std::size_t>((frame.rows - tile.rows) / 2 + row);
-    const auto at_col = static_cast<std::size_t>((frame.cols - tile.cols) / 2 + col);
+    const std::size_t at_row = index((frame.rows - tile.rows) / 2 + row);
+    const std::size_t at_col = index((frame.cols - tile.cols) / 2 + col);
     return static_cast<std::size_t>(plane) * frame.pixels() +
            at_row * static_cast<std::size_t>(frame.cols) + at_col;
 }
@@ -42,7 +43,7 @@ TrialPicture::TrialPicture(FrameShape frame) : frame_(frame) {
 
 std::span<std::uint8_t> TrialPicture::tile_row(Tile tile, int row) {
     const FrameShape shape = shown(frame_);
-    const auto width = static_cast<std::size_t>(shape.cols * shape.planes);
+    const auto width = index(shape.cols * shape.planes);
     return std::span(pixels_.bytes)
         .subspan((static_cast<std::size_t>(row) * kTiles + tile) * width, width);
 }

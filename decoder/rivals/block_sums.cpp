@@ -27,6 +27,7 @@ std::vector<BlockPlace> references(const BlockGrid& grid) {
 /// 1 in the middle of a side, less towards its ends.
 std::vector<float> window(int side) {
     std::vector<float> values;
+    values.reserve(index(side));
     for (int i = 0; i < side; ++i)
         values.push_back(
             std::min(0.4F + 0.3F * static_cast<float>(std::min(i, side - 1 - i)), 1.0F));

@@ -110,6 +110,7 @@ class OctaveSolver {
     FluxVideo solve() {
         const int count = frames_.slots();
         std::vector<float> centres;
+        centres.reserve(index(count));
         for (int k = 0; k < count; ++k)
             centres.push_back(static_cast<float>(2 * k) + (split_ ? 0.5F : 0.0F));
         FluxVideo result = interpolate_frames(frames_, centres, split_ ? 2 * count : 2 * count - 1);

@@ -48,8 +48,11 @@ EvenFrames even_frames(const FluxVideo& frames, std::span<const FrameExposure> e
                     static_cast<float>(period),
                     gaps_inside ? 0.0F : static_cast<float>(first.open_slots)};
     std::vector<float> numbers;
-    for (const FrameExposure& e : exposures)
-        numbers.push_back(static_cast<float>((e.last_slot - first.last_slot) / period));
+    numbers.reserve(exposures.size());
+    for (const FrameExposure& e : exposures) {
+        const int number = (e.last_slot - first.last_slot) / period;
+        numbers.push_back(static_cast<float>(number));
+    }
     const int count = static_cast<int>(numbers.back()) + 1;
     even.light = count == frames.slots() ? frames : interpolate_frames(frames, numbers, count);
     return even;
@@ -67,6 +70,7 @@ EvenFrames doubled(const EvenFrames& frames, float per_light, const OctaveOption
 FluxVideo at_slots(const EvenFrames& frames, int slots) {
     if (frames.distance != 1 || frames.first_centre != std::floor(frames.first_centre)) {
         std::vector<float> centres;
+        centres.reserve(index(frames.light.slots()));
         for (int k = 0; k < frames.light.slots(); ++k)
             centres.push_back(frames.first_centre + frames.distance * static_cast<float>(k));
         return interpolate_frames(frames.light, centres, slots);

@@ -181,8 +181,9 @@ std::optional<FluxVideo> filter_volumes(const DeliveredFrames& frames, const Vbm
 
 void read_options(Config& config, Vbm4dOptions& options) {
     const KeyReader read(config);
+    constexpr int kMaxReach = kMaxVolumeFrames / 2;
     read({"reach_frames",
-          {0, kMaxVolumeFrames / 2},
+          {0, kMaxReach},
           "frames",
           "frames of a volume before and after its reference"},
          options.reach_frames);
