@@ -49,11 +49,12 @@ WindowIdentity identity_of(const DecodeArguments& arguments, const DecodeSetup& 
         throw InputError(arguments.stream, "--part needs a file, which is read more than once");
     const StreamHeader header = StreamReader(arguments.stream).header();
     const std::string calibration = calibration_file(arguments);
+    const std::string& dictionary = setup.options.hitomi2011.dictionary_file;
     const auto whole = stream_identity(arguments.stream);
     return {.stream_bytes = std::filesystem::file_size(arguments.stream),
             .stream = whole ? *whole : "sha256 " + sha256_of(arguments.stream),
             .method = arguments.method,
-            .options = setup.given,
+            .options = setup.given + (dictionary.empty() ? "" : "# " + sha256_of(dictionary)),
             .calibration_sha256 = calibration.empty() ? "" : sha256_of(calibration),
             .fill_gaps = arguments.fill_gaps,
             .slots = slots_of(arguments.stream),

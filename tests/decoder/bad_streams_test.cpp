@@ -28,7 +28,7 @@ struct Outcome {
 };
 
 /// Full scale of a sample is 2.0 of light in one slot; the priors may overshoot, those of other
-/// cameras, made for samples of equal length, twice as far.
+/// cameras, made for samples of equal length, further.
 constexpr float kBrightest = 2.6F;
 
 bool of_other_cameras(DecodeMethod method) {
