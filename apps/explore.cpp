@@ -45,6 +45,7 @@ void add_budget(Command& command, ExploreOptions& options) {
         .default_text("the whole clip for all points")
         .type_name("AMOUNT");
     std::vector<std::string> names;
+    names.reserve(kFigureColumns.size());
     for (const FigureColumn& column : kFigureColumns) names.emplace_back(column.name);
     command
         .add_option("--rank", options.rank, "column of the table that tells which half is better")
