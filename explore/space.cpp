@@ -163,7 +163,7 @@ SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key
     for (const auto& [setting, node] : section(table, "set")) {
         const std::string name(setting.str());
         check_setting(name);
-        system.values.emplace_back(name, text(key + ".set." + name, node));
+        system.values.emplace_back(name, text(fmt::format("{}.set.{}", key, name), node));
     }
     return system;
 }
