@@ -71,9 +71,9 @@ std::string SpaceReader::text(const std::string& key, const toml::node& node) co
     std::ostringstream text;
     if (const auto* list = node.as_array())
         text << toml::toml_formatter(*list);
-    else if (const auto number = node.value<std::int64_t>(); number && node.is_integer())
+    else if (const auto number = node.value_exact<std::int64_t>())
         text << *number;
-    else if (const auto real = node.value<double>(); real && node.is_floating_point())
+    else if (const auto real = node.value_exact<double>())
         text << fmt::format("{}", *real);
     else
         text << (node.value_or(false) ? "true" : "false");
@@ -85,7 +85,7 @@ std::vector<std::string> SpaceReader::range(const std::string& key,
     check_keys(table, key, {"from", "to", "count", "log"});
     const auto from = table["from"].value<double>();
     const auto to = table["to"].value<double>();
-    const auto count = table["count"].value<std::int64_t>();
+    const auto count = table["count"].value_exact<std::int64_t>();
     const bool log = table["log"].value_or(false);
     if (!from || !to || !count || *count < 2 || *count > kMaxCount || !std::isfinite(*from) ||
         !std::isfinite(*to) || (log && (*from <= 0 || *to <= 0)))
