@@ -36,7 +36,7 @@ struct Arrays {
     float* dual;
 };
 
-template <bool kWeighted>
+template <bool kWeighted, bool kDual>
 Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const Arrays& arrays) {
     const std::size_t voxel = slot * m.shape.sites() + run.begin;
     const std::size_t pixels = m.shape.pixels();
@@ -47,7 +47,7 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const A
             .step = arrays.step + slot * pixels + run.begin % pixels,
             .weight = kWeighted ? &m.weight[voxel] : nullptr,
             .v = arrays.v + voxel,
-            .dual = arrays.dual == nullptr ? nullptr : arrays.dual + voxel};
+            .dual = kDual ? arrays.dual + voxel : nullptr};
 }
 
 /// The chains of exposures that are looked at; the voxels of others count as unobserved.
@@ -106,11 +106,11 @@ void prox_chain(const Measurements& m, const SiteRun& run, const Arrays& arrays)
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up<kChain, kWeighted, kDual>(slice<kWeighted>(m, run, slot, arrays), sum_v, sum_step,
-                                         ending[slot]);
+        add_up<kChain, kWeighted, kDual>(slice<kWeighted, kDual>(m, run, slot, arrays), sum_v,
+                                         sum_step, ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
-        distribute<kChain, kWeighted>(slice<kWeighted>(m, run, slot, arrays), ending[slot],
+        distribute<kChain, kWeighted>(slice<kWeighted, kDual>(m, run, slot, arrays), ending[slot],
                                       correction);
 }
 
@@ -119,7 +119,7 @@ template <Chain kChain, bool kWeighted>
 void add_duals(const Measurements& m, const SiteRun& run, const Arrays& arrays) {
     float correction[kMaxRunSites] = {};
     for (auto slot = static_cast<std::size_t>(m.slots); slot-- > 0;) {
-        const Slice s = slice<kWeighted>(m, run, slot, arrays);
+        const Slice s = slice<kWeighted, true>(m, run, slot, arrays);
         distribute<kChain, kWeighted>(s, s.dual, correction);
     }
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,15 +29,14 @@ struct EvenFrames {
 
 /// The least distance of two frames, if that of all is a multiple of it; otherwise 0.
 int period_of(std::span<const FrameExposure> exposures) {
-    int period = 0;
-    const auto step = [&](std::size_t i) {
-        return exposures[i].last_slot - exposures[i - 1].last_slot;
-    };
-    for (std::size_t i = 1; i < exposures.size(); ++i)
-        period = period == 0 ? step(i) : std::min(period, step(i));
-    for (std::size_t i = 1; i < exposures.size(); ++i)
-        if (step(i) % period != 0) return 0;
-    return period;
+    int least = std::numeric_limits<int>::max();
+    int divisor = 0;
+    for (std::size_t i = 1; i < exposures.size(); ++i) {
+        const int distance = exposures[i].last_slot - exposures[i - 1].last_slot;
+        least = std::min(least, distance);
+        divisor = std::gcd(divisor, distance);
+    }
+    return divisor == least ? divisor : 0;
 }
 
 /// Lost frames are interpolated.
