@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """The tables of docs/scaling.md: decoding on worker processes of Dask on this machine.
 
-    PYTHONPATH=build/release/python bench/scaling/dask_table.py cores    # 1, 2 and 4 workers, pinned to cores
+    PYTHONPATH=build/release/python bench/scaling/dask_table.py cores    # 1, 2 and 4 workers, pinned to cores;
+                                            # beside them as many processes of build/release/stipple, by --part
     PYTHONPATH=build/release/python bench/scaling/dask_table.py memory   # 10^9 voxels, four workers of 1 GiB
 
 Needs python3-distributed, and for `memory` 6 GB of disk in the folder TMPDIR."""
 
 import argparse
 import os
+import subprocess
 import tempfile
 import time
 from pathlib import Path
@@ -20,6 +22,7 @@ GIB = 1 << 30
 
 
 ROWS, COLS = 240, 320
+PROGRAM = Path(__file__).resolve().parents[2] / "build/release/stipple"
 
 
 def write_stream(folder, slots):
@@ -71,14 +74,29 @@ def run(stream, folder, workers, memory, method, pinned):
     return seconds
 
 
+def run_parts(stream, folder, parts, method):
+    """Seconds of processes of the program that share nothing: what the cores of the machine give."""
+    cores = sorted(os.sched_getaffinity(0))
+    begin = time.monotonic()
+    processes = [subprocess.Popen(["taskset", "--cpu-list", str(cores[part % len(cores)]), PROGRAM, "decode", stream,
+                                   "-o", folder / f"parts_{parts}", "--part", f"{part + 1}/{parts}", "--method", method,
+                                   "--threads", "1"], stdout=subprocess.DEVNULL)
+                 for part in range(parts)]
+    for process in processes:
+        assert process.wait() == 0
+    return time.monotonic() - begin
+
+
 def table_of_cores(folder, method, slots):
     voxels = slots * ROWS * COLS
     stream = write_stream(folder, slots)
     first = None
     for workers in (1, 2, 4):
+        parts = run_parts(stream, folder, workers, method)
         seconds = run(stream, folder, workers, "2GiB", method, True)
-        first = first or seconds
-        print(f"| {workers} | {seconds:.1f} | {voxels / seconds / 1e6:.2f} | {first / seconds:.2f} |", flush=True)
+        first = first or (seconds, parts)
+        print(f"| {workers} | {seconds:.1f} | {voxels / seconds / 1e6:.2f} | {first[0] / seconds:.2f} | "
+              f"{first[1] / parts:.2f} |", flush=True)
 
 
 def table_of_memory(folder, method, slots):
