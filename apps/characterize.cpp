@@ -71,7 +71,7 @@ bool is_series_name(std::string_view name) {
 
 /// Writes images of the emulated sensor, DN as 16-bit PNG, and their descriptor.
 void capture_flat_fields(const SensorChoice& sensor, const SensorParams& params,
-                         const std::filesystem::path& folder, const RunOptions& run) {
+                         const PendingOutput& folder, const RunOptions& run) {
     FlatField field(params, sensor.seed);
     const auto exposures = flat_field_exposures(params);
     int images = 0;
@@ -90,13 +90,14 @@ void capture_flat_fields(const SensorChoice& sensor, const SensorParams& params,
                                                             .files = {}});
         for (int i = 0; i < count; ++i) {
             throw_if_stopped();
-            group.files.push_back(image_name(++number));
-            write_dn_png(folder / group.files.back(), FlatField::kShape, field.capture(photons));
+            const std::string& name = group.files.emplace_back(image_name(++number));
+            write_dn_png(folder.partial() / name, (folder.final_path() / name).string(),
+                         FlatField::kShape, field.capture(photons));
             progress.advance();
         }
     }
-    const auto descriptor = folder / kDescriptorName;
-    write_whole(descriptor, descriptor.string(), series_text(series));
+    write_whole(folder.partial() / kDescriptorName,
+                (folder.final_path() / kDescriptorName).string(), series_text(series));
 }
 
 /// Reads the images that a descriptor names and evaluates them; messages call it `where`.
@@ -164,7 +165,7 @@ void characterize_sensor(const CharacterizeOptions& options, const RunOptions& r
     JsonFile json(run);
     PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
     say_leftover(options.output);
-    capture_flat_fields(options.sensor, params, folder.partial(), run);
+    capture_flat_fields(options.sensor, params, folder, run);
     const auto where = (folder.final_path() / kDescriptorName).string();
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, where, run),
                               configured_figures(params)};

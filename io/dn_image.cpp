@@ -55,7 +55,7 @@ DnImage read_dn_image(const std::filesystem::path& file) {
     }
 }
 
-void write_dn_png(const std::filesystem::path& file, FrameShape shape,
+void write_dn_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,
                   std::span<const std::uint16_t> dn) {
     assert(dn.size() == shape.pixels());
     PngPixels image{.rows = shape.rows,
@@ -63,7 +63,7 @@ void write_dn_png(const std::filesystem::path& file, FrameShape shape,
                     .bytes_a_sample = 2,
                     .bytes = std::vector<std::uint8_t>(dn.size_bytes())};
     std::memcpy(image.bytes.data(), dn.data(), dn.size_bytes());
-    write_png_file(file, image);
+    write_png_file(file, image, where);
 }
 
 }  // namespace stipple

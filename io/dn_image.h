@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/geometry.h"
@@ -19,9 +20,9 @@ struct DnImage {
 /// offset where known, if it is missing, unreadable, truncated or of another kind.
 [[nodiscard]] DnImage read_dn_image(const std::filesystem::path& file);
 
-/// Writes a 16-bit grey PNG file, replacing `file`. Precondition: dn.size() == rows * cols of
-/// shape. \throws DeviceError.
-void write_dn_png(const std::filesystem::path& file, FrameShape shape,
+/// Writes a 16-bit grey PNG file, replacing `file`, which messages call `where`. Precondition:
+/// dn.size() == rows * cols of shape. \throws DeviceError.
+void write_dn_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,
                   std::span<const std::uint16_t> dn);
 
 }  // namespace stipple

@@ -76,14 +76,15 @@ void read_image(const std::filesystem::path& file, Image& image) {
     throw InputError(file.string(), "is not an image that can be read; give PNG, TIFF, EXR or DNG");
 }
 
-void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame) {
+void write_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,
+               std::span<const float> frame) {
     assert(frame.size() == shape.sites());
     PngPixels pixels{.rows = shape.rows,
                      .cols = shape.cols,
                      .channels = shape.planes,
                      .bytes = std::vector<std::uint8_t>(shape.sites())};
     tone_map_frame(frame, shape, pixels.bytes);
-    write_png_file(file, pixels);
+    write_png_file(file, pixels, where);
 }
 
 }  // namespace stipple

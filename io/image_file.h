@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "core/geometry.h"
 #include "io/image.h"
@@ -18,7 +19,9 @@ void read_image(const std::filesystem::path& file, Image& image);
 void to_image(const TiffPixels& pixels, Image& image);
 
 /// Writes linear light as an 8-bit PNG image through the curve of io/tone_map.h. `frame` holds
-/// shape.sites() floats, order (plane, row, col). Replaces `file`. \throws DeviceError.
-void write_png(const std::filesystem::path& file, FrameShape shape, std::span<const float> frame);
+/// shape.sites() floats, order (plane, row, col). Replaces `file`, which messages call `where`.
+/// \throws DeviceError.
+void write_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,
+               std::span<const float> frame);
 
 }  // namespace stipple

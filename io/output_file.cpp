@@ -3,10 +3,9 @@
 #include <fcntl.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
-#include "core/error.h"
+#include "core/write_failure.h"
 
 namespace stipple {
 
@@ -32,7 +31,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::fail() const {
-    throw DeviceError(where_, "cannot be written: " + std::generic_category().message(errno));
+    throw write_failure(where_, errno);
 }
 
 }  // namespace stipple

@@ -210,8 +210,7 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where
 
 void write_png_file(const std::filesystem::path& file, const PngPixels& pixels,
                     const std::string& where) {
-    const std::string name = where.empty() ? file.string() : where;
-    Sink sink{OutputFile(file, name)};
+    Sink sink{OutputFile(file, where)};
     const Png writer(false);
     const png_structp png = writer.png;
     const png_infop info = writer.info;
@@ -233,7 +232,7 @@ void write_png_file(const std::filesystem::path& file, const PngPixels& pixels,
         png_write_end(png, nullptr);
     });
     if (sink.failure) std::rethrow_exception(sink.failure);
-    if (!succeeded) throw DeviceError(name, fmt::format("cannot be written: {}", writer.reason()));
+    if (!succeeded) throw DeviceError(where, fmt::format("cannot be written: {}", writer.reason()));
     sink.file.close();
 }
 

@@ -32,9 +32,8 @@ struct PngImage {
 /// chunk; or if the image exceeds the maximum size.
 [[nodiscard]] PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where);
 
-/// Messages name the file `where`, if that is not empty. \throws DeviceError if it cannot be
-/// written.
+/// Messages call the file `where`. \throws DeviceError if it cannot be written.
 void write_png_file(const std::filesystem::path& file, const PngPixels& pixels,
-                    const std::string& where = {});
+                    const std::string& where);
 
 }  // namespace stipple

@@ -8,10 +8,10 @@
 #include <cstdarg>
 #include <cstddef>
 #include <cstdio>
-#include <system_error>
 #include <vector>
 
 #include "core/error.h"
+#include "core/write_failure.h"
 
 namespace stipple {
 namespace {
@@ -67,9 +67,8 @@ struct TiffWriter::Impl {
     /// \throws DeviceError with the reason of the system, unless `succeeded`.
     void check(bool succeeded) const {
         if (succeeded) return;
-        throw DeviceError(
-            where, "cannot be written: " + (errno == 0 ? std::string("libtiff refuses it")
-                                                       : std::generic_category().message(errno)));
+        if (errno != 0) throw write_failure(where, errno);
+        throw DeviceError(where, "cannot be written: libtiff refuses it");
     }
     void describe_page();
 };

@@ -4,10 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
-#include "core/error.h"
+#include "core/write_failure.h"
 
 namespace stipple {
 
@@ -43,7 +42,7 @@ void AppendFile::cut(std::uint64_t bytes) noexcept {
 }
 
 void AppendFile::fail() const {
-    throw DeviceError(where_, "cannot be written: " + std::generic_category().message(errno));
+    throw write_failure(where_, errno);
 }
 
 }  // namespace stipple

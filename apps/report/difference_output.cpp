@@ -42,7 +42,7 @@ void DifferenceOutput::finish() {
     if (video_) return video_->finish();
     for (std::size_t i = 0; i < difference_.size(); ++i)
         difference_[i] = static_cast<float>(std::sqrt(squares_[i] / static_cast<double>(frames_)));
-    write_png(image_->partial(), shape_, difference_);
+    write_png(image_->partial(), image_->final_path().string(), shape_, difference_);
     image_->commit();
 }
 

@@ -57,7 +57,7 @@ void SideBySide::put(std::size_t version, std::span<const float> frame) {
 
 void SideBySide::write(const std::filesystem::path& file, bool force) const {
     PendingOutput output(file, force);
-    write_png(output.partial(), canvas_, light_);
+    write_png(output.partial(), output.final_path().string(), canvas_, light_);
     output.commit();
 }
 

@@ -190,6 +190,11 @@ class CharacterizeTest(ProgramTest):
         for path in (self.folder / "charts").glob("photon_transfer.*"):
             self.assertTrue(path.read_bytes().rstrip().endswith((b"\xaeB`\x82", b"</svg>")), path)
 
+    def test_a_full_disk_is_told_by_the_name_of_the_output(self):
+        said = self.fails(DEVICE, ["stipple: series/image_0001.png: cannot be written"], "characterize", "--sensor",
+                          "t6", "-o", "series", preexec_fn=small_files)
+        self.assertNotIn("partial", said)
+
     def test_what_cannot_be_used_is_named(self):
         self.fails(USAGE, ["--output"], "characterize", "--sensor", "t6")
         self.fails(INPUT, ["unequal transmittance"], "characterize", "--sensor", "ideal", "-o", "a",

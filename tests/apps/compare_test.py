@@ -2,6 +2,7 @@
 
 import csv
 import math
+import resource
 import shutil
 import unittest
 
@@ -107,6 +108,8 @@ class CompareTest(ProgramTest):
                                delta=0.5 / 255)
         self.fails(INPUT, ["d.npy", "--force"], *line, "d.npy")
         self.fails(USAGE, ["--difference", "a difference is"], *line, "d.mp4")
+        self.fails(DEVICE, ["stipple: full.png: cannot be written"], *line, "full.png",
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
 
     def test_the_chart_is_a_picture(self):
         done = self.run_program("compare", "noisy.npy", "light.npy", "--chart", "frames.svg")

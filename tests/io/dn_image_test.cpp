@@ -15,7 +15,7 @@ constexpr FrameShape kShape{.rows = 2, .cols = 3, .planes = 1};
 
 TEST(DnImageTest, ReadsTheNumbersThatItWrites) {
     const TemporaryFolder folder;
-    write_dn_png(folder / "a.png", kShape, kValues);
+    write_dn_png(folder / "a.png", "a.png", kShape, kValues);
     const DnImage image = read_dn_image(folder / "a.png");
     EXPECT_EQ(image.shape, kShape);
     EXPECT_EQ(image.dn, kValues);

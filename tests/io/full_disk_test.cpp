@@ -37,14 +37,14 @@ TEST(FullDiskTest, AFailureOfTheLastBytesIsReportedOnClose) {
     OutputFile file("/dev/full", "clip.npy");
     file.write(std::as_bytes(std::span("small", 5)));
     expect_parts(message_of<DeviceError>([&] { file.close(); }),
-                 {"clip.npy: cannot be written: No space left on device"});
+                 {"clip.npy: cannot be written: No space left on device; free space"});
 }
 
 TEST(FullDiskTest, AImageReportsIt) {
     expect_parts(message_of<DeviceError>([] {
-                     write_png("/dev/full", {1, 1, 1}, Floats{1});
+                     write_png("/dev/full", "a.png", {1, 1, 1}, Floats{1});
                  }),
-                 {"/dev/full: cannot be written: No space left on device"});
+                 {"a.png: cannot be written: No space left on device; free space"});
 }
 
 }  // namespace

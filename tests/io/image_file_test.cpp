@@ -34,12 +34,12 @@ TEST(ToneMapTest, ShowsWhatIsNoLightAsBlackAndInfinityAsWhite) {
 
 TEST(ImageFileTest, WritesToneMappedMonoAndColour) {
     const TemporaryFolder folder;
-    write_png(folder / "mono.png", {1, 2, 1}, std::vector<float>{1, 0});
+    write_png(folder / "mono.png", "mono.png", {1, 2, 1}, std::vector<float>{1, 0});
     const cv::Mat mono = cv::imread((folder / "mono.png").string(), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(mono.type(), CV_8UC1);
     EXPECT_EQ(mono.at<std::uint8_t>(0, 0), 191);
     EXPECT_EQ(mono.at<std::uint8_t>(0, 1), 0);
-    write_png(folder / "rgb.png", {1, 1, 3}, std::vector<float>{2, 1, 0});
+    write_png(folder / "rgb.png", "rgb.png", {1, 1, 3}, std::vector<float>{2, 1, 0});
     const cv::Mat rgb = cv::imread((folder / "rgb.png").string(), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(rgb.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 191, 224));
 }
@@ -47,7 +47,7 @@ TEST(ImageFileTest, WritesToneMappedMonoAndColour) {
 TEST(ImageFileTest, ReportsAImageThatCannotBeWritten) {
     const TemporaryFolder folder;
     expect_parts(message_of<DeviceError>([&] {
-                     write_png(folder / "no/f.png", {1, 1, 1}, std::vector<float>{1});
+                     write_png(folder / "no/f.png", "no/f.png", {1, 1, 1}, std::vector<float>{1});
                  }),
                  {"no/f.png: cannot be written: No such file"});
 }
