@@ -116,8 +116,8 @@ void info(const InfoOptions& options, const RunOptions& run) {
     if (may_be_stream(file)) return info_stream(file, run);
     throw InputError(
         file, fmt::format("is nothing that stipple reads: it is {}, no sample stream, recording, "
-                          "calibration, footage, sensor, schedule or scene; frames without a "
-                          "header need --raw",
+                          "calibration, footage, sensor, schedule, rig, space or scene; frames "
+                          "without a header need --raw",
                           kind_by_start(file)));
 }
 
@@ -127,9 +127,10 @@ void add_info(Command& app, Action& action) {
     Command command = app.add_command("info", "Kind and contents of a file");
     const auto options = std::make_shared<InfoOptions>();
     command
-        .add_option("FILE", options->file,
-                    "stream, recording, calibration, footage, folder of a rig, sensor, schedule or "
-                    "rig, or the name of one")
+        .add_option(
+            "FILE", options->file,
+            "stream, recording, calibration, footage, folder of a rig, sensor, schedule, rig "
+            "or space, or the name of one")
         .required()
         .input();
     add_raw_argument(command, options->raw, "FILE");

@@ -34,19 +34,30 @@ std::string view_text(const RigSensor& sensor) {
     return text;
 }
 
+/// The keys that differ from the files of the sensor and the schedule, as --set takes them.
+std::vector<std::string> settings_of(const RigSensor& sensor) {
+    std::vector<std::string> settings;
+    for (const std::string& key : sensor.choice.settings) settings.push_back("sensor." + key);
+    for (const std::string& key : sensor.choice.schedule_settings)
+        settings.push_back("schedule." + key);
+    return settings;
+}
+
 ordered_json sensor_json(const RigSensor& sensor) {
     return {{"name", sensor.name},
             {"sensor", sensor.choice.sensor},
             {"schedule", sensor.choice.schedule},
+            {"set", settings_of(sensor)},
             {"share", sensor.share},
             {"phase_slots", sensor.phase_slots},
             {"homography", sensor.from_reference.matrix()}};
 }
 
 std::string sensor_text(const RigSensor& sensor) {
-    return fmt::format("{}: {:g} % of the light, sensor {}, schedule {}{}", sensor.name,
+    const std::vector<std::string> settings = settings_of(sensor);
+    return fmt::format("{}: {:g} % of the light, sensor {}, schedule {}{}{}{}", sensor.name,
                        100 * sensor.share, sensor.choice.sensor, sensor.choice.schedule,
-                       view_text(sensor));
+                       settings.empty() ? "" : " with ", joined(settings), view_text(sensor));
 }
 
 std::string rig_text(const Rig& rig) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/info_rig.h"
+#include "apps/info_space.h"
 #include "apps/key_list.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
@@ -54,6 +55,7 @@ SettingsKind kind_of_name(const std::string& name) {
     if (sensor) return SettingsKind::kSensor;
     if (schedule) return SettingsKind::kSchedule;
     if (is_listed(ConfigKind::kRigs, name)) return SettingsKind::kRig;
+    if (is_listed(ConfigKind::kSpaces, name)) return SettingsKind::kSpace;
     return is_scene(name) ? SettingsKind::kScene : SettingsKind::kNone;
 }
 
@@ -61,13 +63,14 @@ SettingsKind kind_of_keys(const std::string& file) {
     const Config config(file, {});
     if (config.contains("kind")) return SettingsKind::kSchedule;
     if (config.contains("sensors")) return SettingsKind::kRig;
+    if (config.contains("systems") || !config.as_toml("axes").empty()) return SettingsKind::kSpace;
     for (const KeyList& list : key_lists("sensor", ""))
         for (const KnownKey& key : list.keys)
             if (config.contains(key.name)) return SettingsKind::kSensor;
     throw InputError(
         file,
         "holds the keys of neither a sensor nor a schedule (\"stipple list keys\"), nor "
-        "of a rig");
+        "of a rig or a space of explore");
 }
 
 /// The values of the keys with their units, as if they were the defaults of a file without keys.
@@ -263,6 +266,7 @@ void info_settings(SettingsKind kind, const std::string& name, const RunOptions&
     if (kind == SettingsKind::kSchedule) info_schedule(name, run);
     if (kind == SettingsKind::kScene) info_scene(name, run);
     if (kind == SettingsKind::kRig) info_rig_file(name, run);
+    if (kind == SettingsKind::kSpace) info_space(name, run);
 }
 
 }  // namespace stipple

@@ -146,6 +146,25 @@ class InfoTest(CameraFilesTest):
         self.expect({"kind": "schedule", "schedule_kind": "compiled", "period_slots": shown["period_slots"]},
                     "tiled.mem")
 
+    def test_spaces_of_explore(self):
+        figures = self.expect({"kind": "space", "points": 27, "frames": 32,
+                               "scene": {"width": 128, "height": 96, "planes": 1},
+                               "readout": {"width": None, "height": None, "sensor": "lux1310"}}, "rivals")
+        axes = {axis["name"]: axis["values"] for axis in figures["axes"]}
+        self.assertEqual((axes["sensor"], len(axes["system"])), (["paper"], 27))
+        self.assertNotIn("method", axes, "the systems set it")
+        self.assertEqual(figures["systems"][0],
+                         {"name": "coded best", "values": {"schedule": "random", "method": "best"}})
+        space = b'[axes]\nsensor = ["paper", "t6"]\n[set]\n"sensor.slot_us" = { from = 100, to = 900, count = 9 }\n'
+        self.write("own.toml", space)
+        for part in ("own.toml: 18 points", "paper, t6", "100, 200, 300, 400, 500, 600, ... 900 (9 values)"):
+            self.assertIn(part, self.succeed("info", "own.toml"))
+        for content, problem in ((space + b"colour = 1\n", "set.colour: begins neither with sensor."),
+                                 (b"[axes]\nseed = 1\n", "axes.sensor: is missing"),
+                                 (b"[[systems]]\nname = 1\n", "axes.sensor: is missing")):
+            self.write("bad.toml", content)
+            self.fails(INPUT, ["bad.toml: " + problem], "info", "bad.toml")
+
     def test_scenes_and_names(self):
         self.expect({"kind": "scene", "name": "pan", "width": 320, "height": 240, "frames": 48}, "pan")
         self.fails(INPUT, ["nd_mosaic", "sensor and of a schedule", "schedules/nd_mosaic.toml"], "info", "nd_mosaic")

@@ -102,6 +102,9 @@ class RigTest(ProgramTest):
             self.assertIn(part, text)
         self.assertIn("7.52 %", self.succeed("info", "tocci2011"))
         self.assertIn("two", self.succeed("info", "two.toml"))
+        self.assertIn("mid: 33.3333 % of the light, sensor paper, schedule full4x with schedule.open_slots=2, "
+                      "schedule.period_slots=4", self.succeed("info", "multi_exposure"))
+        self.assertEqual(self.figures("info", "multi_exposure")["sensors"][0]["set"], [])
         self.assertIn("coded_pair", self.succeed("list", "rigs"))
 
     def test_keys_can_be_set(self):
