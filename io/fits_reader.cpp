@@ -47,6 +47,8 @@ class Header {
         const auto found = values_.find(key);
         return found == values_.end() ? "" : found->second;
     }
+    /// In microseconds, of EXPTIME or EXPOSURE (seconds); nothing if it is no positive number.
+    [[nodiscard]] std::optional<double> exposure_us() const;
     /// \throws InputError if it is there and no number.
     [[nodiscard]] std::optional<double> number(std::string_view key) const;
     /// \throws InputError unless it is a whole number from `min` to `max`.
@@ -79,14 +81,28 @@ Header::Header(FileBytes& file) : name_(file.name()) {
     }
 }
 
-std::optional<double> Header::number(std::string_view key) const {
-    std::string value = text(key);
-    if (value.empty()) return {};
-    std::ranges::replace(value, 'D', 'E');  // Fortran's exponent
+/// Nothing if it is none.
+std::optional<double> finite_number(std::string text) {
+    std::ranges::replace(text, 'D', 'E');  // Fortran's exponent
     const auto number =
-        parsed_number<double>(std::string_view(value).substr(value.starts_with('+') ? 1 : 0));
-    if (number && std::isfinite(*number)) return number;
-    throw InputError(name_, fmt::format("{} is \"{}\", no number", key, text(key)));
+        parsed_number<double>(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
+    return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<double> Header::number(std::string_view key) const {
+    const std::string value = text(key);
+    if (value.empty()) return {};
+    if (const auto number = finite_number(value)) return number;
+    throw InputError(name_, fmt::format("{} is \"{}\", no number", key, value));
+}
+
+std::optional<double> Header::exposure_us() const {
+    constexpr double kMicrosecondsASecond = 1e6;
+    for (const char* key : {"EXPTIME", "EXPOSURE"}) {
+        const double us = finite_number(text(key)).value_or(0) * kMicrosecondsASecond;
+        if (us > 0 && std::isfinite(us)) return us;
+    }
+    return {};
 }
 
 std::int64_t Header::count(std::string_view key, std::int64_t min, std::int64_t max) const {
@@ -180,6 +196,7 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     zero_ /= one;
     scale_ /= one;
     top_down_ = header.text("ROWORDER") == "TOP-DOWN";
+    traits_.exposure_us = header.exposure_us();
     traits_.floating = bits_ < 0;
     traits_.sample_format = fmt::format("BITPIX {}", bits_);
     traits_.bits = std::max(bits_, 0);

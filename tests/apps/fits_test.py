@@ -41,6 +41,28 @@ class FitsTest(CameraFilesTest):
     def test_an_image_is_one_frame(self):
         self.assert_light(MOSAIC[:1] / 32767, self.fits(MOSAIC[0, ::-1], 16))
 
+    def test_exposure(self):
+        """Slots of 5000 us."""
+        blurred = "its frames were exposed for 6000 us, but a slot of sensor \"paper\" takes 5000 us (200 a second)"
+        for cards in (("EXPTIME =                0.006 / seconds",), ("EXPTIME = 6.0D-3",), ("EXPOSURE= 0.006",),
+                      ("EXPTIME = 0.006", "EXPOSURE= 1.")):
+            with self.subTest(cards=cards):
+                name = self.fits(MOSAIC, 16, *cards)
+                self.light(name)
+                self.assertIn(f"{name}: {blurred}: motion is blurred", self.said)
+                self.assertAlmostEqual(self.figures("info", name)["exposure_us"], 6000)
+        name = self.fits(MOSAIC, 16, "EXPTIME = 0.001")
+        self.light(name)
+        self.assertEqual(self.said, "")
+        self.light(name, "--frames-hz", 200)
+        self.assertIn("its frames were exposed for 1000 of 5000 us each", self.said)
+        for value in ("0", "-0.006", "'unknown '", "1E305", "nan", ""):
+            with self.subTest(value=value):
+                name = self.fits(MOSAIC, 16, f"EXPTIME = {value}")
+                self.light(name)
+                self.assertEqual(self.said, "")
+                self.assertIsNone(self.figures("info", name)["exposure_us"])
+
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
     def test_ffmpeg_reads_the_same_image(self):
         ramp = np.arange(48).reshape(6, 8) * 5
