@@ -121,9 +121,12 @@ WaveletTransform::WaveletTransform(FrameShape shape, int max_levels)
 }
 
 FrameShape WaveletTransform::padded_shape(FrameShape shape, int max_levels) {
-    const int unit = 1 << levels_of(shape, max_levels);
-    const auto padded = [unit](int side) { return (side + unit - 1) / unit * unit; };
-    return {.rows = padded(shape.rows), .cols = padded(shape.cols), .planes = shape.planes};
+    const int levels = levels_of(shape, max_levels);
+    const auto padded = [unit = 1 << levels](int side) { return (side + unit - 1) / unit * unit; };
+    shape.rows = padded(shape.rows);
+    shape.cols = padded(shape.cols);
+    // The larger frame may have room for one more level.
+    return levels_of(shape, max_levels) == levels ? shape : padded_shape(shape, max_levels);
 }
 
 void WaveletTransform::forward(PlaneView<float> plane) const {

@@ -80,6 +80,12 @@ TEST(WaveletTest, FramesArePaddedToWhatAllLevelsCanHalve) {
     EXPECT_EQ(WaveletTransform::padded_shape({45, 83, 3}, 3), (FrameShape{48, 88, 3}));
     EXPECT_EQ(WaveletTransform::padded_shape({17, 400, 1}, 9), (FrameShape{20, 400, 1}));
     EXPECT_EQ(WaveletTransform::padded_shape({1, 33, 1}, 3), (FrameShape{1, 33, 1}));
+    EXPECT_EQ(WaveletTransform::padded_shape({30, 34, 3}, 3), (FrameShape{32, 40, 3}));
+    for (int rows = 1; rows < 140; ++rows)
+        for (int cols = rows; cols < 140; ++cols) {
+            const FrameShape padded = WaveletTransform::padded_shape({rows, cols, 1}, 4);
+            EXPECT_EQ(WaveletTransform::padded_shape(padded, 4), padded) << rows << ' ' << cols;
+        }
     EXPECT_EQ(WaveletTransform({20, 400, 1}, 9).levels(), 2);
     EXPECT_EQ(WaveletTransform({1, 33, 1}, 3).levels(), 0);
 }
