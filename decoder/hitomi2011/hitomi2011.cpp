@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "decoder/hitomi2011/patch_samples.h"
 #include "decoder/measurements.h"
+#include "decoder/mosaic_hues.h"
 #include "decoder/naive/nearest_samples.h"
 
 namespace stipple {
@@ -153,6 +154,10 @@ std::optional<FluxVideo> decode_hitomi2011(const Measurements& measurements,
         throw InputError(kOption,
                          "method hitomi2011 needs a dictionary of patches; make one with "
                          "\"stipple dictionary FOOTAGE -o FILE.npy\"");
+    if (measurements.mosaic)
+        return decode_by_hue(measurements, {}, [&](const auto& mean, const auto&) {
+            return decode_hitomi2011(mean, options, progress);
+        });
     FluxVideo x = nearest_samples(measurements);
     Decoder decoder(measurements, options);
     const std::vector<Layer> layers = decoder.layers();

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "decoder/measurements.h"
+#include "decoder/mosaic_hues.h"
 #include "decoder/motion/motion.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/reddy2011/flow_links.h"
@@ -125,6 +126,10 @@ std::optional<FluxVideo> decode_reddy2011(const Measurements& measurements,
                                           const Reddy2011Options& options,
                                           const StageObserver& observer,
                                           const ProgressCallback& progress) {
+    if (measurements.mosaic)
+        return decode_by_hue(measurements, observer, [&](const auto& mean, const auto& told) {
+            return decode_reddy2011(mean, options, told, progress);
+        });
     const FrameShape shape = measurements.shape;
     const FrameShape whole = WaveletTransform::padded_shape(shape, options.levels);
     const bool pad = whole != shape;
