@@ -72,6 +72,29 @@ std::optional<TrialFigures> figures_of(const ordered_json& json) {
     return figures;
 }
 
+/// \throws InputError if something else than an empty folder has the name, DeviceError if that
+/// cannot be told.
+void check_free(const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (status.type() == fs::file_type::not_found) return;
+    bool is_free = fs::is_directory(status);
+    if (is_free) is_free = fs::is_empty(folder, error);
+    if (error) throw DeviceError(folder.string(), "cannot be read: " + error.message());
+    if (!is_free) throw InputError(folder.string(), "is no folder of results; give another name");
+}
+
+/// Makes the folder unless there is one. \throws InputError if there is no folder to make it in,
+/// DeviceError if it cannot be made.
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    if (fs::create_directory(folder, error)) sync_to_disk(folder / "..");
+    if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory)
+        throw InputError(folder.string(),
+                         "there is no folder that it could be made in; create that first");
+    if (error) throw DeviceError(folder.string(), "cannot be made: " + error.message());
+}
+
 }  // namespace
 
 TrialStore::TrialStore(fs::path folder) : folder_(std::move(folder)) {
@@ -85,14 +108,11 @@ TrialStore::TrialStore(fs::path folder) : folder_(std::move(folder)) {
                                          "{}; give another name, or remove it",
                                          version()));
     } else {
-        if (fs::exists(folder_) && (!fs::is_directory(folder_) || !fs::is_empty(folder_)))
-            throw InputError(folder_.string(), "is no folder of results; give another name");
-        if (fs::create_directory(folder_, error)) sync_to_disk(folder_ / "..");
-        if (error) throw InputError(folder_.string(), "cannot be made: " + error.message());
+        check_free(folder_);
+        make_folder(folder_);
         write_text(version_file, own);
     }
-    if (fs::create_directory(folder_ / "trials", error)) sync_to_disk(folder_);
-    if (error) throw DeviceError(folder_.string(), "cannot be written: " + error.message());
+    make_folder(folder_ / "trials");
     for (const PartialOutput& partial : partial_outputs(folder_ / "trials"))
         if (!partial.running()) fs::remove(partial.path, error);  // of a killed run
 }

@@ -259,9 +259,11 @@ method = "fast"
         self.explore()
         self.folder.chmod(0o755)
         nobody = {"preexec_fn": lambda: os.setuid(65534)}
-        for results in ("results", "new"):
+        for name, mode in (("sealed", 0o555), ("locked", 0)):
+            (self.folder / name).mkdir(mode=mode)
+        for results in ("results", "new", "sealed", "sealed/new", "locked", "locked/new"):
             done = self.run_program("explore", "space.toml", "-o", results, **nobody)
-            self.assertIn(done.returncode, (INPUT, DEVICE), done.stderr)
+            self.assertEqual(done.returncode, DEVICE, done.stderr)
             self.assertIn(results, done.stderr)
             self.assertIn("Permission denied", done.stderr)
             self.assertEqual(done.stderr.count("stipple: "), 1)

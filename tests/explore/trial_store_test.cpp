@@ -81,6 +81,7 @@ TEST_F(TrialStoreTest, AnotherVersionOrFolderIsRefused) {
     std::ofstream(folder_.path() / "file") << "a";
     EXPECT_THROW(TrialStore(folder_.path() / "file"), InputError);
     EXPECT_THROW(TrialStore(folder_.path() / "no" / "such"), InputError);
+    EXPECT_THROW(TrialStore(folder_.path() / "file" / "such"), InputError);
 }
 
 }  // namespace
