@@ -62,6 +62,7 @@ std::string report_page(const std::string& title, const nlohmann::ordered_json& 
                         const std::vector<PackedPlane>& planes) {
     return filled_page(page::kHtml, {{"@TITLE@", html_text(title)},
                                      {"@STYLE@", std::string(page::kStyle)},
+                                     {"@SUBTITLE@", ""},  // of the data
                                      {"@LICENCE@", std::string(page::kChartsLicence)},
                                      {"@CHARTS@", std::string(page::kCharts)},
                                      {"@DATA@", script_json(data)},
