@@ -62,12 +62,7 @@ void add_explore(Command& app, Action& action) {
     command.add_option("SPACE", arguments->space, "what to try, a TOML file (docs/explore.md)")
         .required()
         .input();
-    command
-        .add_option("-o,--output", arguments->results,
-                    "folder of results; those that it has are kept")
-        .type_name("RESULTS")
-        .required()
-        .output();
+    add_results(command, arguments->results);
     add_budget(command, arguments->options);
     command.add_flag("--no-report", arguments->no_report, "leave out report.html");
     add_threads(command, action.options);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "apps/arguments/command_line.h"
 #include "apps/interrupt.h"
 #include "apps/report/number_text.h"
 #include "apps/report/own_command.h"
@@ -12,6 +13,7 @@
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "explore/results_page.h"
+#include "explore/results_table.h"
 #include "report/run_report.h"
 
 namespace stipple {
@@ -50,6 +52,13 @@ void run_points(Exploration& exploration, Progress& progress) {
 
 }  // namespace
 
+void add_results(Command& command, std::string& results) {
+    command.add_option("-o,--output", results, "folder of results; those that it has are kept")
+        .type_name("RESULTS")
+        .required()
+        .output();
+}
+
 Exploration explored(const ExploreRun& what, const RunOptions& run) {
     ExploreOptions options = what.options;
     options.force = run.force;
@@ -60,7 +69,7 @@ Exploration explored(const ExploreRun& what, const RunOptions& run) {
                           "point");
         run_points(exploration, progress);
     }
-    exploration.store().write("table.csv", exploration.csv());
+    exploration.store().write("table.csv", csv_table(exploration));
     if (!what.no_report) {
         exploration.store().write("report.html",
                                   results_page(exploration, what.space, own_command()));

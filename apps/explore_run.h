@@ -14,6 +14,9 @@ struct ExploreRun {
     bool no_report = false;
 };
 
+/// The option -o RESULTS.
+void add_results(Command& command, std::string& results);
+
 /// Runs all points of the space, until a signal asks to stop, and writes table.csv and report.html
 /// into the results. \throws InputError, DeviceError.
 [[nodiscard]] Exploration explored(const ExploreRun& what, const RunOptions& run);

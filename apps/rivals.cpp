@@ -4,6 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "apps/arguments/sensor.h"
@@ -12,6 +15,7 @@
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
+#include "explore/results_table.h"
 
 namespace stipple {
 namespace {
@@ -63,18 +67,23 @@ std::string table_of(const Exploration& exploration) {
     return text;
 }
 
+nlohmann::ordered_json json_of(const TableValue& value) {
+    return std::visit(
+        [](const auto& known) -> nlohmann::ordered_json {
+            if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
+                return nullptr;
+            else
+                return known;  // an infinite number becomes null
+        },
+        value);
+}
+
 nlohmann::ordered_json json_of(const Exploration& exploration) {
-    const Space& space = exploration.space();
     auto systems = nlohmann::ordered_json::array();
-    for (std::uint64_t number = 0; number < space.size(); ++number) {
-        const ExploredPoint& point = exploration.points()[number];
+    for (std::uint64_t number = 0; number < exploration.points().size(); ++number) {
         nlohmann::ordered_json entry;
-        for (std::size_t i = 0; const std::string& value : space.point(number))
-            entry[space.axes[i++].name] = value;
-        for (const FigureColumn& column : kFigureColumns)
-            entry[std::string(column.name)] =
-                point.figures ? point.figures.value().*column.value : TrialFigures::kNone;
-        entry["problem"] = point.problem;
+        for (const auto& [column, value] : table_row(exploration, number))
+            entry[column] = json_of(value);
         systems.push_back(std::move(entry));
     }
     return {{"systems", systems}};
@@ -103,12 +112,7 @@ void add_rivals(Command& app, Action& action) {
                     "footage in linear light, or a scene of \"stipple list scenes\"")
         .required()
         .input();
-    command
-        .add_option("-o,--output", arguments->results,
-                    "folder of results; those that it has are kept")
-        .type_name("RESULTS")
-        .required()
-        .output();
+    add_results(command, arguments->results);
     add_sensor(command, arguments->sensor);
     command
         .add_option("--space", arguments->space,

@@ -46,17 +46,6 @@ double score(const TrialFigures& figures, const FigureColumn& column) {
     return column.better == Better::kMore ? value : -value;
 }
 
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-    return quoted + "\"";
-}
-
-std::string csv_field(double value) {
-    return std::isnan(value) ? std::string() : fmt::format("{:.12g}", value);
-}
-
 }  // namespace
 
 Exploration::Exploration(const std::filesystem::path& space, const std::filesystem::path& results,
@@ -221,25 +210,6 @@ std::uint64_t Exploration::most_trials() const {
         points = (points + 1) / 2;
     }
     return trials;
-}
-
-std::string Exploration::csv() const {
-    std::string text;
-    for (const SpaceAxis& axis : space_.axes) text += csv_field(axis.name) + ",";
-    for (const FigureColumn& column : kFigureColumns) text += fmt::format("{},", column.name);
-    text += "limited_by,rung,slots,problem\n";
-    for (std::uint64_t number = 0; number < points_.size(); ++number) {
-        const ExploredPoint& point = points_[number];
-        if (!point.touched) continue;
-        for (const std::string& value : space_.point(number)) text += csv_field(value) + ",";
-        const TrialFigures figures = point.figures.value_or(TrialFigures());
-        for (const FigureColumn& column : kFigureColumns)
-            text += csv_field(figures.*column.value) + ",";
-        text += csv_field(figures.limited_by) + ",";
-        text += point.figures ? fmt::format("{},{},", point.rung, point.slots) : ",,";
-        text += csv_field(point.problem) + "\n";
-    }
-    return text;
 }
 
 }  // namespace stipple

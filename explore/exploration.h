@@ -85,8 +85,6 @@ class Exploration {
     [[nodiscard]] double spent() const { return spent_; }
     /// Trials of all rungs, at most.
     [[nodiscard]] std::uint64_t most_trials() const;
-    /// As RFC 4180 has it: the points that were reached, the names of the columns first.
-    [[nodiscard]] std::string csv() const;
     /// Whether the footage of a point has no more slots than these.
     [[nodiscard]] bool is_whole(std::uint64_t number, int slots) const;
     /// Numbers of the points with figures, best ones first.

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "explore/exploration.h"
 #include "explore/results_page.h"
+#include "explore/results_table.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 
@@ -104,7 +105,7 @@ class RunExploration {
         advance();
     }
     void write(bool report) const {
-        exploration_.store().write("table.csv", exploration_.csv());
+        exploration_.store().write("table.csv", csv_table(exploration_));
         if (report)
             exploration_.store().write("report.html", results_page(exploration_, space_name_, ""));
     }
@@ -140,19 +141,11 @@ class RunExploration {
 
 py::list RunExploration::rows() const {
     py::list rows;
-    const Space& space = exploration_.space();
-    for (std::uint64_t number = 0; number < space.size(); ++number) {
-        const ExploredPoint& point = exploration_.points()[number];
-        if (!point.touched) continue;
-        const SpacePoint values = space.point(number);
+    for (std::uint64_t number = 0; number < exploration_.points().size(); ++number) {
+        if (!exploration_.points()[number].touched) continue;
         py::dict row;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            row[py::str(space.axes[i].name)] = values[i];
-        row.attr("update")(dict_of_figures(point.figures.value_or(TrialFigures())));
-        const bool has_figures = point.figures.has_value();
-        row["rung"] = has_figures ? py::object(py::int_(point.rung)) : py::none();
-        row["slots"] = has_figures ? py::object(py::int_(point.slots)) : py::none();
-        row["problem"] = point.problem;
+        for (const auto& [column, value] : table_row(exploration_, number))
+            row[py::str(column)] = value;
         rows.append(row);
     }
     return rows;

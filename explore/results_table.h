@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace stipple {
+
+class Exploration;
+
+/// Nothing, a text, a figure or a count.
+using TableValue = std::variant<std::monostate, std::string, double, int>;
+
+struct TableCell {
+    std::string column;
+    TableValue value;
+};
+
+/// Point `number` in the columns of docs/explore.md: the values of its axes, its figures,
+/// `limited_by`, `rung`, `slots` and `problem`. A figure that does not exist is nothing.
+[[nodiscard]] std::vector<TableCell> table_row(const Exploration& exploration,
+                                               std::uint64_t number);
+
+/// The points that were reached as RFC 4180 has it, the names of the columns first.
+[[nodiscard]] std::string csv_table(const Exploration& exploration);
+
+}  // namespace stipple
