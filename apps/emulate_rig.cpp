@@ -18,14 +18,12 @@
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"
-#include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/pending_output.h"
 #include "readout/footage_origin.h"
-#include "readout/light_warp.h"
 #include "readout/rig.h"
 #include "readout/rig_figures.h"
-#include "readout/stream_recorder.h"
+#include "readout/rig_recorder.h"
 #include "report/json_figures.h"
 
 namespace stipple {
@@ -37,41 +35,12 @@ bool is_rig_file(std::string_view name) {
     return name == kRigFile || name.ends_with(".stipple");
 }
 
-/// A sensor at work: the light is warped to it, from its first slot on.
-class SensorRun {
-  public:
-    SensorRun(const RigSensor& sensor, const SensorSetup& setup, const fs::path& folder,
-              const FootageOrigin& origin)
-        : sensor_(sensor),
-          warp_(sensor.from_reference, setup.footage),
-          recorder_(folder / sensor.file(), setup, {.provenance = provenance_of(setup, origin)}) {}
-
-    void expose(std::int64_t slot, std::span<const float> frame) {
-        if (slot >= sensor_.phase_slots) recorder_.expose(warp_(frame));
-    }
-    /// \throws InputError if the footage ends before its first slot.
-    void check(std::int64_t slots) const {
-        if (recorder_.stats().slots == 0)
-            throw InputError(fmt::format("sensor \"{}\" of the rig", sensor_.name),
-                             fmt::format("begins at slot {}, but the footage has {}",
-                                         sensor_.phase_slots, counted(slots, "slot")));
-    }
-    void finish() { recorder_.finish(); }
-    [[nodiscard]] const RigSensor& sensor() const { return sensor_; }
-    [[nodiscard]] const StreamRecorder& recorder() const { return recorder_; }
-
-  private:
-    const RigSensor& sensor_;
-    LightWarp warp_;
-    StreamRecorder recorder_;
-};
-
 /// True at the end of the footage, false after a signal.
-bool expose_all(ResampledFootage& slots, std::list<SensorRun>& runs, FrameWriter* truth,
+bool expose_all(ResampledFootage& slots, std::list<RigRecorder>& runs, FrameWriter* truth,
                 Progress& progress) {
     auto frame = slots.next();
     for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
-        for (SensorRun& sensor : runs) sensor.expose(progress.done(), frame);
+        for (RigRecorder& sensor : runs) sensor.expose(progress.done(), frame);
         if (truth != nullptr) truth->write(frame);
         progress.advance();
     }
@@ -88,10 +57,10 @@ std::string rig_text(const Config& config, const Rig& rig, const fs::path& folde
     return text;
 }
 
-nlohmann::ordered_json rig_json(const std::list<SensorRun>& runs, const RigTotals& totals,
+nlohmann::ordered_json rig_json(const std::list<RigRecorder>& runs, const RigTotals& totals,
                                 double slots_per_second) {
     nlohmann::ordered_json json{{"sensors", nlohmann::ordered_json::array()}};
-    for (const SensorRun& run : runs) {
+    for (const RigRecorder& run : runs) {
         nlohmann::ordered_json figures{{"name", run.sensor().name}, {"share", run.sensor().share}};
         figures.update(emulation_json(run.recorder(), slots_per_second));
         json["sensors"].push_back(figures);
@@ -111,11 +80,11 @@ std::string totals_text(const RigTotals& totals) {
 
 /// Says what there is to say of each sensor and of the rig.
 void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& json,
-          const std::list<SensorRun>& runs, double slots_per_second) {
+          const std::list<RigRecorder>& runs, double slots_per_second) {
     RigTotals totals;
-    for (const SensorRun& sensor : runs) totals.add(sensor.recorder(), sensor.sensor().share);
+    for (const RigRecorder& sensor : runs) totals.add(sensor.recorder(), sensor.sensor().share);
     json.write(rig_json(runs, totals, slots_per_second));
-    for (const SensorRun& sensor : runs)
+    for (const RigRecorder& sensor : runs)
         run.say(fmt::format("{}: {}",
                             (fs::path(arguments.output) / sensor.sensor().file()).string(),
                             emulation_text(sensor.recorder(), slots_per_second)));
@@ -143,18 +112,18 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
         truth = std::make_unique<FrameWriter>(arguments.truth, first.footage,
                                               FrameWriterOptions{.force = run.force});
     const FootageOrigin origin = footage_origin(arguments);
-    std::list<SensorRun> runs;
+    std::list<RigRecorder> runs;
     for (std::size_t i = 0; i < setups.size(); ++i)
-        runs.emplace_back(rig.sensors[i], setups[i], folder.partial(), origin);
+        runs.emplace_back(rig.sensors[i], setups[i], folder.partial() / rig.sensors[i].file(),
+                          StreamRecorderOptions{.provenance = provenance_of(setups[i], origin)});
     Progress progress(run, "emulating", slots.slots());
     const bool at_end = expose_all(slots, runs, truth.get(), progress);
     if (progress.done() == 0) {
         throw_if_stopped();
         refuse_short_footage(arguments.footage);
     }
-    for (const SensorRun& sensor : runs) sensor.check(progress.done());
+    for (RigRecorder& sensor : runs) sensor.finish(progress.done());
     if (truth) truth->finish();
-    for (SensorRun& sensor : runs) sensor.finish();
     write_whole(folder.partial() / kRigFile, (fs::path(arguments.output) / kRigFile).string(),
                 rig_text(config, rig, folder.partial()));
     folder.commit();
