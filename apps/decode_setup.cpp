@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/dictionary_file.h"
 #include "apps/fixed_pattern.h"
 #include "apps/standard_error.h"
 #include "calibration/calibration_file.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "explore/dictionary_file.h"
 
 namespace stipple {
 

@@ -15,9 +15,9 @@
 #include "core/parsed_number.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
+#include "explore/dictionary_file.h"
 #include "explore/trial_picture.h"
 #include "io/footage_reader.h"
-#include "io/npy_volume.h"
 #include "readout/stream_recorder.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
@@ -149,6 +149,20 @@ DecodeReport decode_stream(const fs::path& stream, const DecodeOptions& options,
     return report;
 }
 
+/// The method and its options; `keys` gets what identifies them: the given keys as lines of TOML, a
+/// dictionary by its bytes.
+DecodeOptions decoding_of(const std::string& method, std::vector<std::string> settings,
+                          std::string& keys) {
+    Config config(settings, "decoder");
+    DecodeOptions options = read_decode_options(decode_method_from_name(method), config);
+    read_dictionary(options);
+    std::erase_if(settings, [](const std::string& s) { return s.starts_with("dictionary="); });
+    keys = Config(settings).as_toml("");
+    if (const std::string& file = options.hitomi2011.dictionary_file; !file.empty())
+        keys += fmt::format("# dictionary {}\n", origin_of(file, {}, [] {}).sha256);
+    return options;
+}
+
 }  // namespace
 
 bool is_scene(const std::string& footage) {
@@ -184,14 +198,10 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
                               .settings = settings_of(space, point, "sensor"),
                               .schedule_settings = settings_of(space, point, "schedule"),
                               .seed = seed_of(space.value(point, "seed"))};
-    const DecodeMethod method = decode_method_from_name(space.value(point, "method"));
-    Config config(settings_of(space, point, "decoder"), "decoder");
-    DecodeOptions decoding = read_decode_options(method, config);
-    if (const std::string& file = decoding.hitomi2011.dictionary_file; !file.empty()) {
-        const NpyVolume volume = read_npy_volume(file);
-        decoding.hitomi2011.dictionary =
-            patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
-    }
+    const std::string& method = space.value(point, "method");
+    std::string decoder_keys;
+    DecodeOptions decoding =
+        decoding_of(method, settings_of(space, point, "decoder"), decoder_keys);
     SensorSetup setup = set_up_sensor(choice, light.video.shape());
     const FrameShape shape = light.video.shape();
     TimedWindow window = timed_window(space, choice, setup);
@@ -200,7 +210,7 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
         "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {} {}\n{}\nmethod {}\n{}",
         version(), recorded, shape.rows, shape.cols, shape.planes, window.shape.rows,
         window.shape.cols, window.keys, provenance_of(setup, light.origin),
-        space.value(point, "method"), config.as_toml(""));
+        method, decoder_keys);
     return {std::move(setup), std::move(window), std::move(decoding), recorded,
             std::move(identity)};
 }

@@ -18,7 +18,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "io/npy_volume.h"
+#include "explore/dictionary_file.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
@@ -49,11 +49,7 @@ DecodeTask decode_task(const std::string& method, const py::dict& settings, bool
                     .given = config.as_toml(""),
                     .strict = strict,
                     .until = until};
-    if (const std::string& file = task.options.hitomi2011.dictionary_file; !file.empty()) {
-        const NpyVolume volume = reading(file, [&] { return read_npy_volume(file); });
-        task.options.hitomi2011.dictionary =
-            patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
-    }
+    reading(task.options.hitomi2011.dictionary_file, [&] { read_dictionary(task.options); });
     task.options.fill_gaps = fill_gaps;
     return task;
 }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/dictionary_file.h"
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/parallel.h"
@@ -15,6 +14,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
+#include "explore/dictionary_file.h"
 #include "io/footage_reader.h"
 #include "io/npy_writer.h"
 #include "metrics/video_quality.h"
