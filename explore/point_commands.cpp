@@ -22,21 +22,26 @@ toml::array only(const std::string& value) {
     return toml::array{value};
 }
 
-/// The settings of `decode`, or those of `emulate`.
-std::string settings(const Space& space, const SpacePoint& point, bool of_decoder) {
+/// The options --set of a section.
+std::string settings(const Space& space, const SpacePoint& point, const std::string& section) {
     std::string text;
-    for (std::size_t i = 0; i < point.size(); ++i) {
-        const std::string& name = space.axes[i].name;
-        if (name.find('.') != std::string::npos && name.starts_with("decoder.") == of_decoder &&
-            !point[i].empty())
-            text += " --set " + shell_quoted(fmt::format("{}={}", name, point[i]));
-    }
+    for (const std::string& setting : space.settings(point, section))
+        text += " --set " + shell_quoted(fmt::format("{}.{}", section, setting));
     return text;
 }
 
 /// A name that does not look like an option.
 std::string operand(const std::string& name) {
     return shell_quoted(name.starts_with('-') ? "./" + name : name);
+}
+
+/// Whether the other commands can make the point: to a rig as it is they can tell its own keys
+/// only.
+bool has_steps(const Space& space, const SpacePoint& point) {
+    return space.rig(point).empty() ||
+           (space.value(point, "sensor") == SensorChoice().sensor &&
+            space.value(point, "seed") == std::to_string(SensorChoice().seed) &&
+            space.settings(point, "sensor").empty());
 }
 
 std::string steps(const Space& space, const SpacePoint& point, int slots) {
@@ -49,12 +54,18 @@ std::string steps(const Space& space, const SpacePoint& point, int slots) {
                            space.scene.planes == 1 ? " --luminance" : "");
         footage = "scene.npy";
     }
-    text +=
-        fmt::format("stipple emulate {} -o clip.stipple --sensor {} --schedule {} --seed {}{}\n",
-                    footage, operand(value("sensor")), operand(value("schedule")),
-                    shell_quoted(value("seed")), settings(space, point, false));
-    text += fmt::format("stipple decode clip.stipple -o decoded.npy --method {}{}\n",
-                        shell_quoted(value("method")), settings(space, point, true));
+    const std::string rig = space.rig(point);
+    const std::string stream = rig.empty() ? "clip.stipple" : "clip";
+    if (rig.empty())
+        text += fmt::format("stipple emulate {} -o {} --sensor {} --schedule {} --seed {}{}{}\n",
+                            footage, stream, operand(value("sensor")), operand(value("schedule")),
+                            shell_quoted(value("seed")), settings(space, point, "sensor"),
+                            settings(space, point, "schedule"));
+    else
+        text += fmt::format("stipple emulate {} -o {} --rig {}{}\n", footage, stream, operand(rig),
+                            settings(space, point, "rig"));
+    text += fmt::format("stipple decode {} -o decoded.npy --method {}{}\n", stream,
+                        shell_quoted(value("method")), settings(space, point, "decoder"));
     const QualityOptions quality = trial_quality(slots);
     return text + fmt::format("stipple compare decoded.npy {} --margin {} --max-value {}\n",
                               footage, quality.margin, *quality.max_value);
@@ -91,7 +102,8 @@ std::string point_commands(const Space& space, const SpacePoint& point, int slot
     std::string text =
         fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point\n",
                     point_space(space, point, slots));
-    if (is_whole) text += "\n# the same step by step\n" + steps(space, point, slots);
+    if (is_whole && has_steps(space, point))
+        text += "\n# the same step by step\n" + steps(space, point, slots);
     return text;
 }
 

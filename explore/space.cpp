@@ -20,15 +20,20 @@ namespace {
 
 constexpr int kMaxCount = 10'000;
 
-/// Axes that every space has, slowest first; those with a default may be left out.
+constexpr const char* kTwoSchedules =
+    "stands beside a schedule, but the sensors of a rig have their own; leave out one";
+
+/// Axes of a name, slowest first; those with a default may be left out.
 struct NamedAxis {
     std::string_view name;
     const char* fallback;
+    bool of_systems = false;  ///< set by them, if there are any
 };
-constexpr std::array<NamedAxis, 5> kNamedAxes{{{"footage", "pan"},
+constexpr std::array<NamedAxis, 6> kNamedAxes{{{"footage", "pan"},
                                                {"sensor", nullptr},
-                                               {"schedule", "random"},
-                                               {"method", "fast"},
+                                               {"schedule", "random", true},
+                                               {"rig", "", true},
+                                               {"method", "fast", true},
                                                {"seed", "1"}}};
 
 /// Reads the tables of a space; messages name the file and the key.
@@ -142,16 +147,18 @@ const toml::table& SpaceReader::section(const toml::table& tables, const std::st
 
 void SpaceReader::check_setting(const std::string& name) const {
     if (!name.starts_with("sensor.") && !name.starts_with("schedule.") &&
-        !name.starts_with("decoder."))
+        !name.starts_with("decoder.") && !name.starts_with("rig."))
         fail("set." + name,
-             "begins neither with sensor. nor schedule. nor decoder.; put it "
+             "begins neither with sensor. nor schedule. nor decoder. nor rig.; put it "
              "into quotes: \"sensor.bit_depth\" = [8, 10]");
 }
 
 SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key) const {
-    check_keys(table, key, {"name", "schedule", "method", "set"});
+    check_keys(table, key, {"name", "schedule", "rig", "method", "set"});
+    const bool has_rig = table.contains("rig");
+    if (has_rig && table.contains("schedule")) fail(key + ".rig", kTwoSchedules);
     SpaceSystem system;
-    for (const char* name : {"name", "schedule", "method"}) {
+    for (const char* name : {"name", has_rig ? "rig" : "schedule", "method"}) {
         const toml::node* node = table.get(name);
         if (node == nullptr) fail(key + "." + name, "is missing");
         const std::string value = text(key + "." + name, *node);
@@ -163,6 +170,10 @@ SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key
     for (const auto& [setting, node] : section(table, "set")) {
         const std::string name(setting.str());
         check_setting(name);
+        if (name.starts_with(has_rig ? "schedule." : "rig."))
+            fail(fmt::format("{}.set.{}", key, name),
+                 has_rig ? "is a key of one sensor, but the system has a rig: use rig.NAME.set"
+                         : "is a key of a rig, but the system has none");
         system.values.emplace_back(name, text(fmt::format("{}.set.{}", key, name), node));
     }
     return system;
@@ -192,11 +203,13 @@ void SpaceReader::add_systems(Space& space, const toml::node* list) const {
 
 void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
     const toml::table& axes = section(tables, "axes");
-    check_keys(axes, "axes", {"footage", "sensor", "schedule", "method", "seed"});
+    check_keys(axes, "axes", {"footage", "sensor", "schedule", "rig", "method", "seed"});
+    const bool has_rig = axes.contains("rig");
+    if (has_rig && axes.contains("schedule")) fail("axes.rig", kTwoSchedules);
     const toml::node* systems = tables.get("systems");
-    for (const auto& [name, fallback] : kNamedAxes) {
+    for (const auto& [name, fallback, of_system] : kNamedAxes) {
         const toml::node* node = axes.get(name);
-        const bool of_systems = systems != nullptr && (name == "schedule" || name == "method");
+        const bool of_systems = systems != nullptr && of_system;
         if (node != nullptr && of_systems)
             fail("axes." + std::string(name), "is set by each of the systems; leave it out");
         if (node == nullptr && fallback == nullptr)
@@ -204,8 +217,8 @@ void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
                  "is missing; name a sensor of \"stipple list sensors\", or several");
         if (node != nullptr)
             space.axes.push_back({std::string(name), values("axes." + std::string(name), *node)});
-        else
-            space.axes.push_back({std::string(name), {of_systems ? "" : fallback}});
+        else if (const bool is_set = of_systems || (has_rig && name == "schedule"); name != "rig")
+            space.axes.push_back({std::string(name), {is_set ? "" : fallback}});
     }
     add_systems(space, systems);
     for (const auto& [key, node] : section(tables, "set")) {
@@ -248,7 +261,30 @@ void Space::replace(const SpaceAxis& other) {
             std::ranges::find(systems, value, &SpaceSystem::name) == systems.end())
             throw InputError(fmt::format("system \"{}\"", value),
                              "is none of " + joined(found->values));
-    found->values = other.values;
+    bool of_systems = false;
+    for (SpaceSystem& system : systems)
+        for (auto& [name, value] : system.values)
+            if (name == other.name) {
+                value = other.values.front();
+                of_systems = true;
+            }
+    if (!of_systems) found->values = other.values;
+}
+
+std::string Space::rig(const SpacePoint& point) const {
+    const std::size_t place = axis("rig");
+    return place == axes.size() ? "" : point[place];
+}
+
+std::vector<std::string> Space::settings(const SpacePoint& point, std::string_view section) const {
+    std::vector<std::string> settings;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+        const std::string& name = axes[i].name;
+        if (name.starts_with(section) && name.size() > section.size() &&
+            name[section.size()] == '.' && !point[i].empty())
+            settings.push_back(fmt::format("{}={}", name.substr(section.size() + 1), point[i]));
+    }
+    return settings;
 }
 
 std::uint64_t Space::size() const {

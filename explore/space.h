@@ -13,14 +13,15 @@ namespace stipple {
 
 /// The values that one property of a trial takes.
 struct SpaceAxis {
-    std::string name;  ///< "sensor", "schedule", "footage", "method", "seed", or a key of --set
+    std::string
+        name;  ///< "sensor", "schedule", "rig", "footage", "method", "seed", or a key of --set
     std::vector<std::string> values;
 };
 
 /// A choice of one value of each axis, in their order. An empty value stands for the default.
 using SpacePoint = std::vector<std::string>;
 
-/// Values that belong together, such as a schedule, the keys that it needs, and a method.
+/// Values that belong together, such as a schedule or a rig, the keys that it needs, and a method.
 struct SpaceSystem {
     std::string name;                                         ///< value of the axis "system"
     std::vector<std::pair<std::string, std::string>> values;  ///< axis and value
@@ -31,25 +32,33 @@ struct SpaceSystem {
 struct Space {
     static constexpr std::uint64_t kMaxPoints = 100'000;
 
-    std::vector<SpaceAxis> axes;  ///< footage, sensor, schedule, method, seed, system, the keys
-    std::vector<SpaceSystem> systems;  ///< if any, they set schedule, method and some of the keys
-    int frames = 32;                   ///< slots of each trial, at most
+    /// footage, sensor, schedule, rig (if a point has one), method, seed, system, the keys.
+    std::vector<SpaceAxis> axes;
+    /// If any, they set schedule or rig, method and some of the keys.
+    std::vector<SpaceSystem> systems;
+    int frames = 32;                                        ///< slots of each trial, at most
     FrameShape scene{.rows = 48, .cols = 64, .planes = 1};  ///< of embedded scenes
     /// The window whose readout is timed; 0: that of the clip.
     FrameShape readout{.rows = 0, .cols = 0, .planes = 1};
     std::string readout_sensor;  ///< the sensor whose clocks time it; empty: that of the point
 
-    /// Gives an axis other values. \throws InputError if there is none of this name, or no system
-    /// of a name.
+    /// Gives an axis other values; one that systems set, the first of them in each that does.
+    /// \throws InputError if there is none of this name, or no system of a name.
     void replace(const SpaceAxis& axis);
     [[nodiscard]] std::uint64_t size() const;
     /// Point `number` of size(); the last axis changes fastest.
     [[nodiscard]] SpacePoint point(std::uint64_t number) const;
-    /// The index of the axis `name`, which there is.
+    /// The index of the axis `name`; the number of axes if there is none.
     [[nodiscard]] std::size_t axis(std::string_view name) const;
+    /// The value of the axis `name`, which there is.
     [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const {
         return point[axis(name)];
     }
+    /// The rig of a point; empty: it has one sensor.
+    [[nodiscard]] std::string rig(const SpacePoint& point) const;
+    /// The keys of `section` that a point sets, as "KEY=VALUE".
+    [[nodiscard]] std::vector<std::string> settings(const SpacePoint& point,
+                                                    std::string_view section) const;
 };
 
 /// The space that a TOML text describes; messages call it `name`. \throws InputError naming the

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 #include <limits>
+#include <list>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -12,13 +15,14 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/parsed_number.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
 #include "explore/dictionary_file.h"
+#include "explore/point_rig.h"
 #include "explore/trial_picture.h"
 #include "io/footage_reader.h"
-#include "readout/stream_recorder.h"
+#include "readout/rig_figures.h"
+#include "readout/rig_recorder.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
 #include "stream/stream_reader.h"
@@ -42,40 +46,25 @@ TrialLight render_scene(const Space& space, const std::string& name, const KeepG
     return light;
 }
 
-/// The settings of a point whose keys begin with `section` and a dot, without these.
-std::vector<std::string> settings_of(const Space& space, const SpacePoint& point,
-                                     std::string_view section) {
-    std::vector<std::string> settings;
-    for (std::size_t i = 0; i < point.size(); ++i) {
-        const std::string& name = space.axes[i].name;
-        if (name.starts_with(section) && name.size() > section.size() &&
-            name[section.size()] == '.' && !point[i].empty())
-            settings.push_back(fmt::format("{}={}", name.substr(section.size() + 1), point[i]));
+/// Stops between the brightest light that the shortest exposure of any sensor measures and the
+/// light that is as strong as the read noise of the longest one.
+double dynamic_range_stops(const std::vector<SensorSetup>& setups) {
+    double brightest = 0, darkest = std::numeric_limits<double>::infinity();
+    for (const SensorSetup& setup : setups) {
+        const ExposureSchedule& schedule = setup.schedule.schedule;
+        // The quantisation of the converter is noise too, of a uniform distribution.
+        const double noise_e = std::hypot(setup.params.temporal_read_noise_e(),
+                                          setup.params.gain_e_per_dn() / std::sqrt(12.0));
+        for (int row = 0; row < schedule.tile_rows(); ++row)
+            for (int col = 0; col < schedule.tile_cols(); ++col)
+                for (const Exposure& exposure : schedule.exposures(row, col)) {
+                    const double gain = setup.params.electrons_per_unit() *
+                                        schedule.light_slots(row, col, exposure);
+                    brightest = std::max(brightest, setup.params.saturation_e() / gain);
+                    darkest = std::min(darkest, noise_e / gain);
+                }
     }
-    return settings;
-}
-
-std::uint64_t seed_of(const std::string& text) {
-    if (const auto seed = parsed_number<std::uint64_t>(text)) return *seed;
-    throw InputError("seed", fmt::format("\"{}\" is no whole number", text));
-}
-
-/// Stops between the brightest light that the shortest exposure measures and the light that is as
-/// strong as the read noise of the longest one.
-double dynamic_range_stops(const SensorSetup& setup) {
-    const ExposureSchedule& schedule = setup.schedule.schedule;
-    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-    for (int row = 0; row < schedule.tile_rows(); ++row)
-        for (int col = 0; col < schedule.tile_cols(); ++col)
-            for (const Exposure& exposure : schedule.exposures(row, col)) {
-                const double slots = schedule.light_slots(row, col, exposure);
-                shortest = std::min(shortest, slots);
-                longest = std::max(longest, slots);
-            }
-    // The quantisation of the converter is noise too, of a uniform distribution.
-    const double noise_e = std::hypot(setup.params.temporal_read_noise_e(),
-                                      setup.params.gain_e_per_dn() / std::sqrt(12.0));
-    return std::log2(setup.params.saturation_e() / shortest * longest / noise_e);
+    return std::log2(brightest / darkest);
 }
 
 TimedWindow timed_window(const Space& space, SensorChoice choice, const SensorSetup& setup) {
@@ -95,52 +84,96 @@ TimedWindow timed_window(const Space& space, SensorChoice choice, const SensorSe
     return window;
 }
 
-/// Rate, bandwidth and energy, by the timing of the sensor if it has one.
+/// Rate, bandwidth and energy of all sensors, by their timing if they have one. The slowest one
+/// limits the rate.
 void add_readout(const Trial& trial, double bits_per_slot, TrialFigures& figures) {
-    figures.slots_per_second = 1e6 / trial.setup.params.slot_us;
+    figures.slots_per_second = 1e6 / trial.setups.front().params.slot_us;
     figures.limited_by = "slot";
-    if (const TimedWindow& window = trial.window; window.timing) {
-        const ReadoutRate rate = rate_of(*window.timing, window.schedule.schedule, window.shape);
-        const double period = window.schedule.schedule.period_slots();
-        figures.readout_slots_per_second = rate.coded_hz;
-        if (rate.coded_hz < figures.slots_per_second) {
-            figures.slots_per_second = rate.coded_hz;
-            figures.limited_by = name_of(rate.slowest.limit);
+    if (std::ranges::all_of(trial.windows,
+                            [](const TimedWindow& w) { return w.timing.has_value(); })) {
+        bits_per_slot = 0;
+        figures.energy_uj_per_slot = 0;
+        figures.readout_slots_per_second = std::numeric_limits<double>::infinity();
+        for (const TimedWindow& window : trial.windows) {
+            const ReadoutRate rate =
+                rate_of(*window.timing, window.schedule.schedule, window.shape);
+            const double period = window.schedule.schedule.period_slots();
+            figures.readout_slots_per_second =
+                std::min(figures.readout_slots_per_second, rate.coded_hz);
+            if (rate.coded_hz < figures.slots_per_second) {
+                figures.slots_per_second = rate.coded_hz;
+                figures.limited_by = name_of(rate.slowest.limit);
+            }
+            bits_per_slot += static_cast<double>(rate.period.bits) / period;
+            figures.energy_uj_per_slot += 1e-6 * rate.period.energy_pj / period;
         }
-        bits_per_slot = static_cast<double>(rate.period.bits) / period;
-        figures.energy_uj_per_slot = 1e-6 * rate.period.energy_pj / period;
     }
     figures.megabits_per_second = 1e-6 * bits_per_slot * figures.slots_per_second;
 }
 
-/// Removes a stream that only its trial needs.
-struct RemovedStream {
-    const fs::path& file;
-    ~RemovedStream() {
-        std::error_code error;
-        fs::remove(file, error);
+/// Samples of all sensors in a steady slot over the voxels of the decoded video.
+double samples_per_voxel(const std::vector<SensorSetup>& setups) {
+    double samples = 0;
+    for (const SensorSetup& setup : setups)
+        samples += setup.schedule.schedule.samples_per_pixel_slot() * setup.shape.planes /
+                   setup.footage.planes;
+    return samples;
+}
+
+/// The files of a trial's streams, in the order of its sensors; removed in the end.
+class TrialStreams {
+  public:
+    TrialStreams(const fs::path& first, std::size_t count) : files_{first} {
+        while (files_.size() < count)
+            files_.push_back(fs::path(first).replace_extension(
+                fmt::format("{}{}", files_.size() + 1, first.extension().string())));
     }
+    TrialStreams(const TrialStreams&) = delete;
+    TrialStreams& operator=(const TrialStreams&) = delete;
+    ~TrialStreams() {
+        std::error_code error;
+        for (const fs::path& file : files_) fs::remove(file, error);
+    }
+    [[nodiscard]] const std::vector<fs::path>& files() const { return files_; }
+
+  private:
+    std::vector<fs::path> files_;
 };
 
-/// The figures of the recorder; the stream is in place afterwards.
-void record(const Trial& trial, const FluxVideo& truth, const fs::path& stream,
+/// The figures of the recorders; the streams are in place afterwards.
+void record(const Trial& trial, const FluxVideo& truth, const TrialStreams& streams,
             const KeepGoing& keep_going, TrialFigures& figures) {
-    StreamRecorder recorder(stream, trial.setup, {.force = true});
+    std::list<RigRecorder> recorders;
+    for (std::size_t i = 0; i < trial.setups.size(); ++i)
+        recorders.emplace_back(trial.rig.sensors[i], trial.setups[i], streams.files()[i],
+                               StreamRecorderOptions{.force = true});
     for (int slot = 0; slot < trial.slots; ++slot) {
         check(keep_going);
-        recorder.expose(truth.frame(slot));
+        for (RigRecorder& recorder : recorders) recorder.expose(slot, truth.frame(slot));
     }
-    recorder.finish();
-    add_readout(trial, static_cast<double>(recorder.payload_bits()) / trial.slots, figures);
-    figures.light_throughput = recorder.light_throughput();
+    RigTotals totals;
+    for (RigRecorder& recorder : recorders) {
+        recorder.finish(trial.slots);
+        totals.add(recorder.recorder(), recorder.sensor().share);
+    }
+    add_readout(trial, totals.bits_per_slot, figures);
+    figures.light_throughput = totals.light_collected;
+    figures.samples_per_voxel = samples_per_voxel(trial.setups);
+    figures.dynamic_range_stops = dynamic_range_stops(trial.setups);
 }
 
 /// Decodes with `options` and hands each frame to `take`, until that returns false.
-DecodeReport decode_stream(const fs::path& stream, const DecodeOptions& options,
-                           const FrameSink& take, const KeepGoing& keep_going) {
-    StreamReader reader(stream);
-    const DecodeReport report = decode(
-        reader, options,
+DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
+                            const DecodeOptions& options, const FrameSink& take,
+                            const KeepGoing& keep_going) {
+    std::deque<StreamReader> readers;
+    std::vector<RigStream> streams;
+    for (const RigSensor& sensor : trial.rig.sensors) {
+        readers.emplace_back(files.files()[readers.size()]);
+        streams.push_back({readers.back(), {sensor.from_reference, sensor.phase_slots}});
+    }
+    const DecodeReport report = decode_rig(
+        streams, options,
         [&](std::int64_t slot, std::span<const float> frame) {
             return take(slot, frame) && keep_going();
         },
@@ -193,35 +226,37 @@ TrialLight read_light(const Space& space, const std::string& footage, const Keep
 
 Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight& light,
                    int slots) {
-    const SensorChoice choice{.sensor = space.value(point, "sensor"),
-                              .schedule = space.value(point, "schedule"),
-                              .settings = settings_of(space, point, "sensor"),
-                              .schedule_settings = settings_of(space, point, "schedule"),
-                              .seed = seed_of(space.value(point, "seed"))};
+    PointRig of_point = rig_of(space, point);
     const std::string& method = space.value(point, "method");
     std::string decoder_keys;
-    DecodeOptions decoding =
-        decoding_of(method, settings_of(space, point, "decoder"), decoder_keys);
-    SensorSetup setup = set_up_sensor(choice, light.video.shape());
+    DecodeOptions decoding = decoding_of(method, space.settings(point, "decoder"), decoder_keys);
     const FrameShape shape = light.video.shape();
-    TimedWindow window = timed_window(space, choice, setup);
-    const int recorded = std::min(slots, light.video.slots());
-    std::string identity = fmt::format(
-        "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {} {}\n{}\nmethod {}\n{}",
-        version(), recorded, shape.rows, shape.cols, shape.planes, window.shape.rows,
-        window.shape.cols, window.keys, provenance_of(setup, light.origin),
-        method, decoder_keys);
-    return {std::move(setup), std::move(window), std::move(decoding), recorded,
-            std::move(identity)};
+    Trial trial{.rig = std::move(of_point.rig),
+                .setups = {},
+                .windows = {},
+                .decoding = std::move(decoding),
+                .slots = std::min(slots, light.video.slots()),
+                .identity = {}};
+    trial.setups = set_up_rig(trial.rig, shape);
+    for (std::size_t i = 0; i < trial.setups.size(); ++i)
+        trial.windows.push_back(timed_window(space, trial.rig.sensors[i].choice, trial.setups[i]));
+    const FrameShape window = trial.windows.front().shape;
+    trial.identity = fmt::format(
+        "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {} {}\n{}method {}\n{}",
+        version(), trial.slots, shape.rows, shape.cols, shape.planes, window.rows, window.cols,
+        trial.windows.front().keys, of_point.keys, method, decoder_keys);
+    for (const SensorSetup& setup : trial.setups)
+        trial.identity += "\n" + provenance_of(setup, light.origin);
+    return trial;
 }
 
 TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,
                        const KeepGoing& keep_going) {
     const FluxVideo& truth = light.video;
-    const RemovedStream removed{stream};
+    const TrialStreams streams(stream, trial.setups.size());
     TrialFigures figures;
     TrialPicture picture(truth.shape());
-    record(trial, truth, stream, keep_going, figures);
+    record(trial, truth, streams, keep_going, figures);
     const int shown = trial.slots / 2;
     const bool is_naive = trial.decoding.method == DecodeMethod::kNaive;
     QualityMeter meter(truth.shape(), trial_quality(trial.slots));
@@ -236,17 +271,18 @@ TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::pa
         }
         return true;
     };
-    figures.decode_seconds = decode_stream(stream, trial.decoding, take, keep_going).seconds;
+    figures.decode_seconds =
+        decode_streams(trial, streams, trial.decoding, take, keep_going).seconds;
     const auto take_naive = [&](std::int64_t slot, std::span<const float> frame) {
         if (slot == shown) picture.put(TrialPicture::kNaive, frame);
         return slot < shown;
     };
-    if (!is_naive) decode_stream(stream, {.method = DecodeMethod::kNaive}, take_naive, keep_going);
+    if (!is_naive)
+        decode_streams(trial, streams, {.method = DecodeMethod::kNaive}, take_naive, keep_going);
     const VideoQuality quality = meter.quality();
     figures.psnr_db = quality.psnr_db;
     figures.psnr_gamma_db = quality.psnr_gamma_db;
     figures.pu21_psnr_db = quality.pu21_psnr_db;
-    figures.dynamic_range_stops = dynamic_range_stops(trial.setup);
     return {figures, picture.pixels()};
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/flux_video.h"
 #include "decoder/decode_options.h"
@@ -12,6 +13,7 @@
 #include "io/png_file.h"
 #include "metrics/video_quality.h"
 #include "readout/footage_origin.h"
+#include "readout/rig.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
@@ -53,8 +55,9 @@ struct TimedWindow {
 
 /// A point of a space, set up.
 struct Trial {
-    SensorSetup setup;
-    TimedWindow window;  ///< whose rate, bandwidth and energy are computed
+    Rig rig;                           ///< of one sensor, unless the point names a rig
+    std::vector<SensorSetup> setups;   ///< of its sensors
+    std::vector<TimedWindow> windows;  ///< whose rate, bandwidth and energy are computed
     DecodeOptions decoding;
     int slots;             ///< the first ones of the light are recorded
     std::string identity;  ///< all that determines the result; equal for equal trials
@@ -70,8 +73,8 @@ struct TrialOutcome {
     PngPixels picture;  ///< the middle slot (TrialPicture)
 };
 
-/// Records the light as `stream`, which is removed in the end, and decodes it.
-/// \throws InputError, DeviceError, TrialStopped.
+/// Records the light as `stream`, those of further sensors beside it, decodes them to one video,
+/// and removes them. \throws InputError, DeviceError, TrialStopped.
 [[nodiscard]] TrialOutcome run_trial(const Trial& trial, const TrialLight& light,
                                      const std::filesystem::path& stream,
                                      const KeepGoing& keep_going);

@@ -17,7 +17,8 @@ struct TrialFigures {
     double readout_slots_per_second = kNone;  ///< what the readout allows, with timing
     double megabits_per_second = kNone;
     double energy_uj_per_slot = kNone;  ///< of sensors with timing
-    double light_throughput = kNone;
+    double light_throughput = kNone;    ///< of one aperture
+    double samples_per_voxel = kNone;   ///< of all sensors
     double psnr_db = kNone;
     double psnr_gamma_db = kNone;
     double pu21_psnr_db = kNone;
@@ -35,7 +36,7 @@ struct FigureColumn {
     Better better;
 };
 
-inline constexpr std::array<FigureColumn, 10> kFigureColumns{
+inline constexpr std::array<FigureColumn, 11> kFigureColumns{
     {{"slots_per_second", "slot rate, 1/s", &TrialFigures::slots_per_second, Better::kMore},
      {"readout_slots_per_second", "slot rate of the readout, 1/s",
       &TrialFigures::readout_slots_per_second, Better::kMore},
@@ -44,6 +45,7 @@ inline constexpr std::array<FigureColumn, 10> kFigureColumns{
      {"energy_uj_per_slot", "energy per slot, uJ", &TrialFigures::energy_uj_per_slot,
       Better::kLess},
      {"light_throughput", "light throughput", &TrialFigures::light_throughput, Better::kMore},
+     {"samples_per_voxel", "samples per voxel", &TrialFigures::samples_per_voxel, Better::kLess},
      {"psnr_db", "PSNR, dB", &TrialFigures::psnr_db, Better::kMore},
      {"psnr_gamma_db", "PSNR after 1/2.2, dB", &TrialFigures::psnr_gamma_db, Better::kMore},
      {"pu21_psnr_db", "PU21-PSNR, dB", &TrialFigures::pu21_psnr_db, Better::kMore},

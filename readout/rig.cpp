@@ -92,8 +92,9 @@ void read_settings(Config& config, const std::string& name, SensorChoice& choice
     }
 }
 
-RigSensor read_rig_sensor(Config& config, const std::string& name, std::size_t number) {
-    RigSensor sensor{.name = name, .choice = {}};
+RigSensor read_rig_sensor(Config& config, const std::string& name, std::size_t number,
+                          const std::string& fallback) {
+    RigSensor sensor{.name = name, .choice = {.sensor = fallback}};
     auto seed = static_cast<std::int64_t>(number) + 1;
     const std::string prefix = name + ".";
     const KeyReader read(config, prefix);
@@ -179,7 +180,7 @@ void check_like_first(const RigSensor& sensor, const SensorSetup& setup, const S
 
 }  // namespace
 
-Rig read_rig(Config& config) {
+Rig read_rig(Config& config, const std::string& sensor) {
     Rig rig;
     const KeyReader read(config);
     read({"name", {}, "", "of the rig, for messages"}, rig.name);
@@ -187,7 +188,7 @@ Rig read_rig(Config& config) {
          rig.aperture);
     const auto names = read_names(config);
     for (std::size_t i = 0; i < names.size(); ++i)
-        rig.sensors.push_back(read_rig_sensor(config, names[i], i));
+        rig.sensors.push_back(read_rig_sensor(config, names[i], i, sensor));
     config.reject_unknown_keys();
     check_reference(config, rig.sensors.front());
     check_shares(config, rig);

@@ -36,10 +36,10 @@ struct Rig {
     std::vector<RigSensor> sensors;
 };
 
-/// Reads the keys of docs/rig.md. \throws InputError naming file, line and key: two sensors of one
-/// name, shares of one aperture with a sum above 1, a singular homography, a first sensor that is
-/// moved, an unknown key, a value of a wrong type.
-[[nodiscard]] Rig read_rig(Config& config);
+/// Reads the keys of docs/rig.md; `sensor` is the default of their key `sensor`. \throws InputError
+/// naming file, line and key: two sensors of one name, shares of one aperture with a sum above 1, a
+/// singular homography, a first sensor that is moved, an unknown key, a value of a wrong type.
+[[nodiscard]] Rig read_rig(Config& config, const std::string& sensor = SensorChoice().sensor);
 
 /// The file of a rig in the folder of its streams.
 inline constexpr const char* kRigFile = "rig.toml";

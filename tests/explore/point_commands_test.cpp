@@ -72,6 +72,21 @@ TEST(PointCommandsTest, StepsAreQuotedForAShell) {
                 HasSubstr("--sensor ./-x"));
 }
 
+TEST(PointCommandsTest, ARigHasStepsIfItIsUsedAsItIs) {
+    const std::string begin = "[axes]\nsensor = 'paper'\nrig = 'flutter'\n";
+    const auto commands = [&](const std::string& more) {
+        const Space one = parse_space(begin + more, "space.toml");
+        return point_commands(one, one.point(0), 20, true);
+    };
+    const std::string steps = commands("[set]\n'rig.one.share' = 0.25\n");
+    EXPECT_THAT(steps, HasSubstr("rig = [ \"flutter\" ]"));
+    EXPECT_THAT(steps,
+                HasSubstr("emulate scene.npy -o clip --rig flutter --set rig.one.share=0.25\n"));
+    EXPECT_THAT(steps, HasSubstr("decode clip -o decoded.npy --method fast\n"));
+    EXPECT_THAT(commands("seed = 2\n"), Not(HasSubstr("emulate")));
+    EXPECT_THAT(commands("[set]\n'sensor.bit_depth' = 9\n"), Not(HasSubstr("emulate")));
+}
+
 TEST(PointCommandsTest, LongerFootageHasNoSteps) {
     const Space all = space();
     EXPECT_THAT(point_commands(all, all.point(0), 20, false), Not(HasSubstr("emulate")));

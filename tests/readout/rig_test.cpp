@@ -48,6 +48,15 @@ TEST(RigTest, ReadsItsSensorsInTheirOrder) {
     EXPECT_EQ(a.choice.schedule_settings, std::vector<std::string>{"open_slots=2"});
 }
 
+TEST(RigTest, ASensorThatNamesNoneIsTheDefault) {
+    const MemoryFile file(
+        "sensors = ['a', 'b']\nb.sensor = 'lux1310'\na.share = 0.5\nb.share = 0.5");
+    Config config(file.path(), {});
+    const Rig rig = read_rig(config, "ideal");
+    EXPECT_EQ(rig.sensors[0].choice.sensor, "ideal");
+    EXPECT_EQ(rig.sensors[1].choice.sensor, "lux1310");
+}
+
 TEST(RigTest, SharesAreSettingsOfTheSensors) {
     const auto setups =
         set_up_rig(rig_of("sensors = ['a', 'b']\na.share = 0.75\nb.share = 0.25"), kShape);
