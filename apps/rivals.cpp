@@ -26,6 +26,7 @@ struct RivalsArguments {
     std::string space = "rivals";
     std::string sensor = "paper";
     std::vector<std::string> systems = {};  ///< empty: all
+    std::string dictionary = {};            ///< empty: that of the space
 };
 
 /// A column of the table for people.
@@ -95,6 +96,8 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
                     .options = {}};
     what.options.replaced = {{"footage", {arguments.footage}}, {"sensor", {arguments.sensor}}};
     if (!arguments.systems.empty()) what.options.replaced.push_back({"system", arguments.systems});
+    if (!arguments.dictionary.empty())
+        what.options.replaced.push_back({"decoder.dictionary", {arguments.dictionary}});
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(json_of(exploration));
@@ -123,6 +126,12 @@ void add_rivals(Command& app, Action& action) {
     command.add_list("--system", arguments->systems, "only this one; may be repeated")
         .type_name("NAME")
         .default_text("all");
+    command
+        .add_option("--dictionary", arguments->dictionary,
+                    "dictionary of hitomi2011, of \"stipple dictionary\"")
+        .default_text("that of the space")
+        .type_name("FILE")
+        .input();
     add_threads(command, action.options);
     command.footer(
         "Example:\n"

@@ -3,6 +3,8 @@
 import csv
 import unittest
 
+import numpy as np
+
 from program import INPUT, ProgramTest
 
 SPACE = """
@@ -71,9 +73,52 @@ class RivalsTest(ProgramTest):
                    "--space", "space.toml", "--system", "film")
         self.fails(INPUT, ["is neither a file nor one of the spaces"], "rivals", "pan", "-o", "r", "--space", "nosuch")
 
+    def test_the_figures_of_a_rig_are_those_of_the_commands(self):
+        (self.folder / "rig.toml").write_text("""
+sensors = ["a", "b"]
+a = { schedule = "full4x", share = 0.75 }
+b = { schedule = "random", share = 0.25, offset_px = [0, 2], phase_slots = 1 }
+""")
+        system = '[[systems]]\nname = "two"\nrig = "rig.toml"\nmethod = "fast"\n'
+        (self.folder / "space.toml").write_text(SPACE.replace("[clip]", system + "[clip]").replace(
+            '[readout]\nsensor = "lux1310"\n', ""))
+        self.succeed("synth", "pan", "-o", "light.npy", "--frames", 16, "--size", "32x32", "--luminance")
+        row, = self.rivals("light.npy", "--system", "two")
+        rig = self.figures("emulate", "light.npy", "-o", "rig", "--rig", "rig.toml")
+        self.succeed("decode", "rig", "-o", "decoded.npy", "--method", "fast")
+        quality = self.figures("compare", "decoded.npy", "light.npy", "--max-value", 2, "--margin", 4)
+        self.assertEqual((row["rig"], row["schedule"], row["problem"]), ("rig.toml", "", ""))
+        for name in ("psnr_db", "psnr_gamma_db", "pu21_psnr_db"):
+            self.assertAlmostEqual(row[name], quality[name], places=9)
+        self.assertAlmostEqual(row["light_throughput"], rig["light_collected"], places=9)
+        self.assertAlmostEqual(1e6 * row["megabits_per_second"], rig["bits_per_second"], places=3)
+        self.assertAlmostEqual(row["samples_per_voxel"], 1 / 4 + 4 / 15, places=9)
+
+    def test_a_rig_of_another_sensor_says_so(self):
+        system = '[[systems]]\nname = "splitter"\nrig = "tocci2011"\nmethod = "naive"\n'
+        (self.folder / "space.toml").write_text(SPACE.replace("[clip]", system + "[clip]"))
+        row, = self.rivals("pan", "--system", "splitter", "--sensor", "ideal")
+        self.assertIn('high.sensor: is "paper", but axes.sensor "ideal"', row["problem"])
+        self.assertIsNone(row["psnr_db"])
+
+    def test_the_dictionary_is_named_by_the_space_or_the_option(self):
+        names = ("rivals", "pan", "-o", "results", "--system", "single bump hitomi2011")
+        row, = self.figures(*names)["systems"]
+        self.assertIn("hitomi2011.npy: there is no such dictionary", row["problem"])
+        rng = np.random.default_rng(1)
+        atoms = self.write_array("patches.npy", rng.normal(size=(64, 4, 9)))
+        row, = self.figures(*names, "--dictionary", atoms)["systems"]
+        self.assertEqual((row["problem"], row["decoder.dictionary"]), ("", "patches.npy"))
+        trials = len(list(self.folder.glob("results/trials/*.json")))
+        (self.folder / "patches.npy").rename(self.folder / "hitomi2011.npy")
+        self.assertEqual(self.figures(*names)["systems"][0]["psnr_db"], row["psnr_db"])
+        self.assertEqual(len(list(self.folder.glob("results/trials/*.json"))), trials)  # known
+        self.write_array("hitomi2011.npy", rng.normal(size=(64, 4, 9)))
+        self.assertNotEqual(self.figures(*names)["systems"][0]["psnr_db"], row["psnr_db"])
+
     def test_the_systems_of_the_program_have_the_same_bandwidth(self):
         rows = self.figures("rivals", "pan", "-o", "results", "--system", "coded fast", "--system", "1x naive",
-                            "--system", "4x naive")["systems"]
+                            "--system", "4x naive", "--system", "beam splitter naive")["systems"]
         for row in rows:
             self.assertEqual(row["problem"], "")
             self.assertAlmostEqual(row["megabits_per_second"], rows[1]["megabits_per_second"],
