@@ -26,6 +26,7 @@ void explore(const ExploreRun& what, const RunOptions& run) {
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(figures_of(exploration, what.options.budget.has_value()));
+    require_figures(what, exploration);
     run.say(counts_text(what, exploration));
 }
 

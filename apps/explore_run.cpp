@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/arguments/command_line.h"
 #include "apps/interrupt.h"
@@ -76,6 +79,16 @@ Exploration explored(const ExploreRun& what, const RunOptions& run) {
         say_warning(chart_warning());
     }
     return exploration;
+}
+
+void require_figures(const ExploreRun& what, const Exploration& exploration) {
+    const std::vector<ExploredPoint>& points = exploration.points();
+    const bool none = std::ranges::all_of(points, [](const ExploredPoint& point) {
+        return !point.problem.empty() && !point.figures;
+    });
+    if (none)
+        throw InputError(what.results + "/table.csv",
+                         "no point could be run; the first: " + points.front().problem);
 }
 
 std::string counts_text(const ExploreRun& what, const Exploration& exploration) {

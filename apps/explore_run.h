@@ -21,6 +21,10 @@ void add_results(Command& command, std::string& results);
 /// into the results. \throws InputError, DeviceError.
 [[nodiscard]] Exploration explored(const ExploreRun& what, const RunOptions& run);
 
+/// Precondition: the results are written. \throws InputError if every point has failed, with the
+/// problem of the first one.
+void require_figures(const ExploreRun& what, const Exploration& exploration);
+
 /// "results/report.html: 4 run, 0 known before, 0 failed"
 [[nodiscard]] std::string counts_text(const ExploreRun& what, const Exploration& exploration);
 

@@ -101,6 +101,7 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(json_of(exploration));
+    require_figures(what, exploration);
     run.say(table_of(exploration) + "\n" + counts_text(what, exploration));
 }
 

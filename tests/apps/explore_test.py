@@ -150,7 +150,8 @@ method = "fast"
             timing = self.figures("timing", "--sensor", "lux1310", "--schedule", row["schedule"], "--seed", 1)
             self.assertAlmostEqual(float(row["readout_slots_per_second"]), timing["coded_readout_hz"], places=6)
             self.assertEqual((float(row["slots_per_second"]), row["limited_by"]), (200, "slot"))
-        self.explore(space.replace("lux1310", "t6"))
+        self.assertEqual(self.run_program("explore", self.write_space(space.replace("lux1310", "t6")), "-o",
+                                          "results").returncode, INPUT)
         self.assertIn("readout.sensor t6", self.rows()[0]["problem"])
 
     def test_a_stopped_run_goes_on(self):
@@ -189,9 +190,11 @@ method = "fast"
         self.assertIn("full1x", page)
         self.assertLess(len(page), 1e6)
 
-    def test_all_points_may_fail(self):
-        figures = self.explore(SPACE.replace("full1x", "nosuch").replace("random", "none"))
-        self.assertEqual(figures, {"points": 4, "run": 0, "known": 0, "failed": 4})
+    def test_a_run_without_any_figures_fails_after_the_table_is_written(self):
+        self.write_space(SPACE.replace("full1x", "nosuch").replace("random", "none"))
+        done = self.run_program("explore", "space.toml", "-o", "results")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn('results/table.csv: no point could be run; the first: "none"', done.stderr)
         self.assertTrue(all(row["problem"] and not row["psnr_db"] for row in self.rows()))
 
     def test_a_budget_drops_the_worse_half_after_each_rung(self):

@@ -73,6 +73,11 @@ class RivalsTest(ProgramTest):
                    "--space", "space.toml", "--system", "film")
         self.fails(INPUT, ["is neither a file nor one of the spaces"], "rivals", "pan", "-o", "r", "--space", "nosuch")
 
+    def test_footage_that_cannot_be_read_is_one_error(self):
+        done = self.run_program("rivals", "nosuch", "-o", "r", "--space", "space.toml")
+        self.assertEqual((done.returncode, done.stdout.count("nosuch"), done.stderr.count("nosuch")), (INPUT, 0, 1))
+        self.assertIn("nosuch: there is no such file or folder", done.stderr)
+
     def test_the_figures_of_a_rig_are_those_of_the_commands(self):
         (self.folder / "rig.toml").write_text("""
 sensors = ["a", "b"]
@@ -97,14 +102,15 @@ b = { schedule = "random", share = 0.25, offset_px = [0, 2], phase_slots = 1 }
     def test_a_rig_of_another_sensor_says_so(self):
         system = '[[systems]]\nname = "splitter"\nrig = "tocci2011"\nmethod = "naive"\n'
         (self.folder / "space.toml").write_text(SPACE.replace("[clip]", system + "[clip]"))
-        row, = self.rivals("pan", "--system", "splitter", "--sensor", "ideal")
+        *_, row = self.rivals("pan", "--system", "frames", "--system", "splitter", "--sensor", "ideal")
         self.assertIn('high.sensor: is "paper", but axes.sensor "ideal"', row["problem"])
         self.assertIsNone(row["psnr_db"])
 
     def test_the_dictionary_is_named_by_the_space_or_the_option(self):
         names = ("rivals", "pan", "-o", "results", "--system", "single bump hitomi2011")
-        row, = self.figures(*names)["systems"]
-        self.assertIn("hitomi2011.npy: there is no such dictionary", row["problem"])
+        done = self.run_program(*names)
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("hitomi2011.npy: there is no such dictionary", done.stderr)
         rng = np.random.default_rng(1)
         atoms = self.write_array("patches.npy", rng.normal(size=(64, 4, 9)))
         row, = self.figures(*names, "--dictionary", atoms)["systems"]
