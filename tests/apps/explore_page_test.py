@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from browser import LACKING, By, BrowserTest, Keys, Select, webdriver
-from program import PROGRAM
+from program import INPUT, OK, PROGRAM
 
 SPACE = """
 [axes]
@@ -43,12 +43,13 @@ class ExplorePageTest(BrowserTest):
         (cls.trials / "space.toml").write_text(SPACE)
         subprocess.run([PROGRAM, "explore", "space.toml", "-o", "results", "--quiet", "--no-sync"], cwd=cls.trials, check=True)
 
-    def open_page(self, space=SPACE, *more):
+    def open_page(self, space=SPACE, *more, code=OK):
         if space is SPACE:
             self.folder = self.trials
         else:
             (self.folder / "space.toml").write_text(space)
-            self.succeed("explore", "space.toml", "-o", "results", "--no-sync", *more)
+            done = self.run_program("explore", "space.toml", "-o", "results", "--no-sync", *more)
+            self.assertEqual(done.returncode, code, done.stderr)
         self.open_file("results/report.html")
         with open(self.folder / "results/table.csv", newline="") as table:
             self.rows = list(csv.DictReader(table))
@@ -184,18 +185,19 @@ class ExplorePageTest(BrowserTest):
 
     def test_a_line_between_axes_chooses_its_point(self):
         self.open_page()
-        place = self.script("""
+        left, top, height = self.script("""
             const row = inOrder[5], at = (i) => heightOf(shareOf(columns[i], columns[i].value(row)));
             document.getElementById('axes').scrollIntoView({block: 'center'});
             const box = document.getElementById('axes').getBoundingClientRect();
-            return [(acrossOf(1) + acrossOf(2)) / 2 - box.width / 2, (at(1) + at(2)) / 2 - box.height / 2]""")
-        webdriver.ActionChains(self.browser).move_to_element_with_offset(
-            self.element("axes"), round(place[0]), round(place[1])).click().perform()
+            return [box.left + (acrossOf(1) + acrossOf(2)) / 2, box.top, (at(1) + at(2)) / 2]""")
+        # In the window, as the axes may be wider than it.
+        actions = webdriver.ActionChains(self.browser).w3c_actions
+        actions.pointer_action.move_to_location(round(left), round(top + height)).click()
+        actions.perform()
         # Lines may cross there: any that passes within a pixel is as good.
         self.wait(lambda: self.script("""
             const row = state.point, at = (i) => heightOf(shareOf(columns[i], columns[i].value(row)));
-            const box = document.getElementById('axes').getBoundingClientRect();
-            return Math.abs((at(1) + at(2)) / 2 - box.height / 2 - arguments[0]) < 2""", place[1]))
+            return Math.abs((at(1) + at(2)) / 2 - arguments[0]) < 2""", height))
 
     def test_dark_mode_and_a_narrow_screen(self):
         self.open_page()
@@ -229,7 +231,7 @@ class ExplorePageTest(BrowserTest):
         self.assertFalse(self.element("parallel").is_displayed())
         self.assertEqual(self.element("point-heading").text, "Point 1")
         self.assertEqual(self.table(), [1])
-        self.open_page(SPACE.replace("lux1310", "nosuch"), "--force")
+        self.open_page(SPACE.replace("lux1310", "nosuch"), "--force", code=INPUT)
         for name in ("frontier", "parallel"):
             self.assertFalse(self.element(name).is_displayed(), name)
         self.assertEqual(len(self.table()), 8)
@@ -238,7 +240,7 @@ class ExplorePageTest(BrowserTest):
 
     def test_hostile_names_run_nothing(self):
         name = "<img src=x onerror=window.hit=1></script><script>window.hit=1</script>"
-        self.open_page(SPACE.replace("lux1310", name))
+        self.open_page(SPACE.replace("lux1310", name), code=INPUT)
         self.assertIsNone(self.script("return window.hit ?? null"))
         self.assertIn(name, self.element("point-values").text)
 
