@@ -86,6 +86,18 @@ class ExplorePageTest(BrowserTest):
                             ".getImageData(0, 0, c.width, c.height).data.some((v) => v > 0)")
         self.assertTrue(inked)
 
+    def test_all_points_are_in_the_chart(self):
+        self.open_page()
+        self.need_charts()
+        for x in ("slots_per_second", "energy_uj_per_slot", "psnr_gamma_db", "dynamic_range_stops"):
+            Select(self.element("x-column")).select_by_value(x)
+            ends, values = self.script("""
+                const {chart} = charts.get('frontier-chart'), {x} = chart.scales;
+                return [[x.min, x.max], chart.data.datasets[0].data.map((p) => p.x)]""")
+            self.assertEqual(len(values), 8)
+            self.assertLessEqual(ends[0], min(values), x)
+            self.assertGreaterEqual(ends[1], max(values), x)
+
     def test_a_click_on_the_chart_chooses_the_point(self):
         self.open_page()
         self.need_charts()

@@ -45,9 +45,10 @@ function columnOf(name) {
 
 const withFigures = rows.filter((row) => row.figures.some((value) => value !== null));
 
-/** The properties that differ, as "schedule tiled, sensor.bit_depth 8". */
+/** The properties that differ and that the row has, as "schedule tiled, sensor.bit_depth 8". */
 function nameOf(row) {
-  const parts = data.axes.filter((name) => columns.some((column) => column.name === name))
-    .map((name) => `${name} ${row.values[data.axes.indexOf(name)]}`);
+  const parts = data.axes.map((name, i) => [name, row.values[i]])
+    .filter(([name, value]) => value !== '' && columns.some((column) => column.name === name))
+    .map(([name, value]) => `${name} ${value}`);
   return parts.join(', ') || row.values.slice(0, 4).join(', ');
 }

@@ -38,7 +38,8 @@ function showPoint() {
   if (row.limited_by) figures.push(['rate is limited by', row.limited_by]);
   if (data.rungs.length > 1 && row.rung)
     figures.push(['last rung', `${row.rung} of ${data.rungs.length}, ${counted(row.slots, 'slot')}`]);
-  const pairs = [...data.axes.map((name, i) => [name, row.values[i]]), ...(row.rung ? figures : [])];
+  const properties = data.axes.map((name, i) => [name, row.values[i]]).filter(([, value]) => value !== '');
+  const pairs = [...properties, ...(row.rung ? figures : [])];
   const parts = [termList(pairs, 'settings-grid')];
   if (row.problem) parts.unshift(made('p', {class: 'notes'}, row.problem));
   element('point-values').replaceChildren(...parts);
