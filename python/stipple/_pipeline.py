@@ -96,10 +96,10 @@ def load(
     scale: float = 1.0,
     progress: Tell = None,
 ) -> npt.NDArray[np.float32]:
-    """Footage as an array of linear light: what "stipple emulate" would emulate (its option --truth).
+    """Footage as an array of linear light: what "stipple emulate" would emulate (its option --truth). The array
+    is as that of `decode`.
 
-    video, transfer, luminance, max_value, raw, scale, progress: as for `emulate`. The array is as that of
-    `decode`.
+    video, transfer, luminance, max_value, raw, scale, progress: as for `emulate`.
     """
     reading = _stipple.Reading(transfer, luminance, max_value)
     reading.set_raw(raw)
