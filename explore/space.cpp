@@ -217,8 +217,10 @@ void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
                  "is missing; name a sensor of \"stipple list sensors\", or several");
         if (node != nullptr)
             space.axes.push_back({std::string(name), values("axes." + std::string(name), *node)});
-        else if (const bool is_set = of_systems || (has_rig && name == "schedule"); name != "rig")
+        else if (name != "rig") {  // which is an axis only where a point has one
+            const bool is_set = of_systems || (has_rig && name == "schedule");
             space.axes.push_back({std::string(name), {is_set ? "" : fallback}});
+        }
     }
     add_systems(space, systems);
     for (const auto& [key, node] : section(tables, "set")) {

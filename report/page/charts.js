@@ -51,7 +51,7 @@ function slotLine(label, points, colour, more = {}) {
 
 function chartOptions(scales, more = {}) {
   return {
-    animation: false, responsive: true, maintainAspectRatio: false, parsing: false, scales,
+    animation: false, responsive: true, maintainAspectRatio: false, scales,
     interaction: {mode: 'nearest', axis: 'x', intersect: false},
     plugins: {
       legend: {labels: {color: styleColour('ink'), boxWidth: 16, boxHeight: 2}},

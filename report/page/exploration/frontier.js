@@ -73,9 +73,8 @@ function pointOptions(some, best) {
 
 function frontierChart() {
   const [x, y] = [columnOf(state.x), columnOf(state.y)];
-  const across = (a, b) => x.value(a) - x.value(b); // Chart.js takes the first and the last for the ends of the axis
-  const some = chosenRows().filter((row) => x.value(row) !== null && y.value(row) !== null).sort(across);
-  const frontier = frontierOf(some, x, y).sort(across);
+  const some = chosenRows().filter((row) => x.value(row) !== null && y.value(row) !== null);
+  const frontier = frontierOf(some, x, y);
   const place = (row) => ({x: x.value(row), y: y.value(row), row});
   const options = chartOptions({x: frontierAxis(x), y: frontierAxis(y)}, {
     interaction: {mode: 'nearest', intersect: false},
