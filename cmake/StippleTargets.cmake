@@ -2,9 +2,12 @@
 
 # Same bits everywhere: no contraction to FMA, no reassociation (docs/style.md, "Numbers").
 add_compile_options(-ffp-contract=off)
+# libFuzzer is guided by the branches that the modules take, so they count them.
+set(stipple_counted)
 if(STIPPLE_FUZZ)
-    # libFuzzer is guided by the branches that the modules take, so they report them.
-    add_compile_options(-fsanitize=fuzzer-no-link)
+    # Relative to where Ninja compiles, so that another clone finds the same objects in ccache.
+    file(RELATIVE_PATH uncounted ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR}/cmake/uncounted.txt)
+    set(stipple_counted -fsanitize=fuzzer-no-link -fsanitize-coverage-ignorelist=${uncounted})
 endif()
 
 # What nearly every source includes, read once. Presets that check includes do without: dev and tidy.
@@ -12,6 +15,7 @@ add_compile_options(-pthread)  # as some packages ask for; all that shares a pre
 file(TOUCH ${CMAKE_BINARY_DIR}/precompiled.cpp)
 add_library(stipple_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
 target_link_libraries(stipple_precompiled PRIVATE fmt::fmt)
+target_compile_options(stipple_precompiled PRIVATE ${stipple_counted})
 set(stipple_precompiled_headers
     <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <memory> <optional> <span> <string> <vector>)
 target_precompile_headers(stipple_precompiled PRIVATE ${stipple_precompiled_headers})
@@ -23,6 +27,7 @@ target_precompile_headers(stipple_precompiled PRIVATE ${stipple_precompiled_head
 function(stipple_module name)
     cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
     add_library(stipple_${name} STATIC ${arg_SOURCES})
+    target_compile_options(stipple_${name} PRIVATE ${stipple_counted})
     if(arg_OPTIONS)  # other options need a precompiled header of their own
         target_compile_options(stipple_${name} PRIVATE ${arg_OPTIONS})
         target_precompile_headers(stipple_${name} PRIVATE ${stipple_precompiled_headers})
@@ -121,6 +126,7 @@ function(stipple_fuzz name source)
     stipple_reads(reads)
     set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     add_executable(fuzz_${name} ${source})
+    target_compile_options(fuzz_${name} PRIVATE ${stipple_counted})
     target_link_libraries(fuzz_${name} PRIVATE stipple_test_support ${arg_LIBS})
     if(STIPPLE_FUZZ)
         target_sources(fuzz_${name} PRIVATE ${arg_MUTATOR})
