@@ -8,8 +8,10 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <fmt/format.h>
+#include <openexr.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <exception>
@@ -26,6 +28,39 @@ namespace stipple {
 namespace {
 
 constexpr int kThreads = 0;
+
+/// What is wrong with a header, in words of OpenEXRCore.
+struct HeaderFault {
+    std::array<char, 160> text{};
+    bool no_memory = false;
+};
+
+void note_fault(exr_const_context_t context, exr_result_t code, const char* text) {
+    void* data = nullptr;
+    if (exr_get_user_data(context, &data) != EXR_ERR_SUCCESS || data == nullptr) return;
+    auto& fault = *static_cast<HeaderFault*>(data);
+    if (code == EXR_ERR_OUT_OF_MEMORY) fault.no_memory = true;
+    if (fault.text[0] == '\0')
+        std::string_view(text).copy(fault.text.data(), fault.text.size() - 1);
+}
+
+/// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them, and
+/// takes as much memory.
+/// \throws InputError if the header is damaged.
+void check_header(const std::filesystem::path& file) {
+    HeaderFault fault;
+    exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    settings.error_handler_fn = note_fault;
+    settings.user_data = &fault;
+    exr_context_t context = nullptr;
+    const exr_result_t code = exr_start_read(&context, file.c_str(), &settings);
+    exr_finish(&context);
+    if (fault.no_memory || code == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (code == EXR_ERR_SUCCESS && fault.text[0] == '\0') return;
+    const char* text =
+        fault.text[0] == '\0' ? exr_get_default_error_message(code) : fault.text.data();
+    throw InputError(file.string(), fmt::format("cannot be read as OpenEXR: {}", text));
+}
 
 /// Names of the channels that make up the image, one a plane.
 std::vector<std::string> image_channels(const Imf::ChannelList& channels,
@@ -161,6 +196,7 @@ std::string encoded_as(FrameShape shape, std::span<const float> frame, std::stri
 }  // namespace
 
 void read_exr(const std::filesystem::path& file, Image& image) {
+    check_header(file);
     try {
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), image);

@@ -226,6 +226,14 @@ class ProportionTest(ProgramTest):
         self.write("a.exr", head.replace(window, struct.pack("<iiii", 0, 0, 8191, 8191)) + b"\0" * 4096)
         self.emulate_refuses("a.exr", "announces an image of")
 
+    def test_texts_are_not_larger_than_the_file_that_has_them(self):
+        self.succeed("synth", "still", "-o", "frames", "--size", "32x32", "--frames", 1)
+        image = next((self.folder / "frames").iterdir()).read_bytes()
+        head = 8  # magic and version: attributes follow
+        text = b"owner\0string\0" + struct.pack("<I", 1_800_000_000)
+        self.write("a.exr", image[:head] + text + image[head:])
+        self.emulate_refuses("a.exr", "cannot be read as OpenEXR: Attribute 'owner', type 'string': Invalid size 1800000000")
+
     def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
         side = 16_000
         for packing, size in ((1, 100_000), (32773, 1_000_000), (8, 100_000)):
