@@ -40,8 +40,9 @@ void note_fault(exr_const_context_t context, exr_result_t code, const char* text
     if (exr_get_user_data(context, &data) != EXR_ERR_SUCCESS || data == nullptr) return;
     auto& fault = *static_cast<HeaderFault*>(data);
     if (code == EXR_ERR_OUT_OF_MEMORY) fault.no_memory = true;
-    if (fault.text[0] == '\0')
-        std::string_view(text).copy(fault.text.data(), fault.text.size() - 1);
+    if (fault.text[0] != '\0') return;
+    std::string_view(text).copy(fault.text.data(), fault.text.size() - 1);
+    std::ranges::replace(fault.text, '\n', ' ');  // of a name
 }
 
 /// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them, and
