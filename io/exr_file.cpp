@@ -45,9 +45,8 @@ void note_fault(exr_const_context_t context, exr_result_t code, const char* text
     std::ranges::replace(fault.text, '\n', ' ');  // of a name
 }
 
-/// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them, and
-/// takes as much memory.
-/// \throws InputError if the header is damaged.
+/// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them,
+/// and takes as much memory. \throws InputError if the header is damaged.
 void check_header(const std::filesystem::path& file) {
     HeaderFault fault;
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
