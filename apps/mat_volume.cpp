@@ -4,10 +4,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <new>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -19,6 +26,11 @@
 #ifdef STIPPLE_MATIO
 #include <dlfcn.h>
 #include <matio.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "io/late_function.h"
 #endif
@@ -71,6 +83,7 @@ constexpr std::size_t kMaxValues = std::size_t{1} << 26U;
 struct Closer {
     void operator()(mat_t* file) const { Mat_Close(file); }
     void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+    void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using MatFile = std::unique_ptr<mat_t, Closer>;
 using MatVariable = std::unique_ptr<matvar_t, Closer>;
@@ -156,9 +169,7 @@ std::string names_in(mat_t* mat) {
     return count > kMaxNames ? text + ", ..." : text;
 }
 
-}  // namespace
-
-NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
+NpyVolume read_here(const std::string& file, const std::string& name) {
     const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
     if (!mat) throw InputError(file, "cannot be read as a .mat file");
     if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5 && !is_whole(file))
@@ -179,6 +190,100 @@ NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
     volume.values.resize(values);
     copy(*variable, volume, where);
     return volume;
+}
+
+/// What the process that reads sends: numbers, or the two parts of an InputError.
+struct Reply {
+    enum class Kind { kVolume, kInputError, kNoMemory } kind = Kind::kNoMemory;
+    int layers = 0, rows = 0, cols = 0;
+    std::uint64_t where_bytes = 0, bytes = 0;  ///< bytes: of what follows
+};
+
+void send(std::FILE* file, Reply reply, std::span<const std::byte> content) {
+    reply.bytes = content.size();
+    std::fwrite(&reply, sizeof(reply), 1, file);
+    std::fwrite(content.data(), 1, content.size(), file);
+    std::fflush(file);
+}
+
+void receive(std::FILE* file, std::span<std::byte> bytes, const std::string& where) {
+    if (std::fread(bytes.data(), 1, bytes.size(), file) != bytes.size())
+        throw InputError(where,
+                         "cannot be read as a .mat file: matio, which reads it, failed; the file "
+                         "is damaged");
+}
+
+/// From now on, this process takes little more memory and time than a whole file may need.
+void limit_process(const std::string& file) {
+    constexpr rlim_t kSlackBytes = 16U << 20U, kSeconds = 10, kBytesPerSecond = 1'000'000;
+    const std::uint64_t bytes = input_bytes(file);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t memory =
+        pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + kSlackBytes + max_memory(bytes);
+    const rlim_t seconds = kSeconds + bytes / kBytesPerSecond;
+    const rlimit memory_limit{memory, memory}, time_limit{seconds, seconds}, no_core{0, 0};
+    setrlimit(RLIMIT_AS, &memory_limit);
+    setrlimit(RLIMIT_CPU, &time_limit);
+    setrlimit(RLIMIT_CORE, &no_core);
+}
+
+void read_for(std::FILE* reply, const std::string& file, const std::string& name) {
+    try {
+        limit_process(file);
+        const NpyVolume volume = read_here(file, name);
+        send(reply,
+             {.kind = Reply::Kind::kVolume,
+              .layers = volume.layers,
+              .rows = volume.rows,
+              .cols = volume.cols},
+             std::as_bytes(std::span(volume.values)));
+    } catch (const InputError& e) {
+        send(reply, {.kind = Reply::Kind::kInputError, .where_bytes = e.where().size()},
+             std::as_bytes(std::span(std::string_view(e.what()))));
+    } catch (...) {
+        send(reply, {.kind = Reply::Kind::kNoMemory}, {});
+    }
+}
+
+NpyVolume received_volume(std::FILE* file, const std::string& where) {
+    Reply reply;
+    receive(file, std::as_writable_bytes(std::span(&reply, 1)), where);
+    if (reply.kind == Reply::Kind::kNoMemory) throw std::bad_alloc();
+    if (reply.kind == Reply::Kind::kInputError) {
+        constexpr std::size_t kColon = 2;
+        std::string text(reply.bytes, '\0');
+        receive(file, std::as_writable_bytes(std::span(text)), where);
+        throw InputError(text.substr(0, reply.where_bytes),
+                         text.substr(reply.where_bytes + kColon));
+    }
+    NpyVolume volume{.layers = reply.layers, .rows = reply.rows, .cols = reply.cols, .values = {}};
+    volume.values.resize(reply.bytes / sizeof(double));
+    receive(file, std::as_writable_bytes(std::span(volume.values)), where);
+    return volume;
+}
+
+}  // namespace
+
+// matio believes the lengths in a file, and may crash where they are wrong. So it reads in a
+// process of its own, whose memory and time are limited.
+NpyVolume read_mat_volume(const std::string& file, const std::string& name) {
+    static_cast<void>(matio_function("Mat_Open"));
+    const std::unique_ptr<std::FILE, Closer> reply(
+        fdopen(memfd_create("mat_volume", MFD_CLOEXEC), "w+"));
+    const pid_t child = reply ? fork() : -1;
+    if (child < 0)
+        throw DeviceError(file,
+                          std::string("no process can be started to read it: ") + strerror(errno));
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        read_for(reply.get(), file, name);
+        _exit(0);
+    }
+    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    std::rewind(reply.get());
+    return received_volume(reply.get(), file);
 }
 
 #endif

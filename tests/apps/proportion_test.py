@@ -234,6 +234,16 @@ class ProportionTest(ProgramTest):
         self.write("a.exr", image[:head] + text + image[head:])
         self.emulate_refuses("a.exr", "cannot be read as OpenEXR: Attribute 'owner', type 'string': Invalid size 1800000000")
 
+    def test_names_are_not_larger_than_the_mat_file_that_has_them(self):
+        flags = struct.pack("<IIII", 6, 8, 6, 0)  # of 32 bits; double
+        sides = struct.pack("<IIii", 5, 8, 1, 2)
+        name = struct.pack("<II", 1, 2**31 - 256) + b"meas\0\0\0\0"
+        numbers = struct.pack("<II2d", 9, 16, 0, 0)
+        matrix = flags + sides + name + numbers
+        head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H2s", 0x0100, b"IM")
+        self.write("a.mat", head + struct.pack("<II", 14, len(matrix)) + matrix)
+        self.refuses(["a.mat"], "import", "a.mat", "-o", "x.stipple")
+
     def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
         side = 16_000
         for packing, size in ((1, 100_000), (32773, 1_000_000), (8, 100_000)):
