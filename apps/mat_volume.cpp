@@ -241,8 +241,9 @@ void read_for(std::FILE* reply, const std::string& file, const std::string& name
     } catch (const InputError& e) {
         send(reply, {.kind = Reply::Kind::kInputError, .where_bytes = e.where().size()},
              std::as_bytes(std::span(std::string_view(e.what()))));
-    } catch (...) {
+    } catch (const std::bad_alloc&) {
         send(reply, {.kind = Reply::Kind::kNoMemory}, {});
+    } catch (...) {  // without a reply, the file counts as damaged
     }
 }
 

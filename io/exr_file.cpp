@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <vector>
 
 #include "core/error.h"
@@ -46,7 +47,7 @@ void note_fault(exr_const_context_t context, exr_result_t code, const char* text
 }
 
 /// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them,
-/// and takes as much memory. \throws InputError if the header is damaged.
+/// and takes as much memory. \throws std::runtime_error if the header is damaged.
 void check_header(const std::filesystem::path& file) {
     HeaderFault fault;
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -57,9 +58,8 @@ void check_header(const std::filesystem::path& file) {
     exr_finish(&context);
     if (fault.no_memory || code == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (code == EXR_ERR_SUCCESS && fault.text[0] == '\0') return;
-    const char* text =
-        fault.text[0] == '\0' ? exr_get_default_error_message(code) : fault.text.data();
-    throw InputError(file.string(), fmt::format("cannot be read as OpenEXR: {}", text));
+    throw std::runtime_error(fault.text[0] == '\0' ? exr_get_default_error_message(code)
+                                                   : fault.text.data());
 }
 
 /// Names of the channels that make up the image, one a plane.
@@ -196,8 +196,8 @@ std::string encoded_as(FrameShape shape, std::span<const float> frame, std::stri
 }  // namespace
 
 void read_exr(const std::filesystem::path& file, Image& image) {
-    check_header(file);
     try {
+        check_header(file);
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), image);
     } catch (const InputError&) {
