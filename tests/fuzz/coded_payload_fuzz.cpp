@@ -32,8 +32,9 @@ void take_slots(const CodedHeader& header, View payload) {
         require(packet.dn.size() <= header.stream.shape.sites());
         expected = {packet.slot, packet.first_row + packet.rows};
     }
-    if (slot.packets.empty() || slot.packets.size() > 2 || header.stream.shape.pixels() > 4096 ||
-        header.stream.schedule.period_slots() > 256)
+    if (slot.packets.empty() || slot.packets.size() > 2 ||
+        slot.packets.front().slot != slot.packets.back().slot ||
+        header.stream.shape.pixels() > 4096 || header.stream.schedule.period_slots() > 256)
         return;
     const ServedImage image = coded_image(header.stream);
     const auto again = coded_payload(slot.packets, header, image);

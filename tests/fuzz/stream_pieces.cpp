@@ -70,8 +70,8 @@ bool is_packet(const Piece& piece) {
 std::optional<std::uint32_t> random_crc(const Bytes& head, View section) {
     const int rows = load<std::uint16_t>(&head[16]);
     const int cols = load<std::uint16_t>(&head[18]);
-    if (section.size() < 10 || section.size() != 9U + section[8] || rows == 0 || cols == 0 ||
-        asks_for_much(head))
+    if (head[84] != 1 || section.size() < 10 || section.size() != 9U + section[8] || rows == 0 ||
+        cols == 0 || asks_for_much(head))
         return {};
     const std::vector<int> lengths(section.begin() + 9, section.end());
     if (!std::ranges::all_of(lengths, [](int slots) { return slots >= 1 && slots <= 64; }))
@@ -105,9 +105,11 @@ void mend_header(Piece& header) {
 
 /// Gives each packet the samples that are due in its slot, slot after slot, if the header is good.
 void fill_slots(std::vector<Piece>& pieces) {
+    const Bytes bytes = join({pieces.front()});
+    if (bytes.size() < kStreamHeadBytes || asks_for_much(bytes)) return;
     std::optional<StreamHeader> header;
     try {
-        header = decode_header(join({pieces.front()}), "fuzz");
+        header = decode_header(bytes, "fuzz");
     } catch (const InputError&) {
         return;
     }
