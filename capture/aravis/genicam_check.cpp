@@ -2,6 +2,7 @@
 
 #include <arv.h>
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <array>
@@ -99,6 +100,8 @@ class ValueCosts {
         if (depth == kMaxDeep) return std::numeric_limits<double>::infinity();
         Feature& feature = found->second;
         if (feature.cost > 0) return feature.cost;
+        // While it is met on the way to itself.
+        feature.cost = std::numeric_limits<double>::infinity();
         double sum = 1;
         for (const std::string& part : feature.parts) sum += cost(part, depth + 1);
         return feature.cost = sum;
@@ -124,6 +127,13 @@ GenicamCheck::GenicamCheck(void* device, std::string address) : address_(std::mo
     constexpr double kMaxValues = 1000;
     ArvGc* const description = arv_device_get_genicam(static_cast<ArvDevice*>(device));
     if (description == nullptr) return;
+    // Of what is not well-formed, Aravis finds by name features that its tree does not hold.
+    std::size_t bytes = 0;
+    const char* const xml = arv_device_get_genicam_xml(static_cast<ArvDevice*>(device), &bytes);
+    if (tinyxml2::XMLDocument parsed; parsed.Parse(xml, bytes) != tinyxml2::XML_SUCCESS)
+        throw DeviceError(
+            address_,
+            fmt::format("describes itself in XML that is not well-formed: {}", parsed.ErrorStr()));
     ValueCosts costs(ARV_DOM_NODE(description));
     if (const std::string costly = costs.costly_feature(kMaxValues); !costly.empty())
         throw DeviceError(address_, fmt::format("describes itself in a circle: the value of its "

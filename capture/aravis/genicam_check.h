@@ -16,8 +16,8 @@ struct GenicamRegister {
 class GenicamCheck {
   public:
     /// Checks the description of the ArvDevice `device`, which must outlive this. \throws
-    /// DeviceError at `address` if the value of a feature depends on itself, or on others in more
-    /// than 1000 ways; and as check_lengths.
+    /// DeviceError at `address` if the XML is not well-formed, if the value of a feature depends on
+    /// itself, or on others in more than 1000 ways; and as check_lengths.
     GenicamCheck(void* device, std::string address);
 
     /// To be called before values are read: the length of a register may depend on values of the

@@ -1,5 +1,8 @@
 #include <arv.h>
+#include <dlfcn.h>
 
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 
@@ -14,6 +17,27 @@ namespace {
 constexpr std::string_view kDeclaration = R"(<?xml version="1.0"?>)";
 
 }  // namespace
+
+/// In place of Aravis' own (0.8.26), which reads and writes out of bounds if the address lies far
+/// beyond the memory of its fake camera. Real cameras answer themselves.
+extern "C" gboolean arv_fake_camera_read_memory(ArvFakeCamera* camera, guint32 address,
+                                                guint32 size, void* buffer) {
+    static const auto read = reinterpret_cast<decltype(&arv_fake_camera_read_memory)>(
+        dlsym(RTLD_NEXT, "arv_fake_camera_read_memory"));
+    if (std::uint64_t{address} + size <= ARV_FAKE_CAMERA_MEMORY_SIZE)
+        return read(camera, address, size, buffer);
+    std::memset(buffer, 0, size);
+    return TRUE;
+}
+
+/// As above.
+extern "C" gboolean arv_fake_camera_write_memory(ArvFakeCamera* camera, guint32 address,
+                                                 guint32 size, const void* buffer) {
+    static const auto write = reinterpret_cast<decltype(&arv_fake_camera_write_memory)>(
+        dlsym(RTLD_NEXT, "arv_fake_camera_write_memory"));
+    return std::uint64_t{address} + size <= ARV_FAKE_CAMERA_MEMORY_SIZE &&
+           write(camera, address, size, buffer);
+}
 
 /// Input: the XML by which a camera describes itself. Its features are listed, described, read and
 /// set as `capture features`, `capture doctor` and `capture record` do.

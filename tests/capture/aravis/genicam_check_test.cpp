@@ -69,6 +69,18 @@ TEST(GenicamCheckTest, AValueThatDependsOnItselfIsRefused) {
     EXPECT_NE(problem_of(integer("A", "<pValue>B</pValue>") + knife("B", "A", 1)), "");
 }
 
+TEST(GenicamCheckTest, ACircleIsFoundAtOnceWhereEachTurnHasTwoWays) {
+    const std::string twice = integer("A", "<pValue>A</pValue>");
+    EXPECT_NE(problem_of(twice + twice).find("in a circle"), std::string::npos);
+}
+
+TEST(GenicamCheckTest, ACircleInXmlThatIsNotWellFormedIsRefused) {
+    const std::string problem =
+        problem_of(integer("A", "<pValue>A</pValue>") + "<Port><pAddress>A</pAddret>");
+    EXPECT_NE(problem.find("describes itself in XML that is not well-formed"), std::string::npos)
+        << problem;
+}
+
 TEST(GenicamCheckTest, AValueOfVeryManyIsRefused) {
     std::string doubling;  // 2^40 ways from the first to the last
     for (int i = 0; i < 40; ++i)
