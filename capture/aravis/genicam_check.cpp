@@ -131,9 +131,9 @@ GenicamCheck::GenicamCheck(void* device, std::string address) : address_(std::mo
     std::size_t bytes = 0;
     const char* const xml = arv_device_get_genicam_xml(static_cast<ArvDevice*>(device), &bytes);
     if (tinyxml2::XMLDocument parsed; parsed.Parse(xml, bytes) != tinyxml2::XML_SUCCESS)
-        throw DeviceError(
-            address_,
-            fmt::format("describes itself in XML that is not well-formed: {}", parsed.ErrorStr()));
+        throw DeviceError(address_, fmt::format("describes itself in XML that is not well-formed "
+                                                "in line {}",
+                                                parsed.ErrorLineNum()));
     ValueCosts costs(ARV_DOM_NODE(description));
     if (const std::string costly = costs.costly_feature(kMaxValues); !costly.empty())
         throw DeviceError(address_, fmt::format("describes itself in a circle: the value of its "
