@@ -14,7 +14,9 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 #include <vector>
@@ -60,6 +62,42 @@ void check_header(const std::filesystem::path& file) {
     if (code == EXR_ERR_SUCCESS && fault.text[0] == '\0') return;
     throw std::runtime_error(fault.text[0] == '\0' ? exr_get_default_error_message(code)
                                                    : fault.text.data());
+}
+
+/// OpenEXRCore goes by the bytes that a list of channels declares, OpenEXR's own class by its end:
+/// where they differ, the two take different bytes for the next attribute. For a header that
+/// OpenEXRCore can read. \throws std::runtime_error if they differ.
+void check_channel_lists(const std::filesystem::path& file) {
+    constexpr int kVersionFlags = 5;  // of the file, a byte
+    constexpr int kFirstAttribute = 8;
+    constexpr int kMultiPart = 0x10;
+    constexpr int kBytesAfterName = 16;  // of a channel: its type, flags and sampling
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(kVersionFlags);
+    const bool multi_part = (in.get() & kMultiPart) != 0;
+    in.seekg(kFirstAttribute);
+    bool part_ended = false;
+    for (std::string name, type; std::getline(in, name, '\0');) {
+        if (name.empty() && (part_ended || !multi_part)) return;
+        part_ended = name.empty();
+        if (part_ended) continue;
+        std::getline(in, type, '\0');
+        std::array<std::uint8_t, 4> size{};
+        in.read(reinterpret_cast<char*>(size.data()), std::ssize(size));
+        const std::streamoff begin = in.tellg();
+        const std::streamoff declared =
+            size[0] + (size[1] << 8U) + (size[2] << 16U) + (std::streamoff{size[3]} << 24U);
+        if (type == "chlist") {
+            while (std::getline(in, type, '\0') && !type.empty())
+                in.seekg(kBytesAfterName, std::ios::cur);
+            const std::streamoff found = in.tellg() - begin;
+            if (found != declared)
+                throw std::runtime_error(fmt::format(
+                    "its attribute {} declares {} bytes, but its list of channels has {}", name,
+                    declared, found));
+        }
+        in.seekg(begin + declared);
+    }
 }
 
 /// Names of the channels that make up the image, one a plane.
@@ -198,6 +236,7 @@ std::string encoded_as(FrameShape shape, std::span<const float> frame, std::stri
 void read_exr(const std::filesystem::path& file, Image& image) {
     try {
         check_header(file);
+        check_channel_lists(file);
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), image);
     } catch (const InputError&) {

@@ -117,6 +117,16 @@ TEST_F(ExrFileTest, NeverCrashesOnADamagedFile) {
         }
 }
 
+TEST_F(ExrFileTest, RefusesAListOfChannelsThatEndsElsewhereThanDeclared) {
+    write_channels(file_, {"Y"}, Imf::FLOAT);
+    std::string bytes = read_text(file_);
+    const std::string_view kind("channels\0chlist", 16);  // with the end of each
+    bytes[bytes.find(kind) + kind.size()] = 18;
+    write_text(file_, bytes);
+    expect_parts(problem(), {"f.exr: cannot be read as OpenEXR: its attribute channels declares 18 "
+                             "bytes, but its list of channels has 19"});
+}
+
 TEST_F(ExrFileTest, ReadsWhatItWroteBitByBit) {
     for (const int planes : {1, 3}) {
         const FrameShape shape{37, 21, planes};  // not a multiple of the 16 rows of a ZIP block
