@@ -9,7 +9,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::int64_t kNearSlots = 8;  ///< pairs are no further apart in time
+constexpr std::int64_t kMostSlotsApart = 8;  ///< of a pair
 constexpr float kSaturated = std::numeric_limits<float>::max();
 
 /// Samples of one row that are due under a shifted schedule.
@@ -92,7 +92,7 @@ ResidualMeter::Rate ResidualMeter::rate_of(int row, int col, std::uint16_t dn, i
 void ResidualMeter::add_pair(const Rate& a, const Rate& b, std::size_t part,
                              ScheduleResidual& result) {
     const float light = std::abs(a.light) + std::abs(b.light);
-    if (light == 0 || b.slot < a.slot - kNearSlots) return;
+    if (light == 0 || b.slot < a.slot - kMostSlotsApart) return;
     const float size = light + 3 * std::sqrt(a.variance + b.variance);
     const float weight = light / size;
     result.weight[part] += static_cast<double>(weight);
