@@ -3,7 +3,8 @@
 # compiled together, so a name in an unnamed namespace remains the source's own. The UNITY_BUILD of CMake
 # joins without regard to names, and into sources with absolute paths, which ccache would not find for
 # another clone. A source is compiled alone if it has definitions of its own, if Highway compiles it once for
-# each SIMD width, or if it has CMake's property SKIP_UNITY_BUILD_INCLUSION.
+# each SIMD width, or if it has CMake's property SKIP_UNITY_BUILD_INCLUSION. Sources are joined while CMake
+# configures, as scripts/build does each time.
 function(stipple_unity folder)
     get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
     foreach(below IN LISTS folders)
@@ -44,16 +45,23 @@ function(stipple_unity folder)
             list(APPEND files_${unit} ${file})
             list(APPEND names_${unit} ${names})
         endforeach()
+        set(joined FALSE)
         set(unit 0)
         while(unit LESS units)
-            list(TRANSFORM files_${unit} REPLACE "(.+)" "#include \"\\1\"\n")
-            list(JOIN files_${unit} "" text)
-            set(file ${CMAKE_BINARY_DIR}/${below}/unity/${target}_${unit}.cpp)
-            file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
-            list(APPEND compiled ${file})
+            list(LENGTH files_${unit} length)
+            if(length EQUAL 1)
+                list(APPEND compiled ${CMAKE_SOURCE_DIR}/${files_${unit}})
+            else()
+                set(joined TRUE)
+                list(TRANSFORM files_${unit} REPLACE "(.+)" "#include \"\\1\"\n")
+                list(JOIN files_${unit} "" text)
+                set(file ${CMAKE_BINARY_DIR}/${below}/unity/${target}_${unit}.cpp)
+                file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
+                list(APPEND compiled ${file})
+            endif()
             math(EXPR unit "${unit} + 1")
         endwhile()
-        if(units GREATER 0)
+        if(joined)
             set_property(TARGET ${target} PROPERTY SOURCES ${compiled})
             target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR})
             # g++ takes an included source for a header, where unnamed namespaces would be a mistake.
