@@ -14,7 +14,7 @@ endif()
 set(STIPPLE_SHORT_BUILD
     $<$<CONFIG:Release>:-O1> $<$<CONFIG:Debug>:-O0>
     # g++ 12 misjudges concatenated texts at -O1.
-    "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow>")
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 
 # What nearly every source includes, read once. Presets that check includes do without: dev and tidy.
 add_compile_options(-pthread)  # as some packages ask for; all that shares a precompiled header must agree
