@@ -9,6 +9,7 @@
 
 #include "core/index.h"
 #include "decoder/measurements.h"
+#include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/pixel_response.h"
 
 namespace stipple {
 
+struct Calibration;
 struct Measurements;
+class SampleNoise;
 
 /// A frame of a conventional camera: an exposure that all sites share.
 struct FrameExposure {

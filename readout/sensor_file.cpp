@@ -12,6 +12,8 @@
 #include "core/joined.h"
 #include "io/footage_files.h"
 #include "readout/program/program_text.h"
+#include "readout/schedules/schedule_catalogue.h"
+#include "readout/timing/row_loads.h"
 #include "sensor_model/sensor_config.h"
 
 namespace stipple {

@@ -8,8 +8,8 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "readout/config_origin.h"
-#include "readout/schedules/schedule_catalogue.h"
-#include "readout/timing/readout_cost.h"
+#include "readout/schedules/named_schedule.h"
+#include "readout/timing/overrun_policy.h"
 #include "readout/timing/readout_timing.h"
 #include "sensor_model/sensor_params.h"
 

@@ -7,7 +7,7 @@
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/settings.h"
 #include "core/geometry.h"
-#include "readout/schedules/schedule_catalogue.h"
+#include "readout/schedules/named_schedule.h"
 
 namespace stipple {
 

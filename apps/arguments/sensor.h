@@ -7,7 +7,7 @@
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/settings.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/readout_cost.h"
+#include "readout/timing/overrun_policy.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {

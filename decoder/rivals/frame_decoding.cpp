@@ -8,9 +8,11 @@
 #include "core/error.h"
 #include "decoder/decode_options.h"
 #include "decoder/defects.h"
+#include "decoder/frame_exposures.h"
 #include "decoder/frame_video.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
+#include "decoder/pixel_response.h"
 
 namespace stipple {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "core/flux_video.h"
 #include "decoder/decode_method.h"
-#include "decoder/frame_exposures.h"
 #include "decoder/progress_callback.h"
 
 namespace stipple {
 
+struct FrameExposure;
 struct Measurements;
 
 /// Noise of the frames of a conventional camera: variance of the light per slot x is dark_variance

@@ -1,28 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/config.h"
-#include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/config_origin.h"
-#include "stream/stream_header.h"
+#include "readout/schedules/named_schedule.h"
 
 namespace stipple {
 
 struct ColumnAddressing;
-
-/// A schedule with what a stream header says of it.
-struct NamedSchedule {
-    std::string name;
-    ScheduleSource source;
-    ExposureSchedule schedule;
-    std::optional<ConfigOrigin> origin = {};  ///< its file; none: made in code
-};
 
 /// The schedule that a file of config/schedules describes (key `kind`, docs/schedules.md), made for
 /// an array of `shape` with `seed`. Other keys are left for the caller's `reject_unknown_keys`.

@@ -1,31 +1,17 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "core/named_value.h"
+#include "readout/timing/overrun_policy.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/row_loads.h"
 #include "readout/timing/slot_readout.h"
 
 namespace stipple {
-
-/// Behaviour of a chip if the readout of a slot takes longer than the slot.
-enum class OverrunPolicy : std::uint8_t {
-    kStretch,  ///< the slot lasts as long as its readout; its light stays that of one slot
-    kDrop      ///< rows that do not fit are reset without readout
-};
-
-inline constexpr auto kOverrunPolicies = std::to_array<NamedValue<OverrunPolicy>>(
-    {{"stretch", OverrunPolicy::kStretch}, {"drop", OverrunPolicy::kDrop}});
-
-[[nodiscard]] constexpr std::string_view name_of(OverrunPolicy policy) {
-    return name_in(kOverrunPolicies, policy);
-}
 
 /// The part of a readout that takes most of its time.
 enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "decoder/decode_options.h"

@@ -7,10 +7,11 @@
 
 #include "core/flux_video.h"
 #include "decoder/measurements.h"
-#include "decoder/pixel_response.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {
+
+class SampleNoise;
 
 /// The noise of the sensor `paper`.
 [[nodiscard]] const SampleNoise& paper_noise();

@@ -10,7 +10,7 @@
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
 #include "metrics/video_quality.h"
-#include "readout/schedules/schedule_catalogue.h"
+#include "readout/schedules/named_schedule.h"
 #include "sensor_model/sensor_params.h"
 #include "stream/stream_header.h"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "decoder/motion/motion.h"
 #include "tests/decoder/recordings.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/decoder/recordings.h"
 #include "tests/decoder/rivals/noisy_frames.h"
