@@ -34,8 +34,10 @@ def package_versions():
     """Of all installed packages whose name is, or begins as, one of scripts/packages.txt does."""
     lines = (ROOT / "scripts/packages.txt").read_text().splitlines()
     names = [line.split()[0] for line in lines if line and line[0] not in "#["]
-    command = ["dpkg-query", "--show", *names, "clang-*", "clang-tidy-*", "linux-image-*"]
-    return subprocess.run(command, check=False, capture_output=True).stdout
+    command = ["dpkg-query", "--show", "--showformat", "${db:Status-Abbrev} ${Package} ${Version}\n",
+               *names, "clang-*", "clang-tidy-*", "linux-image-*"]
+    known = subprocess.run(command, check=False, capture_output=True).stdout
+    return b"\n".join(line for line in known.splitlines() if line.startswith(b"ii"))
 
 
 @functools.cache
