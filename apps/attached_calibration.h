@@ -6,9 +6,10 @@
 
 #include "apps/arguments/run_options.h"
 #include "io/pending_output.h"
-#include "readout/sensor_file.h"
 
 namespace stipple {
+
+struct SensorSetup;
 
 /// A copy of a calibration file that goes with a new stream: calibration_beside finds it.
 class AttachedCalibration {

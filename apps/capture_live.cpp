@@ -26,6 +26,8 @@
 #include "capture/rate_warning.h"
 #include "io/disk_sync.h"
 #include "io/output_names.h"
+#include "readout/emulator.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

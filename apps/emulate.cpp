@@ -25,6 +25,7 @@
 #include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/waveform_file.h"
 
 namespace stipple {

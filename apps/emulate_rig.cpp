@@ -24,6 +24,7 @@
 #include "readout/rig.h"
 #include "readout/rig_figures.h"
 #include "readout/rig_recorder.h"
+#include "readout/sensor_file.h"
 #include "report/json_figures.h"
 
 namespace stipple {

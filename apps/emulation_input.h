@@ -11,6 +11,7 @@
 #include "capture/recording/read_ahead.h"
 #include "capture/recording/resampled_footage.h"
 #include "readout/provenance.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

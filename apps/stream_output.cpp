@@ -1,6 +1,7 @@
 #include "apps/stream_output.h"
 
 #include "apps/report/leftovers.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

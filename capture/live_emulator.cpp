@@ -9,6 +9,8 @@
 #include "capture/host_clock.h"
 #include "core/fault_list.h"
 #include "core/gap_limit.h"
+#include "readout/emulator.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

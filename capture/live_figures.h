@@ -3,6 +3,7 @@
 #include "capture/live_emulator.h"
 #include "capture/session_figures.h"
 #include "core/nested_figures.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

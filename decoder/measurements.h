@@ -6,24 +6,11 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "decoder/video_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
-
-/// A box of voxels of a video: `slots` slots from `first_slot`, and the pixels from (first_row,
-/// first_col); `shape` is the size of one of its frames.
-struct VideoWindow {
-    std::int64_t first_slot = 0;
-    int slots = 0;
-    int first_row = 0;
-    int first_col = 0;
-    FrameShape shape;
-
-    [[nodiscard]] std::size_t voxels() const {
-        return static_cast<std::size_t>(slots) * shape.sites();
-    }
-};
 
 /// The samples y of a window in the units of FluxVideo, as arrays of order (slot, plane, row, col),
 /// so that each voxel finds its exposure. Exposures that reach beyond the window, and exposures

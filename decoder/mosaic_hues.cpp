@@ -6,6 +6,7 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 
 namespace stipple {

@@ -4,10 +4,11 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// A decoder of one plane; nothing if it was stopped.
 using PlaneDecoder = std::function<std::optional<FluxVideo>(const Measurements& measurements,

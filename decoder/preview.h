@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "decoder/decode_method.h"
-#include "decoder/measurements.h"
 #include "decoder/progress_callback.h"
+#include "decoder/video_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 

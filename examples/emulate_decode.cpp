@@ -2,6 +2,7 @@
 #include <stipple/decoder/reconstruct.h>
 #include <stipple/io/footage_reader.h>
 #include <stipple/io/npy_writer.h>
+#include <stipple/readout/sensor_file.h>
 #include <stipple/readout/stream_recorder.h>
 
 #include <iostream>

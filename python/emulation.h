@@ -5,6 +5,7 @@
 #include <string>
 
 #include "readout/stream_recorder.h"
+#include "readout/timing/overrun_policy.h"
 
 namespace stipple::python {
 

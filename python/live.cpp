@@ -26,6 +26,7 @@
 #include "python/sensor.h"
 #include "python/stream.h"
 #include "readout/emulation_figures.h"
+#include "readout/emulator.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

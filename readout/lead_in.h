@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "readout/sensor_file.h"
-
 namespace stipple {
+
+struct SensorSetup;
 
 /// Slots that a sensor must be exposed after a reset until its samples are those of a sensor that
 /// was exposed since slot 0, bit by bit (docs/scaling.md). `--part` of `emulate` emulates so many

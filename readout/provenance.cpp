@@ -13,6 +13,7 @@
 #include "core/shell_quoted.h"
 #include "core/toml_keys.h"
 #include "core/version.h"
+#include "readout/sensor_file.h"
 #include "sensor_model/sensor_keys.h"
 #include "stream/plain_text.h"
 

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "io/footage_reader.h"
-#include "readout/sensor_file.h"
 
 namespace stipple {
+
+struct SensorSetup;
 
 /// The source of the light and the options of its reader, for the provenance of a stream.
 struct FootageOrigin {

@@ -9,6 +9,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/key_reader.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

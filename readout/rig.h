@@ -4,12 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "core/colour_filter.h"
+#include "core/geometry.h"
 #include "core/homography.h"
-#include "readout/sensor_file.h"
+#include "readout/sensor_choice.h"
 
 namespace stipple {
 
 class Config;
+struct SensorSetup;
 
 /// A sensor of a rig.
 struct RigSensor {

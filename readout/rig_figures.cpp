@@ -1,6 +1,8 @@
 #include "readout/rig_figures.h"
 
+#include "readout/sensor_file.h"
 #include "readout/stream_recorder.h"
+#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_cost.h"
 
 namespace stipple {

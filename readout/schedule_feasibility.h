@@ -3,13 +3,14 @@
 #include <optional>
 #include <string>
 
-#include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/column_addressing.h"
-#include "readout/sensor_file.h"
-#include "readout/timing/readout_timing.h"
 
 namespace stipple {
+
+class ExposureSchedule;
+struct ColumnAddressing;
+struct ReadoutTiming;
+struct SensorSetup;
 
 /// Message if the schedule needs more than `charge_stores` charge stores per pixel: names the first
 /// pixel and slot with more exposures under way. Else nothing.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "readout/emulator.h"
 #include "readout/light_throughput.h"
 
 namespace stipple {
@@ -9,12 +10,14 @@ namespace stipple {
 StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
                                StreamRecorderOptions options)
     : output_(file, options.force),
-      emulator_(setup),
+      emulator_(std::make_unique<Emulator>(setup)),
       writer_(output_.partial(), stream_header_of(setup, std::move(options.provenance)),
               output_.final_path().string()) {}
 
+StreamRecorder::~StreamRecorder() = default;
+
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
-    const auto packets = emulator_.expose(frame);
+    const auto packets = emulator_->expose(frame);
     for (const SamplePacket& packet : packets) writer_.write(packet);
     return packets;
 }
@@ -28,6 +31,14 @@ bool StreamRecorder::keep() {
     if (output_.kept()) return false;
     output_.commit();
     return true;
+}
+
+const SensorSetup& StreamRecorder::setup() const {
+    return emulator_->setup();
+}
+
+const ReadoutStats& StreamRecorder::stats() const {
+    return emulator_->stats();
 }
 
 std::uint64_t StreamRecorder::samples() const {
@@ -49,7 +60,20 @@ double StreamRecorder::saturated_fraction() const {
 }
 
 double StreamRecorder::light_throughput() const {
-    return stipple::light_throughput(setup().schedule.schedule, emulator_.filters(), setup().shape);
+    return stipple::light_throughput(setup().schedule.schedule, emulator_->filters(),
+                                     setup().shape);
+}
+
+double StreamRecorder::light_read() const {
+    return emulator_->light_read();
+}
+
+ReadoutCost* StreamRecorder::readout_cost() {
+    return emulator_->readout_cost();
+}
+
+const ReadoutCost* StreamRecorder::readout_cost() const {
+    return emulator_->readout_cost();
 }
 
 }  // namespace stipple

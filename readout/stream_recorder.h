@@ -1,14 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 
 #include "io/pending_output.h"
-#include "readout/emulator.h"
+#include "readout/readout_stats.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {
+
+class Emulator;
+class ReadoutCost;
+struct SamplePacket;
+struct SensorSetup;
 
 struct StreamRecorderOptions {
     bool force = false;           ///< replace the file if it exists
@@ -23,6 +30,7 @@ class StreamRecorder {
     /// StreamWriter.
     StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
                    StreamRecorderOptions options = {});
+    ~StreamRecorder();
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples, without those of dropped rows.
@@ -35,8 +43,8 @@ class StreamRecorder {
     /// in giving the file its name. \throws DeviceError.
     bool keep();
 
-    [[nodiscard]] const SensorSetup& setup() const { return emulator_.setup(); }
-    [[nodiscard]] const ReadoutStats& stats() const { return emulator_.stats(); }
+    [[nodiscard]] const SensorSetup& setup() const;
+    [[nodiscard]] const ReadoutStats& stats() const;
     /// Samples in the stream.
     [[nodiscard]] std::uint64_t samples() const;
     [[nodiscard]] std::uint64_t payload_bits() const;
@@ -48,14 +56,14 @@ class StreamRecorder {
     /// Fraction of the light that is collected in steady slots.
     [[nodiscard]] double light_throughput() const;
     /// Fraction of the light since slot 0 that the samples hold, as in Emulator.
-    [[nodiscard]] double light_read() const { return emulator_.light_read(); }
+    [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutCost* readout_cost() { return emulator_.readout_cost(); }
-    [[nodiscard]] const ReadoutCost* readout_cost() const { return emulator_.readout_cost(); }
+    [[nodiscard]] ReadoutCost* readout_cost();
+    [[nodiscard]] const ReadoutCost* readout_cost() const;
 
   private:
     PendingOutput output_;
-    Emulator emulator_;
+    std::unique_ptr<Emulator> emulator_;
     StreamWriter writer_;
 };
 

@@ -3,6 +3,7 @@
 #include "apps/arguments/checks.h"
 #include "core/error.h"
 #include "io/output_names.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

@@ -7,6 +7,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/readout_text.h"
 #include "readout/emulation_figures.h"
+#include "readout/sensor_file.h"
 #include "report/json_figures.h"
 
 namespace stipple {

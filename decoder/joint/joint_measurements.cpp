@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/joint/merged_exposures.h"
+#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {

@@ -4,9 +4,13 @@
 #include <span>
 
 #include "core/homography.h"
-#include "decoder/measurements.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
+
+struct Measurements;
+struct SamplePacket;
+struct VideoWindow;
 
 /// Where and when a sensor of a rig sees the scene, relative to the first one.
 struct SensorView {

@@ -6,6 +6,7 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {

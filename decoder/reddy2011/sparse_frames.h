@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 #include "decoder/reddy2011/flow_links.h"
 #include "decoder/reddy2011/wavelet.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// Weights of a minimisation. light 1.0 is 1.
 struct SparseFramesTask {

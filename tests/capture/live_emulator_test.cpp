@@ -4,7 +4,9 @@
 
 #include <numeric>
 
+#include "readout/emulator.h"
 #include "readout/provenance.h"
+#include "readout/sensor_file.h"
 #include "stream/stream_reader.h"
 #include "tests/capture/scripted_session.h"
 #include "tests/support/temporary_folder.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decoder/measurements.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/simd_targets.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "decoder/measurements.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

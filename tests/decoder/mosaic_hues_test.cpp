@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "decoder/measurements.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "decoder/decode_options.h"
+#include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "tests/decoder/recordings.h"

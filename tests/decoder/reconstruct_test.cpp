@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "decoder/block_partition.h"
 #include "decoder/decode_options.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"

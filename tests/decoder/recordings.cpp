@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 
+#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "readout/emulator.h"
 #include "sensor_model/colour_mosaic.h"

@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/measurements.h"
 #include "sensor_model/sensor_params.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
 
 namespace stipple {
 
+class ExposureSchedule;
 class SampleNoise;
+struct Measurements;
+struct VideoWindow;
 
 /// The noise of the sensor `paper`.
 [[nodiscard]] const SampleNoise& paper_noise();

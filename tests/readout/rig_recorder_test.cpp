@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "readout/sensor_file.h"
 #include "stream/stream_reader.h"
 #include "tests/support/temporary_folder.h"
 

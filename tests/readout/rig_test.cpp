@@ -7,6 +7,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "readout/sensor_file.h"
 #include "tests/support/memory_file.h"
 #include "tests/support/temporary_folder.h"
 

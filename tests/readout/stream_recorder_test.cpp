@@ -13,6 +13,8 @@
 #include "readout/coded_sensor.h"
 #include "readout/light_throughput.h"
 #include "readout/provenance.h"
+#include "readout/sensor_file.h"
+#include "readout/timing/readout_cost.h"
 #include "sensor_model/colour_mosaic.h"
 #include "stream/stream_reader.h"
 #include "tests/support/temporary_folder.h"

@@ -6,7 +6,19 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "readout/provenance.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
+
 namespace stipple {
+
+void record_clip(const std::filesystem::path& file, const SensorChoice& choice,
+                 const FluxVideo& light) {
+    const SensorSetup setup = set_up_sensor(choice, light.shape());
+    StreamRecorder recorder(file, setup, {.provenance = provenance_of(setup, {.name = "ramp"})});
+    for (int slot = 0; slot < light.slots(); ++slot) recorder.expose(light.frame(slot));
+    recorder.finish();
+}
 
 std::vector<std::uint16_t> unpacked_plane(const std::string& text, std::size_t step) {
     std::vector<unsigned char> packed(text.size());

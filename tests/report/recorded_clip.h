@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "readout/provenance.h"
-#include "readout/sensor_file.h"
-#include "readout/stream_recorder.h"
+#include "readout/sensor_choice.h"
 
 namespace stipple {
 
@@ -23,13 +21,8 @@ inline FluxVideo ramp(int slots, FrameShape shape) {
 }
 
 /// A stream of `light` with its provenance.
-inline void record_clip(const std::filesystem::path& file, const SensorChoice& choice,
-                        const FluxVideo& light) {
-    const SensorSetup setup = set_up_sensor(choice, light.shape());
-    StreamRecorder recorder(file, setup, {.provenance = provenance_of(setup, {.name = "ramp"})});
-    for (int slot = 0; slot < light.slots(); ++slot) recorder.expose(light.frame(slot));
-    recorder.finish();
-}
+void record_clip(const std::filesystem::path& file, const SensorChoice& choice,
+                 const FluxVideo& light);
 
 /// The values that packed_plane has packed: of zlib's and OpenSSL's readers, and sums.
 [[nodiscard]] std::vector<std::uint16_t> unpacked_plane(const std::string& text,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_cost.h"
 #include "stream/stream_reader.h"
 #include "tests/report/recorded_clip.h"

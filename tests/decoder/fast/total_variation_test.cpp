@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "decoder/fast/motion_tv.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/sampling_operator.h"
 #include "tests/decoder/recordings.h"

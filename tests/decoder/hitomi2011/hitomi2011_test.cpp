@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "readout/schedules/random_codes.h"
 #include "tests/decoder/hitomi2011/cosine_dictionary.h"

@@ -13,6 +13,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/decode_options.h"
+#include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "readout/light_warp.h"
 #include "stream/stream_writer.h"

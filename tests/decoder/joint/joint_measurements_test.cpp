@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/index.h"
+#include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "readout/light_warp.h"
 #include "tests/decoder/recordings.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/index.h"
+#include "decoder/measurements.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/simd_targets.h"

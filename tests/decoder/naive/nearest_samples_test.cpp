@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decoder/measurements.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "tests/decoder/recordings.h"
 

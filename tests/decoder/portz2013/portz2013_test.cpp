@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "sensor_model/sensor_params.h"
 #include "tests/decoder/recordings.h"

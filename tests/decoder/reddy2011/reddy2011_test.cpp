@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "readout/schedules/random_codes.h"
 #include "tests/decoder/recordings.h"

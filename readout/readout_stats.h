@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace stipple {
+
+/// Counts of the emulated chip since its first slot.
+struct ReadoutStats {
+    std::int64_t slots = 0;  ///< the slot to expose next
+    std::uint64_t samples = 0;
+    std::uint64_t saturated_samples = 0;  ///< clipped by the full well, or at full scale
+};
+
+}  // namespace stipple
