@@ -12,9 +12,11 @@ endif()
 
 # For what has no inner loop: a short build rather than a fast program.
 set(STIPPLE_SHORT_BUILD
-    $<$<CONFIG:Release>:-O1> $<$<CONFIG:Debug>:-O0>
+    -O1
     # g++ 12 misjudges concatenated texts at -O1.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+# The same for programs: the sanitizers see little of them, but all of the tests of modules.
+set(STIPPLE_SHORTEST_BUILD ${STIPPLE_SHORT_BUILD} $<$<CONFIG:Debug>:-O0>)
 
 # What nearly every source includes, read once. Presets that check includes do without: dev and tidy.
 add_compile_options(-pthread)  # as some packages ask for; all that shares a precompiled header must agree
@@ -79,21 +81,25 @@ function(stipple_reads out)
     set(${out} "STIPPLE_READS=${paths}" PARENT_SCOPE)
 endfunction()
 
-# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter] [PART filter PART_LABEL label]
+# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter [APART_LABEL label]] [PART filter PART_LABEL label]
 # file_test.cpp ... [READS path ...]): one executable MODULE_test, run whole, or as n parts that run side
 # by side. Tests that need a process of their own match the GoogleTest filter APART: each is a ctest
-# entry. Those that match the filter PART are one entry, with the label. READS as in stipple_reads.
+# entry. Those that match the filter PART take long: they are one entry, with that label and PART_LABEL.
+# READS as in stipple_reads.
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "SHARDS;APART;PART;PART_LABEL;LABEL" "READS" ${ARGN})
+    cmake_parse_arguments(arg "" "SHARDS;APART;APART_LABEL;PART;PART_LABEL;LABEL" "READS" ${ARGN})
     stipple_reads(reads ${arg_READS})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
     target_precompile_headers(${module}_test REUSE_FROM stipple_test_main)
     set(results ${CMAKE_BINARY_DIR}/test_results)  # what scripts/test_results.py counts
+    if(NOT arg_APART_LABEL)
+        set(arg_APART_LABEL "${arg_LABEL}")
+    endif()
     if(arg_APART)
         gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}"
                              XML_OUTPUT_DIR ${results}
-                             PROPERTIES TIMEOUT 600 ENVIRONMENT "${reads}" LABELS "${arg_LABEL}")
+                             PROPERTIES TIMEOUT 600 ENVIRONMENT "${reads}" LABELS "${arg_APART_LABEL}")
     endif()
     if(arg_APART STREQUAL "*")
         return()
@@ -106,7 +112,7 @@ function(stipple_test module)
         set(name ${module}_test_${arg_PART_LABEL})
         add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=${arg_PART}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_PART_LABEL}" COST 9
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "long;${arg_PART_LABEL}" COST 9
             ENVIRONMENT "${reads}")
         string(APPEND elsewhere ":${arg_PART}")
     endif()
