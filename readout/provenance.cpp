@@ -126,7 +126,7 @@ std::string options_of(const toml::table& provenance) {
         for (const toml::node& setting : *settings)
             add("--set", setting.value<std::string>().value_or(""));
     const auto seed = provenance["seed"];
-    const auto number = seed.value<std::int64_t>();
+    const auto number = seed.value_exact<std::int64_t>();  // not of floating point
     if (const auto it = number ? std::to_string(*number) : text_of(seed); it != "1")
         add("--seed", it);
     if (const auto it = text_of(provenance["overrun"]); it != "stretch") add("--overrun", it);
@@ -198,7 +198,7 @@ ChipOrigin chip_of(const std::string& provenance) {
                     .dsnu_e = number("dsnu_e"),
                     .column_noise_e = number("column_noise_e"),
                     .response_loss = number("response_loss")};
-    const auto device_id = sensor["device_id"].value<std::int64_t>();
+    const auto device_id = sensor["device_id"].value_exact<std::int64_t>();
     if (device_id && *device_id >= 0 && *device_id <= std::numeric_limits<std::uint32_t>::max())
         chip.device_id = static_cast<std::uint32_t>(*device_id);
     return chip;
