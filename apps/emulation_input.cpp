@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "decoder/motion/late_opencv.h"
 #include "readout/footage_origin.h"
-#include "readout/sensor_file.h"
 
 namespace stipple {
 EmulationInput::EmulationInput(const EmulateArguments& arguments)

@@ -93,10 +93,10 @@ function(stipple_test module)
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
     target_precompile_headers(${module}_test REUSE_FROM stipple_test_main)
     set(results ${CMAKE_BINARY_DIR}/test_results)  # what scripts/test_results.py counts
-    if(NOT arg_APART_LABEL)
-        set(arg_APART_LABEL "${arg_LABEL}")
-    endif()
     if(arg_APART)
+        if(NOT arg_APART_LABEL)
+            set(arg_APART_LABEL "${arg_LABEL}")
+        endif()
         gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}"
                              XML_OUTPUT_DIR ${results}
                              PROPERTIES TIMEOUT 600 ENVIRONMENT "${reads}" LABELS "${arg_APART_LABEL}")

@@ -13,6 +13,7 @@ import datetime
 import functools
 import hashlib
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -33,15 +34,12 @@ def project_files(*paths):
 def package_versions(check):
     """Of all installed packages whose name is, or begins as, one of scripts/packages.txt does. Those of
     the virtual machine count for its own check only, which installs them."""
-    lines = (ROOT / "scripts/packages.txt").read_text().splitlines()
-    names = ["clang-*", "clang-tidy-*", *(["linux-image-*"] if check == "vm" else [])]
-    group = None
-    for line in filter(None, lines):
-        if line[0] == "[":
-            group = line.strip("[]")
-        elif line[0] != "#" and (group != "vm" or check == "vm"):
-            names.append(line.split()[0])
-    command = ["dpkg-query", "--show", "--showformat", "${db:Status-Abbrev} ${Package} ${Version}\n", *names]
+    text = (ROOT / "scripts/packages.txt").read_text()
+    if check != "vm":
+        text = re.sub(r"^\[vm\](?:\n(?!\[).*)*", "", text, flags=re.MULTILINE)
+    names = [line.split()[0] for line in text.splitlines() if line and line[0] not in "#["]
+    command = ["dpkg-query", "--show", "--showformat", "${db:Status-Abbrev} ${Package} ${Version}\n",
+               *names, "clang-*", "clang-tidy-*", "linux-image-*"]
     known = subprocess.run(command, check=False, capture_output=True).stdout
     return b"\n".join(line for line in known.splitlines() if line.startswith(b"ii"))
 
