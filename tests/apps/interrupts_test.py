@@ -130,6 +130,8 @@ class InterruptsTest(ProgramTest):
         self.assertIn(f"what was written so far: {partial}", message.replace("./", ""))
 
     def test_standard_error_that_cannot_be_written_ends_no_run(self):
+        colour = self.write_png("f.png", np.full((8, 8, 3), 99))
+        self.assertIn("looks gamma-coded", self.run_program("emulate", colour, "-o", "heard.stipple").stderr)
         for screen in ("full", "closed", "unread"):
             with self.subTest(screen):
                 reader, writer = os.pipe()
@@ -137,11 +139,12 @@ class InterruptsTest(ProgramTest):
                 closed = {"preexec_fn": lambda: os.close(2)}
                 with open("/dev/full", "w") as full, os.fdopen(writer, "w") as unread:
                     options = {"full": {"stderr": full}, "unread": {"stderr": unread}, "closed": closed}
-                    done = subprocess.run([PROGRAM, "synth", "roll", "-o", f"{screen}.npy", "--frames",
-                                           "100", "--size", "64x48"], cwd=self.folder, timeout=120,
-                                          check=False, stdout=subprocess.DEVNULL, **options[screen])
+                    done = subprocess.run([PROGRAM, "emulate", colour, "-o", f"{screen}.stipple"],
+                                          cwd=self.folder, timeout=120, check=False,
+                                          stdout=subprocess.DEVNULL, **options[screen])
                     self.assertEqual(done.returncode, 0)
-                    self.assertEqual(len(self.array(f"{screen}.npy")), 100)
+                    self.assertEqual((self.folder / f"{screen}.stipple").read_bytes(),
+                                     (self.folder / "heard.stipple").read_bytes())
                     missing = subprocess.run([PROGRAM, "info", "missing"], cwd=self.folder, timeout=60,
                                              check=False, **options[screen])
                     self.assertEqual(missing.returncode, INPUT)

@@ -39,9 +39,9 @@ class ProgramTest(unittest.TestCase):
         return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
                                 stderr=subprocess.PIPE, **options)
 
-    def succeed(self, *arguments):
+    def succeed(self, *arguments, **options):
         """Standard output of a run that must succeed."""
-        done = self.run_program(*arguments)
+        done = self.run_program(*arguments, **options)
         self.assertEqual(done.returncode, OK, done.stderr)
         return done.stdout
 
