@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "decoder/motion/inverse_search_options.h"
+
 namespace stipple {
 
 /// Pixels repeated around the image of a flow, so that patches may leave the image.
@@ -27,12 +29,6 @@ struct DenseFlow {
     int cols = 0;
     std::vector<std::int16_t> row_shift;
     std::vector<std::int16_t> col_shift;
-};
-inline constexpr int kFlowShiftsPerPixel = 64;
-
-struct InverseSearchOptions {
-    int patch_stride_px = 4;       ///< between patches
-    float range_sigma_px = 0.03F;  ///< range sigma of the bilateral filter; see below
 };
 
 /// Dense inverse search (Kroeger et al., ECCV 2016) of patches between two images of the same

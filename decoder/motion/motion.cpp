@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "decoder/motion/grey_levels.h"
+#include "decoder/motion/inverse_search.h"
 
 namespace stipple {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/motion/inverse_search.h"
+#include "decoder/motion/inverse_search_options.h"
 
 namespace stipple {
 
