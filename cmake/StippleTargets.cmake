@@ -81,13 +81,14 @@ function(stipple_reads out)
     set(${out} "STIPPLE_READS=${paths}" PARENT_SCOPE)
 endfunction()
 
-# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter [APART_LABEL label]] [PART filter PART_LABEL label]
-# file_test.cpp ... [READS path ...]): one executable MODULE_test, run whole, or as n parts that run side
-# by side. Tests that need a process of their own match the GoogleTest filter APART: each is a ctest
-# entry. Those that match the filter PART take long: they are one entry, with that label and PART_LABEL.
-# READS as in stipple_reads.
+# stipple_test(MODULE [LABEL label] [SHARDS n [COST c]] [APART filter [APART_LABEL label]]
+# [PART filter PART_LABEL label [PART_COST c]] file_test.cpp ... [READS path ...]): one executable
+# MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of their own match
+# the GoogleTest filter APART: each is a ctest entry. Those that match the filter PART take long: they are
+# one entry, with that label and PART_LABEL. Entries of higher cost begin earlier, where ctest has measured
+# seconds for others. READS as in stipple_reads.
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "SHARDS;APART;APART_LABEL;PART;PART_LABEL;LABEL" "READS" ${ARGN})
+    cmake_parse_arguments(arg "" "SHARDS;COST;APART;APART_LABEL;PART;PART_LABEL;PART_COST;LABEL" "READS" ${ARGN})
     stipple_reads(reads ${arg_READS})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
@@ -107,12 +108,18 @@ function(stipple_test module)
     if(NOT arg_SHARDS)
         set(arg_SHARDS 1)
     endif()
+    if(NOT arg_COST)
+        set(arg_COST ${arg_SHARDS})  # long ones first
+    endif()
     set(elsewhere "${arg_APART}")
     if(arg_PART)
+        if(NOT arg_PART_COST)
+            set(arg_PART_COST 9)
+        endif()
         set(name ${module}_test_${arg_PART_LABEL})
         add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=${arg_PART}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "long;${arg_PART_LABEL}" COST 9
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "long;${arg_PART_LABEL}" COST ${arg_PART_COST}
             ENVIRONMENT "${reads}")
         string(APPEND elsewhere ":${arg_PART}")
     endif()
@@ -124,7 +131,7 @@ function(stipple_test module)
         math(EXPR index "${shard} - 1")
         add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${elsewhere}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_SHARDS}  # long ones first
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_COST}
             ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index};${reads}")
     endforeach()
 endfunction()

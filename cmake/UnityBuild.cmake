@@ -2,11 +2,10 @@
 # eight at a time, so that what they include is read once for all. Sources that see headers of decoder/ or
 # readout/ are joined with their like, so that few are compiled again after one such header has changed. No
 # two that define the same name are compiled together, so a name in an unnamed namespace remains the source's
-# own. The UNITY_BUILD of CMake
-# joins without regard to names, and into sources with absolute paths, which ccache would not find for
-# another clone. A source is compiled alone if it has definitions of its own, if Highway compiles it once for
-# each SIMD width, or if it has CMake's property SKIP_UNITY_BUILD_INCLUSION. Sources are joined while CMake
-# configures, as scripts/build does each time.
+# own. The UNITY_BUILD of CMake joins without regard to names, and into sources with absolute paths, which
+# ccache would not find for another clone. A source is compiled alone if it has definitions of its own, if
+# Highway compiles it once for each SIMD width, or if it has CMake's property SKIP_UNITY_BUILD_INCLUSION.
+# Sources are joined while CMake configures, as scripts/build does each time.
 function(stipple_unity folder)
     get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
     foreach(below IN LISTS folders)

@@ -2,7 +2,7 @@
 
 namespace stipple {
 
-inline constexpr int kFlowShiftsPerPixel = 64;
+inline constexpr int kFlowShiftsPerPixel = 64;  ///< shifts are in 1 / 64 pixels
 
 /// Of the dense inverse search (inverse_search.h).
 struct InverseSearchOptions {
