@@ -16,7 +16,6 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "core/memory_limit.h"
 #include "io/pixel_unpack.h"
 #include "io/tiff_handle.h"
 
@@ -239,7 +238,6 @@ void Samples::read_tiles() {
     const std::size_t row_bytes = format_.row_bytes(static_cast<int>(width));
     const std::uint64_t bytes = TIFFTileSize64(handle_.get());
     if (bytes < row_bytes * height) handle_.fail(handle_.name());
-    check_memory(bytes, handle_.name(), "a tile", handle_.file_bytes());
     std::vector<std::uint8_t> tile(bytes);
     std::vector<std::uint16_t> samples(width);
     for (std::uint32_t y = 0; y < page_.rows; y += height)
@@ -279,11 +277,9 @@ void read_dng(const std::filesystem::path& file, Image& image) {
     const std::uint64_t stored =
         std::uint64_t{page.rows} *
         ((std::uint64_t{page.cols} * static_cast<unsigned>(page.bits) + 7) / 8);
-    check_packed(stored, handle.file_bytes(), handle.name(),
-                 page.compression == COMPRESSION_NONE ? 1 : kDeflateRatio);
     constexpr std::uint64_t kBytesAPixel = sizeof(std::uint16_t) + sizeof(float);
-    check_memory(kBytesAPixel * page.rows * page.cols, handle.name(), "the image",
-                 handle.file_bytes());
+    handle.check_size(stored, kBytesAPixel * page.rows * page.cols,
+                      page.compression == COMPRESSION_NONE ? 1 : kDeflateRatio, handle.name());
     const Samples samples(handle, page);
     const Area& area = page.area;
     image.resize(

@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "core/memory_limit.h"
 #include "io/tiff_handle.h"
 
 namespace stipple {
@@ -125,7 +124,6 @@ class PageReader {
         return true;
     }
     bool read_tiles(int channel) {
-        constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30U;
         const auto rows = static_cast<std::uint32_t>(pixels_->shape.rows);
         const auto cols = static_cast<std::uint32_t>(pixels_->shape.cols);
         std::uint32_t width = 0;
@@ -134,8 +132,7 @@ class PageReader {
         TIFFGetField(tiff_, TIFFTAG_TILELENGTH, &height);
         const std::uint64_t bytes = TIFFTileSize64(tiff_);
         const std::size_t row_bytes = width * stored_pixel();
-        if (width == 0 || height == 0 || bytes > kMaxBytes || bytes < row_bytes * height)
-            return false;
+        if (bytes == 0 || bytes < row_bytes * height) return false;
         std::vector<std::byte> tile(bytes);
         for (std::uint32_t y = 0; y < rows; y += height)
             for (std::uint32_t x = 0; x < cols; x += width) {
@@ -247,9 +244,8 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.channels = about.channels;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, where(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
-    check_packed(bytes, impl_->file.file_bytes(), where(page), about.max_packed());
-    check_memory(bytes + sizeof(float) * pixels.shape.sites(), where(page), "the image",
-                 impl_->file.file_bytes());
+    impl_->file.check_size(bytes, bytes + sizeof(float) * pixels.shape.sites(), about.max_packed(),
+                           where(page));
     pixels.bytes.resize(bytes);
     if (!PageReader(tiff, about, pixels).read()) impl_->file.fail(where(page));
     if (about.photometric == PHOTOMETRIC_MINISWHITE)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -11,6 +12,8 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
+#include "core/light.h"
+#include "core/memory_limit.h"
 
 namespace stipple {
 namespace {
@@ -57,6 +60,14 @@ TiffHandle::TiffHandle(const std::filesystem::path& file)
     tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options));  // m: not mapped to memory
     TIFFOpenOptionsFree(options);
     if (!tiff_) fail(name_);
+}
+
+void TiffHandle::check_size(std::uint64_t stored, std::uint64_t taken, std::uint64_t ratio,
+                            const std::string& where) const {
+    const std::uint64_t block =
+        TIFFIsTiled(get()) != 0 ? TIFFTileSize64(get()) : TIFFScanlineSize64(get());
+    check_packed(std::max(stored, block), file_bytes_, where, ratio);
+    check_memory(taken + block, where, "the image", file_bytes_);
 }
 
 void TiffHandle::fail(const std::string& where) const {

@@ -20,6 +20,12 @@ class TiffHandle {
     [[nodiscard]] tiff* get() const { return tiff_.get(); }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
+    /// Before memory is taken for the page at hand, whose pixels are `stored` bytes and take
+    /// `taken` bytes. A tile may be larger than the page, so it counts too. \throws InputError at
+    /// `where` if the file cannot hold as many with a compression ratio of `ratio`, or if they
+    /// exceed `max_memory`.
+    void check_size(std::uint64_t stored, std::uint64_t taken, std::uint64_t ratio,
+                    const std::string& where) const;
     void forget_message() { message_.clear(); }
     /// \throws InputError with the first message of libtiff since it was forgotten.
     [[noreturn]] void fail(const std::string& where) const;

@@ -254,6 +254,16 @@ class ProportionTest(ProgramTest):
             self.write("a.tif", content + bytes(200 - len(content) + size))
             self.emulate_refuses("a.tif", "announces an image of 256000000 bytes")
 
+    def test_tiles_are_not_larger_than_their_files_can_hold(self):
+        tags = ((256, 8), (257, 2), (258, 8), (259, 1), (262, 1), (277, 1), (322, 32_000), (323, 32_000),
+                (324, 200), (325, 16))  # a tile of 32 000 x 32 000 pixels in an image of 8 x 2
+        for packing, part in ((1, "announces an image of 1024000000 bytes"), (5, "of memory for the image")):
+            words = [(tag, packing if tag == 259 else value) for tag, value in tags]
+            content = b"II*\0" + struct.pack("<IH", 8, len(words))
+            content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in words)
+            self.write("a.tif", content + bytes(100_000))
+            self.emulate_refuses("a.tif", part)
+
     def test_well_packed_images_are_not_larger_than_small_files_may_be(self):
         side = 16_000
         packer = zlib.compressobj(9)
