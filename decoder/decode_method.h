@@ -6,16 +6,13 @@
 #include <string_view>
 
 #include "core/flux_video.h"
-#include "decoder/progress_callback.h"
 
 namespace stipple {
 
 class Config;
 class ExposureSchedule;
-struct Calibration;
+struct BlockTask;
 struct DecodeOptions;
-struct Measurements;
-struct StageObserver;
 
 enum class DecodeMethod {
     kNaive,      ///< each pixel holds its nearest samples; no model of the scene
@@ -31,15 +28,6 @@ enum class DecodeMethod {
     kZhang2009,     ///< principal components of patches along optical flow
     kVbm4d,         ///< collaborative filter of volumes along motion
     kShahar2011,    ///< temporal super-resolution by self-similarity
-};
-
-/// A block of the video and the context of its decoding.
-struct BlockTask {
-    Measurements& measurements;  ///< a method may change them
-    const Calibration& calibration;
-    const DecodeOptions& options;
-    const ProgressCallback& progress;
-    const StageObserver& observer;
 };
 
 /// A row of the table of methods.

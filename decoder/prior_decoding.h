@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/decode_method.h"
+#include "decoder/block_task.h"
 
 namespace stipple {
 

@@ -14,6 +14,7 @@
 #include "core/index.h"
 #include "core/memory_limit.h"
 #include "decoder/block_partition.h"
+#include "decoder/block_task.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/saturated_samples.h"

@@ -13,6 +13,7 @@
 #include "decoder/best/variance_stabilisation.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
+#include "decoder/fast/motion_tv.h"
 #include "decoder/joint/joint_prox.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"

@@ -1,27 +1,14 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "core/flux_video.h"
-#include "decoder/hitomi2011/patch_dictionary.h"
+#include "decoder/hitomi2011/hitomi2011_options.h"
 #include "decoder/progress_callback.h"
 
 namespace stipple {
 
-class Config;
 struct Measurements;
-
-/// Options of the method `hitomi2011`. docs/decoder_published.md says which values the paper gives.
-struct Hitomi2011Options {
-    std::string dictionary_file;  ///< who reads the options reads it into `dictionary`
-    PatchDictionary dictionary;   ///< none: no atoms
-    int step_px = 1;              ///< between patches, rows and columns
-    int step_slots = 0;           ///< between patches; 0: their length
-    int max_atoms = 12;           ///< of a patch
-    float noise_factor =
-        1.2F;  ///< the pursuit ends at the standard deviation of the noise times this
-};
 
 /// Hitomi, Gu, Gupta, Mitsunaga, Nayar, ICCV 2011: orthogonal matching pursuit codes the samples of
 /// each space-time patch by a learned dictionary, and overlapping patches are averaged. Voxels of
@@ -31,8 +18,5 @@ struct Hitomi2011Options {
 [[nodiscard]] std::optional<FluxVideo> decode_hitomi2011(
     const Measurements& measurements, const Hitomi2011Options& options,
     const ProgressCallback& progress = [](double) { return true; });
-
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
-void read_options(Config& config, Hitomi2011Options& options);
 
 }  // namespace stipple

@@ -4,14 +4,6 @@
 
 namespace stipple {
 
-/// Matches along motion, of blocks one slot long.
-struct FlowMatchOptions {
-    int block_px = 4;          ///< side of a block
-    int radius_slots = 5;      ///< maximum length of trajectories, forwards and backwards
-    float consistency_px = 1;  ///< tolerance of the forward-backward check
-    float sigma = 0.05F;       ///< as in MatchSearch
-};
-
 /// Follows each block of a grid along the TV-L1 flow (Zach et al. 2007, OpenCV's implementation)
 /// between neighbouring slots, computed in both directions on the square root of luminance. Flows
 /// are concatenated. A trajectory ends where the forward-backward check fails or the block would

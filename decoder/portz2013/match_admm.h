@@ -7,13 +7,6 @@
 
 namespace stipple {
 
-struct MatchAdmmOptions {
-    int iterations = 10;
-    float rho = 2;               ///< larger: smaller steps; per unit of light
-    int cg_iterations = 10;      ///< maximum of conjugate gradients, in each iteration
-    float cg_tolerance = 1e-3F;  ///< of the residual, relative to the right side; 1.2e-7 at least
-};
-
 /// Receives the objective (Eq. 4) after each iteration; false stops.
 using AfterAdmmIteration = std::function<bool(int iteration, double objective)>;
 

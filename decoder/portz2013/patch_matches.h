@@ -7,6 +7,7 @@
 
 #include "core/flux_video.h"
 #include "decoder/portz2013/patch_distance.h"
+#include "decoder/portz2013/portz2013_options.h"
 #include "decoder/progress_callback.h"
 
 namespace stipple {
@@ -35,17 +36,6 @@ struct MatchList {
     [[nodiscard]] std::size_t begin_of(std::size_t group) const {
         return group == 0 ? 0 : groups[group - 1].end;
     }
-};
-
-/// Positions of reference patches and search range of their matches.
-struct MatchSearch {
-    PatchSize size;        ///< cut to the block where that is smaller
-    int step_px = 3;       ///< stride of reference patches, rows and columns; no overlap in time
-    int window_px = 8;     ///< maximum distance in rows and in columns
-    int window_slots = 2;  ///< maximum distance in slots
-    float sigma = 0.05F;   ///< of Eq. 3, flux: w = weight exp(-d / (2 sigma^2))
-    float weight = 1;
-    bool with_itself = true;  ///< each patch matches itself, in addition to `max_matches`
 };
 
 /// Largest distance of a match in units of 2 sigma^2: beyond it the weight is below 0.0004.

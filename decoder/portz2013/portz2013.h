@@ -4,41 +4,13 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/portz2013/flow_matches.h"
-#include "decoder/portz2013/match_admm.h"
-#include "decoder/portz2013/patch_matches.h"
+#include "decoder/portz2013/portz2013_options.h"
 #include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {
 
-class Config;
-
 struct Measurements;
-
-/// Options of the method `portz2013`. docs/decoder_portz2013.md lists the published values and the
-/// deviations from the paper.
-struct Portz2013Options {
-    struct Stage1 {
-        MatchSearch search{.size = {6, 6, 4}, .step_px = 3, .sigma = 0.15F};
-        int max_matches = 12;
-        float gamma = 0.5F;  ///< not published; nor are sigma, window and conjugate gradients
-        MatchAdmmOptions admm{.iterations = 10, .rho = 2};
-    };
-    struct Stage2 {
-        FlowMatchOptions flow{.sigma = 0.1F};  ///< block_px 4 or 2 in the paper, by clip
-        MatchSearch search{
-            .size = {6, 6, 3}, .step_px = 3, .sigma = 0.1F, .weight = 0.5F, .with_itself = false};
-        int max_matches = 20;  ///< of both kinds together
-        float gamma = 0.5F;
-        MatchAdmmOptions admm{.iterations = 50, .rho = 10};
-    };
-    Stage1 stage1;
-    Stage2 stage2;
-    /// Y of Eq. 1 for light 1.0, r / s of the paper's sensor: the published values of rho have this
-    /// unit.
-    float values_per_flux = 0.5F;
-};
 
 /// Maximum number of sites in the core of a tile: a block of 64 slots then needs about 3 GB.
 inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
@@ -52,8 +24,5 @@ inline constexpr std::int64_t kPortz2013CoreSites = std::int64_t{1} << 16;
     const Measurements& measurements, const Portz2013Options& options,
     const StageObserver& observer = {},
     const ProgressCallback& progress = [](double) { return true; });
-
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
-void read_options(Config& config, Portz2013Options& options);
 
 }  // namespace stipple

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "decoder/block_task.h"
 #include "decoder/decode_options.h"
 #include "decoder/defects.h"
 #include "decoder/frame_exposures.h"

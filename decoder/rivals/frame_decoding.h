@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/decode_method.h"
 #include "decoder/progress_callback.h"
 
 namespace stipple {
 
+struct BlockTask;
 struct FrameExposure;
 struct Measurements;
 

@@ -10,6 +10,7 @@
 
 #include "core/index.h"
 #include "core/key_reader.h"
+#include "decoder/block_task.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/frame_video.h"
 #include "decoder/measurements.h"

@@ -3,18 +3,11 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/decode_method.h"
-#include "decoder/rivals/frame_octave.h"
+#include "decoder/rivals/shahar2011_options.h"
 
 namespace stipple {
 
-class Config;
-
-/// Options of the method `shahar2011`; docs/decoder_rivals.md has the formulas.
-struct Shahar2011Options {
-    int octaves = 2;  ///< at most; the last one has a period of one slot
-    OctaveOptions octave = {};
-};
+struct BlockTask;
 
 /// Space-time super-resolution from a single video by self-similarity (Shahar, Faktor, Irani, CVPR
 /// 2011), in time: the frames as delivered, twice as many in each octave, then interpolated along
@@ -23,8 +16,5 @@ struct Shahar2011Options {
 /// not those of frames. Returns nothing if the progress callback has stopped it.
 [[nodiscard]] std::optional<FluxVideo> super_resolve_time(const BlockTask& block,
                                                           const Shahar2011Options& options);
-
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
-void read_options(Config& config, Shahar2011Options& options);
 
 }  // namespace stipple

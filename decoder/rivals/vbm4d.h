@@ -5,23 +5,9 @@
 #include "core/flux_video.h"
 #include "decoder/progress_callback.h"
 #include "decoder/rivals/frame_decoding.h"
+#include "decoder/rivals/vbm4d_options.h"
 
 namespace stipple {
-
-class Config;
-
-/// Options of the method `vbm4d`; docs/decoder_rivals.md has the formulas.
-struct Vbm4dOptions {
-    int reach_frames = 4;     ///< of a volume, before and after its reference block
-    int step_px = 4;          ///< between reference blocks
-    int search_px = 5;        ///< search radius of similar volumes
-    int max_volumes = 8;      ///< of a group; a power of 2 below is used
-    float threshold = 2.7F;   ///< of coefficients in the first stage, in standard deviations
-    float max_distance1 = 3;  ///< mean square difference of similar volumes, in noise variances
-    float max_distance2 =
-        1;  ///< the same in the second stage, where the basic estimate is compared
-    int min_confidence = 100;  ///< of the motion of a volume, 0..255
-};
 
 /// Collaborative filter of spatio-temporal volumes, after V-BM4D (Maggioni, Boracchi, Foi,
 /// Egiazarian, IEEE TIP 21(9), 2012), of frames after a variance-stabilising transform: volumes of
@@ -31,8 +17,5 @@ struct Vbm4dOptions {
 [[nodiscard]] std::optional<FluxVideo> filter_volumes(
     const DeliveredFrames& frames, const Vbm4dOptions& options,
     const ProgressCallback& progress = [](double) { return true; });
-
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
-void read_options(Config& config, Vbm4dOptions& options);
 
 }  // namespace stipple

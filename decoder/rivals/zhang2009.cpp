@@ -1,66 +1,28 @@
 #include "decoder/rivals/zhang2009.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "decoder/rivals/block_paths.h"
 #include "decoder/rivals/block_sums.h"
+#include "decoder/rivals/patch_stack.h"
 #include "decoder/rivals/stabilised_frames.h"
 
 namespace stipple {
 namespace {
 
-/// Patches by rows.
-using Stack = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Stack load(const FluxVideo& video, int plane, const std::vector<BlockPlace>& places, int side) {
-    Stack stack(static_cast<int>(places.size()), side * side);
-    for (std::size_t i = 0; i < places.size(); ++i)
+/// The patches at these places, order (patch, row, col).
+std::vector<float> load(const FluxVideo& video, int plane, const std::vector<BlockPlace>& places,
+                        int side) {
+    std::vector<float> stack;
+    for (const BlockPlace& place : places)
         for (int row = 0; row < side; ++row)
             for (int col = 0; col < side; ++col)
-                stack(static_cast<int>(i), row * side + col) =
-                    video.plane(places[i].frame, plane)(places[i].row + row, places[i].col + col);
+                stack.push_back(video.plane(place.frame, plane)(place.row + row, place.col + col));
     return stack;
 }
-
-/// Keeps the mean patch and the principal components whose variance exceeds that of noise.
-class StackFilter {
-  public:
-    explicit StackFilter(float sigma) : variance_(sigma * sigma) {}
-
-    /// In place. Returns the sum of the squared factors of its components, the mean included.
-    [[nodiscard]] float filter(Stack& stack) const {
-        const auto patches = static_cast<float>(stack.rows());
-        const auto values = static_cast<float>(stack.cols());
-        if (stack.rows() == 1) return 1;
-        const Eigen::RowVectorXf mean = stack.colwise().sum() / patches;
-        stack.rowwise() -= mean;
-        const Eigen::SelfAdjointEigenSolver<Stack> solver(stack * stack.transpose());
-        // The largest eigenvalue of noise (Marchenko and Pastur 1967).
-        const float root = std::sqrt(values) + std::sqrt(patches);
-        const float limit = variance_ * root * root;
-        Stack kept = Stack::Zero(stack.rows(), stack.rows());
-        float squares = 1;
-        for (int k = 0; k < stack.rows(); ++k) {
-            const float power = solver.eigenvalues()(k);
-            if (!(power > limit)) continue;
-            const float factor = (power - variance_ * values) / power;
-            kept +=
-                factor * solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
-            squares += factor * factor;
-        }
-        stack = (kept * stack).eval();
-        stack.rowwise() += mean;
-        return squares;
-    }
-
-  private:
-    float variance_;
-};
 
 /// Drops the places whose patches differ from the reference by more than noise explains.
 void keep_similar(const FluxVideo& video, const BlockPlace& reference, int side, float limit,
@@ -89,7 +51,6 @@ std::optional<FluxVideo> denoise_along_flow(const DeliveredFrames& frames,
     if (std::min(shape.rows, shape.cols) < side) return frames.light;
     const StabilisedFrames noisy = stabilised(frames);
     const BlockPaths paths(frames.light, side);
-    const StackFilter filter(noisy.sigma);
     const auto filtered = [&](const BlockPlace& reference) {
         FilteredBlocks result;
         paths.follow(reference, options.reach_frames,
@@ -97,10 +58,11 @@ std::optional<FluxVideo> denoise_along_flow(const DeliveredFrames& frames,
         keep_similar(noisy.values, reference, side,
                      options.max_distance * noisy.sigma * noisy.sigma, result.places);
         for (int plane = 0; plane < shape.planes; ++plane) {
-            Stack stack = load(noisy.values, plane, result.places, side);
-            const float squares = filter.filter(stack);
-            result.weights.push_back(static_cast<float>(stack.rows()) / squares);
-            result.values.insert(result.values.end(), stack.data(), stack.data() + stack.size());
+            std::vector<float> stack = load(noisy.values, plane, result.places, side);
+            const float squares =
+                filter_patch_stack(stack, static_cast<int>(result.places.size()), noisy.sigma);
+            result.weights.push_back(static_cast<float>(result.places.size()) / squares);
+            result.values.insert(result.values.end(), stack.begin(), stack.end());
         }
         return result;
     };

@@ -5,19 +5,9 @@
 #include "core/flux_video.h"
 #include "decoder/progress_callback.h"
 #include "decoder/rivals/frame_decoding.h"
+#include "decoder/rivals/zhang2009_options.h"
 
 namespace stipple {
-
-class Config;
-
-/// Options of the method `zhang2009`; docs/decoder_rivals.md has the formulas.
-struct Zhang2009Options {
-    int reach_frames = 5;      ///< of the flow that a patch follows, before and after
-    int patch_px = 6;          ///< side of a patch
-    int step_px = 3;           ///< between reference patches
-    float max_distance = 3;    ///< mean square difference to the reference, in noise variances
-    int min_confidence = 100;  ///< of the flow, 0..255
-};
 
 /// Denoising along optical flow: the patches that the flow leads to are a stack, whose principal
 /// components above the noise are kept (Zhang, Vaddadi, Jin, Nayar, CVPR 2009, with the flow of a
@@ -26,8 +16,5 @@ struct Zhang2009Options {
 [[nodiscard]] std::optional<FluxVideo> denoise_along_flow(
     const DeliveredFrames& frames, const Zhang2009Options& options,
     const ProgressCallback& progress = [](double) { return true; });
-
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
-void read_options(Config& config, Zhang2009Options& options);
 
 }  // namespace stipple

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "decoder/fast/motion_tv.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
