@@ -64,11 +64,15 @@ void log_to_decoder(void* context, int level, const char* /*format*/, va_list /*
     if (errors != nullptr && errors->count++ == 0) errors->first_frame = errors->next_frame;
 }
 
-/// Some hundred bytes may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of
-/// them: none of its blocks may be larger than its share of what the input may take.
-void limit_blocks(std::uint64_t bytes) {
-    constexpr std::uint64_t kBlocks = 2;  // the frame, and what it is converted to
-    av_max_alloc(max_memory(bytes) / kBlocks);
+/// FFmpeg's blocks have at most this part of the memory that the input may take. Some hundred bytes
+/// may ask for frames of 2^28 pixels, which FFmpeg unpacks before it tells of them.
+enum class BlockShare : std::uint8_t {
+    kProbe = 16,  ///< frames that FFmpeg decodes to examine the file: planes of several
+    kDecode = 2,  ///< a frame of packed pixels, and what it is converted to
+};
+
+void limit_blocks(std::uint64_t file_bytes, BlockShare share) {
+    av_max_alloc(max_memory(file_bytes) / static_cast<unsigned>(share));
 }
 
 FfmpegPtr<AVFormatContext> open_file(const std::string& name) {
@@ -151,8 +155,9 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     av_log_set_callback(log_to_decoder);
     name = path.string();
     file_bytes = input_bytes(path);
-    limit_blocks(file_bytes);
+    limit_blocks(file_bytes, BlockShare::kProbe);
     file = open_file(name);
+    limit_blocks(file_bytes, BlockShare::kDecode);
     const AVCodec* decoder = nullptr;
     const int index = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (index < 0)
@@ -170,6 +175,8 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
     codec->opaque = &errors;
     codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT | AV_CODEC_FLAG_BITEXACT;
     codec->err_recognition |= AV_EF_CRCCHECK;
+    // Frames may grow, and a decoder keeps several.
+    codec->max_pixels = static_cast<std::int64_t>(max_memory(file_bytes) / kBytesAPixel);
     codec->thread_count = 0;
     codec->thread_type = FF_THREAD_SLICE;  // decoders in one context each log which frame is wrong
     const int error = avcodec_open2(codec.get(), decoder, nullptr);

@@ -284,6 +284,19 @@ class ProportionTest(ProgramTest):
                         "-frames:v", "1", "-c:v", "ffv1", self.folder / "a.mkv"], check=True)
         self.emulate_refuses("a.mkv", "needs 1.6 GiB of memory for a frame", "--max-memory")
 
+    def test_frames_of_videos_do_not_grow_beyond_what_small_files_may_take(self):
+        def coded(size):
+            return subprocess.run(["ffmpeg", "-v", "error", "-f", "lavfi", "-i", f"color=black:s={size}", "-frames:v",
+                                   "1", "-c:v", "flv", "-f", "flv", "-"], check=True, stdout=subprocess.PIPE).stdout
+        large = coded("16000x7000")
+        at = 13  # the first tag: its kind and its length, 11 bytes in all; data; 4 bytes
+        while large[at] != 9:  # video
+            at += 15 + int.from_bytes(large[at + 1:at + 4], "big")
+        kept = 1000  # of the frame
+        tag = b"\x09" + kept.to_bytes(3, "big") + large[at + 4:at + 11 + kept] + (11 + kept).to_bytes(4, "big")
+        self.write("a.flv", coded("64x64") + tag)
+        self.refuses(["a.flv: frame 1: is damaged"], "emulate", "a.flv", "-o", "x.stipple", "--transfer", "linear")
+
     def test_images_are_files(self):
         (self.folder / "frames").mkdir()
         (self.folder / "frames" / "a.png").symlink_to("/dev/zero")
