@@ -14,6 +14,7 @@ from program import INPUT, OK, PROGRAM, ProgramTest
 
 SANITIZED = b"__asan_init" in Path(PROGRAM).read_bytes()  # which takes memory of its own
 MOST_BYTES = (1024 if SANITIZED else 256) * 2**20
+long_of_memory = unittest.skipIf(SANITIZED, "of memory, which the sanitizers take too, and long with them")
 XXH3_OF_NOTHING = 0x2D06800538D394C2
 
 
@@ -110,6 +111,7 @@ class ProportionTest(ProgramTest):
             self.refuses(["large.stipple: slots up to 0 hold 0 samples", "1074 MB", "--fill-gaps"], "decode",
                          "large.stipple", "-o", "x.npy", "--method", method)
 
+    @long_of_memory
     def test_a_schedule_made_from_a_seed_is_counted_without_being_kept(self):
         for rows, cols, lengths in ((8192, 2048, b"\1"), (8192, 32, b"\1" * 64)):
             section = struct.pack("<QB", 1, len(lengths)) + lengths
@@ -123,6 +125,7 @@ class ProportionTest(ProgramTest):
         self.assertEqual([schedule[key] for key in ("tile_rows", "tile_cols", "period_slots")],
                          [24, 40, 15])
 
+    @long_of_memory
     def test_few_bits_a_sample_are_not_many_frames(self):
         every_64th = struct.pack("<HHH", 1, 1, 64) + b"\1\0\1"
         self.write("bits.stipple", stream_header(500, 400, every_64th, bits=1) + b"".join(
