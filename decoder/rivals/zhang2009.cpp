@@ -1,6 +1,7 @@
 #include "decoder/rivals/zhang2009.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "core/index.h"
@@ -13,15 +14,13 @@
 namespace stipple {
 namespace {
 
-/// The patches at these places, order (patch, row, col).
-std::vector<float> load(const FluxVideo& video, int plane, const std::vector<BlockPlace>& places,
-                        int side) {
-    std::vector<float> stack;
+/// Appends the patches at these places, order (patch, row, col).
+void append_patches(const FluxVideo& video, int plane, const std::vector<BlockPlace>& places,
+                    int side, std::vector<float>& values) {
     for (const BlockPlace& place : places)
         for (int row = 0; row < side; ++row)
             for (int col = 0; col < side; ++col)
-                stack.push_back(video.plane(place.frame, plane)(place.row + row, place.col + col));
-    return stack;
+                values.push_back(video.plane(place.frame, plane)(place.row + row, place.col + col));
 }
 
 /// Drops the places whose patches differ from the reference by more than noise explains.
@@ -58,11 +57,12 @@ std::optional<FluxVideo> denoise_along_flow(const DeliveredFrames& frames,
         keep_similar(noisy.values, reference, side,
                      options.max_distance * noisy.sigma * noisy.sigma, result.places);
         for (int plane = 0; plane < shape.planes; ++plane) {
-            std::vector<float> stack = load(noisy.values, plane, result.places, side);
+            const std::size_t begin = result.values.size();
+            append_patches(noisy.values, plane, result.places, side, result.values);
             const float squares =
-                filter_patch_stack(stack, static_cast<int>(result.places.size()), noisy.sigma);
+                filter_patch_stack(std::span(result.values).subspan(begin),
+                                   static_cast<int>(result.places.size()), noisy.sigma);
             result.weights.push_back(static_cast<float>(result.places.size()) / squares);
-            result.values.insert(result.values.end(), stack.begin(), stack.end());
         }
         return result;
     };

@@ -59,6 +59,13 @@ def dropped(slot, rows):
     return packet(slot, rows, flags=2)
 
 
+def tiff(*tags):
+    """A file with a directory of these (tag, value); what they point to begins at byte 200."""
+    content = b"II*\0" + struct.pack("<IH", 8, len(tags))
+    content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
+    return content.ljust(200, b"\0")
+
+
 class ProportionTest(ProgramTest):
     def measured(self, *arguments):
         """Exit code and messages of a run that keeps within the memory and the disk of all."""
@@ -250,21 +257,15 @@ class ProportionTest(ProgramTest):
     def test_tiff_is_not_larger_than_its_way_of_packing_allows(self):
         side = 16_000
         for packing, size in ((1, 100_000), (32773, 1_000_000), (8, 100_000)):
-            tags = ((256, side), (257, side), (258, 8), (259, packing), (262, 1), (273, 200), (277, 1),
-                    (278, side), (279, size))  # width, height, bits, ..., one strip and its bytes
-            content = b"II*\0" + struct.pack("<IH", 8, len(tags))
-            content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
-            self.write("a.tif", content + bytes(200 - len(content) + size))
+            self.write("a.tif", tiff((256, side), (257, side), (258, 8), (259, packing), (262, 1), (273, 200), (277, 1),
+                                     (278, side), (279, size)) + bytes(size))  # width, height, ..., a strip, its bytes
             self.emulate_refuses("a.tif", "announces an image of 256000000 bytes")
 
     def test_tiles_are_not_larger_than_their_files_can_hold(self):
-        tags = ((256, 8), (257, 2), (258, 8), (259, 1), (262, 1), (277, 1), (322, 32_000), (323, 32_000),
-                (324, 200), (325, 16))  # a tile of 32 000 x 32 000 pixels in an image of 8 x 2
+        side = 32_000  # of a tile in an image of 8 x 2
         for packing, part in ((1, "announces an image of 1024000000 bytes"), (5, "of memory for the image")):
-            words = [(tag, packing if tag == 259 else value) for tag, value in tags]
-            content = b"II*\0" + struct.pack("<IH", 8, len(words))
-            content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in words)
-            self.write("a.tif", content + bytes(100_000))
+            self.write("a.tif", tiff((256, 8), (257, 2), (258, 8), (259, packing), (262, 1), (277, 1), (322, side),
+                                     (323, side), (324, 200), (325, 16)) + bytes(100_000))
             self.emulate_refuses("a.tif", part)
 
     def test_well_packed_images_are_not_larger_than_small_files_may_be(self):
@@ -272,11 +273,8 @@ class ProportionTest(ProgramTest):
         packer = zlib.compressobj(9)
         strip = b"".join(packer.compress(bytes(side * 100)) for _ in range(side // 100))
         strip += packer.flush()
-        tags = ((256, side), (257, side), (258, 8), (259, 8), (262, 1), (273, 200), (277, 1),
-                (278, side), (279, len(strip)))
-        content = b"II*\0" + struct.pack("<IH", 8, len(tags))
-        content += b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
-        self.write("a.tif", content + bytes(200 - len(content)) + strip)
+        self.write("a.tif", tiff((256, side), (257, side), (258, 8), (259, 8), (262, 1), (273, 200), (277, 1),
+                                 (278, side), (279, len(strip))) + strip)
         self.emulate_refuses("a.tif", "needs 1.2 GiB of memory for the image", "--max-memory 1280M")
         side = 4000
         self.write_png("a.png", np.zeros((side, side)))
