@@ -22,6 +22,7 @@ constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
 constexpr std::int64_t kSameWishMs = 500;
 
 std::atomic<int> received_signal{0};
+/// When the first signal came; 0 before.
 std::atomic<std::int64_t> received_ms{0};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // safe in a signal handler
 
@@ -48,13 +49,14 @@ void end_at_once(int signal) {
 
 void on_stop_signal(int signal) {
     const int interrupted_errno = errno;
-    int none = 0;
-    if (received_signal.compare_exchange_strong(none, signal)) {
-        received_ms = now_ms();
+    const std::int64_t now = now_ms();
+    std::int64_t first = 0;
+    if (received_ms.compare_exchange_strong(first, now)) {  // another thread may catch the next one
+        received_signal = signal;
         if (!clear_bar()) write_error_text("\n");
         write_error_text(
             "stipple: stopping when this step is done; a second Ctrl-C stops at once\n");
-    } else if (now_ms() - received_ms > kSameWishMs) {
+    } else if (now - first > kSameWishMs) {
         end_at_once(signal);
     }
     errno = interrupted_errno;
