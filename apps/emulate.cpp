@@ -75,10 +75,13 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     if (truth) truth->finish();
     recorder.finish();
     if (calibration) calibration->write();
-    if (waveform)
-        waveform->write(*recorder.readout_cost(), setup.params.name,
+    if (waveform) {
+        ReadoutCost cost(*setup.timing, setup.schedule.schedule, setup.shape,
+                         recorder.readout_cost()->budget());
+        waveform->write(cost, setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
+    }
     if (at_end)
         for (const std::string& note : end_notes(options.footage, input.footage(), setup.params,
                                                  options.resampling.has_value()))

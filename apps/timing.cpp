@@ -41,7 +41,7 @@ void time_readout(const TimingOptions& options, const RunOptions& run) {
     const NamedSchedule named = set_up_schedule(options.sensor, shape, timing.addressing);
     const SlotBudget budget{slot_clocks(timing, sensor.params.slot_us), OverrunPolicy::kStretch};
     ReadoutCost cost(timing, named.schedule, shape, budget);
-    const ReadoutRate rate = rate_of(timing, named.schedule, shape);
+    const ReadoutRate rate = rate_of(timing, named.schedule, shape, budget.clocks);
     if (waveform)
         waveform->write(cost, sensor.params.name,
                         {cost.first_steady_slot(),

@@ -23,6 +23,7 @@
 #include "io/footage_reader.h"
 #include "readout/rig_figures.h"
 #include "readout/rig_recorder.h"
+#include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
 #include "stream/stream_reader.h"
@@ -96,7 +97,8 @@ void add_readout(const Trial& trial, double bits_per_slot, TrialFigures& figures
         figures.readout_slots_per_second = std::numeric_limits<double>::infinity();
         for (const TimedWindow& window : trial.windows) {
             const ReadoutRate rate =
-                rate_of(*window.timing, window.schedule.schedule, window.shape);
+                rate_of(*window.timing, window.schedule.schedule, window.shape,
+                        slot_clocks(*window.timing, trial.setups.front().params.slot_us));
             const double period = window.schedule.schedule.period_slots();
             figures.readout_slots_per_second =
                 std::min(figures.readout_slots_per_second, rate.coded_hz);

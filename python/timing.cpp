@@ -39,7 +39,7 @@ py::dict timing(const py::object& chosen_sensor, const py::object& schedule, con
     const SensorSetup setup = set_up(sensor, schedule, shape, ColourFilter::kNone);
     const SlotBudget budget{slot_clocks(clocks, setup.params.slot_us), OverrunPolicy::kStretch};
     ReadoutCost cost(clocks, setup.schedule.schedule, shape, budget);
-    const ReadoutRate rate = rate_of(clocks, setup.schedule.schedule, shape);
+    const ReadoutRate rate = rate_of(clocks, setup.schedule.schedule, shape, budget.clocks);
     return dict_of([&](const auto& add) {
         add("sensor", setup.params.name);
         add("schedule", setup.schedule.name);

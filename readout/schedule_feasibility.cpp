@@ -8,6 +8,7 @@
 
 #include "readout/sensor_file.h"
 #include "readout/timing/readout_cost.h"
+#include "readout/timing/readout_rate.h"
 
 namespace stipple {
 namespace {
@@ -23,6 +24,14 @@ std::optional<std::size_t> crowded_slot(std::span<const Exposure> exposures, int
     for (std::size_t slot = 0; slot < under_way.size(); ++slot)
         if (under_way[slot] > max_exposures) return slot;
     return std::nullopt;
+}
+
+/// True if a steady slot has samples of the window.
+bool reads_some_pixel(const ExposureSchedule& schedule, FrameShape shape) {
+    const std::int64_t first = schedule.longest_span_slots();
+    for (std::int64_t slot = first; slot < first + schedule.period_slots(); ++slot)
+        if (count_due(schedule, slot, 0, shape.rows, shape.cols) > 0) return true;
+    return false;
 }
 
 }  // namespace
@@ -46,18 +55,17 @@ std::optional<std::string> timing_problem(const ExposureSchedule& schedule,
                                           const ReadoutTiming& timing, FrameShape shape,
                                           double slot_us) {
     const std::int64_t budget = slot_clocks(timing, slot_us);
-    ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
-    const std::int64_t first = cost.first_steady_slot();
-    std::int64_t slowest = first;
-    for (std::int64_t slot = first; slot < first + schedule.period_slots(); ++slot)
-        if (cost.of(slot).clocks > cost.of(slowest).clocks) slowest = slot;
-    const SlotCost& worst = cost.of(slowest);
-    if (!worst.overrun) return std::nullopt;
+    if (!reads_some_pixel(schedule, shape)) return std::nullopt;
+    const ReadoutRate rate = rate_of(timing, schedule, shape, budget);
+    if (rate.min_slot_clocks <= static_cast<double>(budget)) return std::nullopt;
     const double clocks_per_us = static_cast<double>(timing.clock_hz) / 1e6;
     return fmt::format(
-        "slot {}: reading {} samples takes {:.6g} us, the slot {:.6g} us; what takes longest is {}",
-        slowest % schedule.period_slots(), worst.counts.samples,
-        static_cast<double>(worst.clocks) / clocks_per_us, slot_us, name_of(worst.limit));
+        "slot {}: reading {} samples takes {:.6g} us and must end within {} {} of {:.6g} us; this "
+        "needs slots of {:.6g} us, limited by {}",
+        rate.slowest_phase, rate.slowest.counts.samples,
+        static_cast<double>(rate.slowest.counts.readout_clocks) / clocks_per_us,
+        rate.deadline_slots, rate.deadline_slots == 1 ? "slot" : "slots", slot_us,
+        rate.min_slot_clocks / clocks_per_us, name_of(rate.slowest.limit));
 }
 
 std::optional<std::string> schedule_problem(const SensorSetup& setup) {

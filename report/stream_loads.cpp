@@ -19,7 +19,7 @@ ordered_json cost_of(const StreamHeader& header, const ReadoutTiming& timing, st
     ordered_json readout = ordered_json::array(), convert = readout, link = readout, bits = readout,
                  limit = readout;
     for (std::int64_t slot = 0; slot < slots; ++slot) {
-        const SlotCost& of_slot = cost.of(slot);
+        const SlotCost& of_slot = cost.add_next();
         readout.push_back(of_slot.counts.readout_clocks);
         convert.push_back(of_slot.counts.convert_clocks);
         link.push_back(of_slot.counts.link_clocks);

@@ -18,11 +18,17 @@ std::string hypothetical_text(const ReadoutRate& rate, const ReadoutCost& cost) 
     if (timing.hypothetical.empty()) return {};
     std::string text = fmt::format("hypothetical {}", timing.hypothetical);
     if (!timing.settle_clocks.empty())
-        text += fmt::format("; rows settle for {} clocks in full, {} in the slowest slot",
+        text += fmt::format("; rows settle for {} clocks in full, {} in the slowest readout",
                             rate.full.settle, rate.slowest.settle_clocks);
     for (auto at = text.find("; "); at != std::string::npos; at = text.find("; "))
         text.replace(at, 2, ";\n             ");
     return text + '\n';
+}
+
+/// The upper bound, which holds for schedules that read every row in every slot.
+std::string balanced_text(const ReadoutRate& rate) {
+    if (rate.balanced_speedup < rate.speedup) return {};
+    return fmt::format("; {:.3f} if the load were balanced over the rows", rate.balanced_speedup);
 }
 
 }  // namespace
@@ -45,11 +51,11 @@ std::string readout_text(const ReadoutCost& cost) {
         1e-6 * code_bits_per_second(cost, slots_hz));
     if (cost.overruns() > 0)
         text += fmt::format(
-            "\noverruns     {} longer than {} clocks: {}", counted(cost.overruns(), "slot"),
-            cost.budget().clocks,
+            "\noverruns     in {} of {} clocks rows were due again before they were read: {}",
+            counted(cost.overruns(), "slot"), cost.budget().clocks,
             cost.budget().policy == OverrunPolicy::kDrop
                 ? fmt::format("{} samples dropped", totals.dropped_samples)
-                : "they are stretched; \"--overrun drop\" keeps the rate and gives up rows");
+                : "these are stretched; \"--overrun drop\" keeps the rate and gives up rows");
     return text;
 }
 
@@ -66,22 +72,25 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
     return fmt::format(
         "{}window       {} x {} (width x height)\n"
         "full         {:.5g} readouts/s: {} clocks, {} a row\n"
-        "coded        {:.5g} slots/s: {} clocks in the slowest slot, {:.6g} on average\n"
-        "speed-up     {:.3f}, limited by {}; {:.3f} if the load were balanced over the rows\n"
+        "coded        {:.5g} slots/s of {:.6g} clocks; the slowest readout takes {} clocks and "
+        "must end within {}\n"
+        "speed-up     {:.3f}, limited by {}{}\n"
         "in use       rows {:.1f} %, ADCs {:.1f} %, link {:.1f} %\n"
         "energy       {:.4g} uJ a full readout, {:.4g} pJ a sample; {:.4g} uJ a slot, {:.4g} pJ a "
         "sample\n"
         "             (of assumed constants, without static power)\n"
         "code         {} bits of schedule memory, {:.4g} Mbit/s, {} clocks to load\n"
-        "slot         {} clocks: the readout {}",
+        "slot         {} clocks: {}",
         hypothetical_text(rate, cost), cost.shape().cols, cost.shape().rows, rate.full_hz,
-        rate.full.total, rate.full.row, rate.coded_hz, rate.slowest.clocks, rate.mean_slot_clocks,
-        rate.speedup, name_of(rate.slowest.limit), rate.balanced_speedup, 100 * use.rows,
-        100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
+        rate.full.total, rate.full.row, rate.coded_hz, rate.min_slot_clocks,
+        rate.slowest.counts.readout_clocks, counted(rate.deadline_slots, "slot"), rate.speedup,
+        name_of(rate.slowest.limit), balanced_text(rate), 100 * use.rows, 100 * use.adc,
+        100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
         rate.period.energy_pj / period * 1e-6, coded_sample_pj(rate),
         schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_second(cost, rate.coded_hz),
         cost.timing().code_load_clocks, cost.budget().clocks,
-        fits_slot(rate, cost) ? "fits" : "does not fit");
+        fits_slot(rate, cost) ? "each row is read before it is due again"
+                              : "too short, rows are due again before they are read");
 }
 
 }  // namespace stipple

@@ -120,7 +120,7 @@ void print_sensor(const std::string& name, ColumnAddressing::Kind kind, Trials& 
     makers.push_back({"hardware_tiled", tile});
     const Quality random = trials.quality_of(makers.front());
     for (const Maker& maker : makers) {
-        const ReadoutRate rate = rate_of(timing, maker.make(shape, 1), shape);
+        const ReadoutRate rate = rate_of(timing, maker.make(shape, 1), shape, 0);
         const auto addressing = groups ? fmt::format("group {}x{}", timing.addressing.group_cols,
                                                      timing.addressing.group_rows)
                                        : fmt::format("skip_channel {}", timing.addressing.channels);
@@ -171,8 +171,8 @@ std::vector<Point> print_groups() {
         const Maker random = random_groups(arranged.tile);
         const Quality random_quality = trials.quality_of(random);
         const Quality quality = trials.quality_of(arranged);
-        const double random_speedup = rate_of(timing, random.make(shape, 1), shape).speedup;
-        const double speedup = rate_of(timing, arranged.make(shape, 1), shape).speedup;
+        const double random_speedup = rate_of(timing, random.make(shape, 1), shape, 0).speedup;
+        const double speedup = rate_of(timing, arranged.make(shape, 1), shape, 0).speedup;
         fmt::print("| {}x{} | {:.2f} | {:.2f} | {} | {} | {} |\n", cols, rows, random_speedup,
                    speedup, (random_quality - reference).text(), (quality - reference).text(),
                    (quality - random_quality).text());

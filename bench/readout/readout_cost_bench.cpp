@@ -25,9 +25,10 @@ ReadoutTiming timing() {
 void times_a_slot(benchmark::State& state) {
     const ExposureSchedule schedule =
         random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
-    ReadoutCost cost(timing(), schedule, kShape, {});
+    const ReadoutTiming chip = timing();
+    ScanCosts scans(chip, schedule, kShape);
     std::int64_t slot = 100;
-    for (auto _ : state) benchmark::DoNotOptimize(cost.times(slot++, 0).end);
+    for (auto _ : state) benchmark::DoNotOptimize(scans.times(slot++, 0).end);
     state.SetItemsProcessed(state.iterations());
 }
 

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "core/error.h"
 
@@ -13,169 +14,127 @@ namespace {
 
 constexpr char kWhere[] = "readout timing";
 
-std::uint64_t wide(int value) {
-    return static_cast<std::uint64_t>(value);
-}
-
-/// Clocks of a readout that its ADCs or its link take; the rest is overhead.
-struct TimeShares {
-    std::int64_t adc = 0;
-    std::int64_t link = 0;
-};
-
-/// Rows that are converted and transferred in turns: each step takes its own time.
-TimeShares shares_in_turns(const SlotTimes& times) {
-    TimeShares shares;
-    for (const RowTimes& row : times.rows) {
-        shares.adc += row.convert_end - row.convert;
-        shares.link += row.transfer_end - row.transfer;
-    }
-    return shares;
-}
-
-/// Rows of which one is transferred while the next one is converted: the longer step takes the
-/// time of both. A transfer that begins later than right after the one before was held up.
-TimeShares shares_overlapped(const ReadoutTiming& timing, const SlotTimes& times) {
-    TimeShares shares;
-    const auto add = [&](const RowTimes& row, bool held_up, std::int64_t converted) {
-        if (held_up)
-            shares.adc += converted;
-        else if (timing.row_timing != RowTiming::kFullWidth)
-            shares.link += row.transfer_end - row.transfer;
+/// \throws InputError if no row can be read whatever is dropped.
+void check_droppable(const ScanCosts& scans, std::int64_t budget) {
+    const ReadoutTiming& timing = scans.timing();
+    const std::int64_t slots = scans.longest_deadline_slots();
+    if (slots == 0 && !timing.exposes_while_reading)
+        throw InputError(kWhere,
+                         "this sensor cannot expose while it reads, and the schedule leaves it no "
+                         "slot to read in; take the policy stretch, or a schedule with slots in "
+                         "which all pixels are closed");
+    const auto check = [&](std::int64_t clocks, std::int64_t available, const char* what) {
+        if (clocks > available)
+            throw InputError(kWhere, fmt::format("{} takes {} clocks, its deadline is {}, and "
+                                                 "dropping rows does not help; raise slot_us",
+                                                 what, clocks, available));
     };
-    for (std::size_t i = 0; i + 1 < times.rows.size(); ++i) {
-        const RowTimes& row = times.rows[i];
-        const RowTimes& next = times.rows[i + 1];
-        add(row, next.transfer > row.transfer_end + timing.blanking_clocks,
-            next.convert_end - next.convert);
-    }
-    const RowTimes& last = times.rows.back();
-    add(last, last.end_if_last > last.transfer_end + timing.blanking_clocks,
-        last.convert_end - last.convert);
-    return shares;
-}
-
-ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
-    if (times.rows.empty()) return ReadoutLimit::kRowOverhead;
-    const bool in_turns = timing.row_timing == RowTiming::kSequential;
-    const auto [adc, link] = in_turns ? shares_in_turns(times) : shares_overlapped(timing, times);
-    const std::int64_t overhead = times.end - times.begin - adc - link;
-    const std::int64_t longest = std::max({adc, link, overhead});
-    if (longest == link) return ReadoutLimit::kLink;
-    return longest == adc ? ReadoutLimit::kAdc : ReadoutLimit::kRowOverhead;
+    check(timing.code_load_clocks, budget, "the load of the exposure code");
+    check(
+        timing.overhead_clocks + timing.overhead_rows * full_row_clocks(timing, scans.shape().cols),
+        std::max(slots, std::int64_t{1}) * budget, "the overhead before the rows");
 }
 
 }  // namespace
 
-std::string_view name_of(ReadoutLimit limit) {
-    constexpr std::array<std::string_view, 4> kNames{"adc", "link", "row_overhead", "code_load"};
-    return kNames.at(static_cast<std::size_t>(limit));
-}
-
-ReadoutCounts& ReadoutCounts::operator+=(const ReadoutCounts& more) {
-    samples += more.samples;
-    dropped_samples += more.dropped_samples;
-    transferred += more.transferred;
-    bits += more.bits;
-    conversions += more.conversions;
-    rows += more.rows;
-    readout_clocks += more.readout_clocks;
-    convert_clocks += more.convert_clocks;
-    link_clocks += more.link_clocks;
-    energy_pj += more.energy_pj;
-    return *this;
-}
-
 ReadoutCost::ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule,
                          FrameShape shape, SlotBudget budget)
-    : timing_(timing),
-      schedule_(schedule),
-      shape_(shape),
-      budget_(budget),
-      row_loads_(timing_, schedule, shape),
-      first_steady_slot_(std::max(schedule.longest_span_slots(), 1) - 1),
-      by_phase_(static_cast<std::size_t>(schedule.period_slots())) {
-    timing_.code_load_clocks = code_load_clocks(timing, shape.rows);
-    if (budget.policy != OverrunPolicy::kDrop || budget.clocks == 0) return;
-    const auto check = [&](std::int64_t clocks, const char* what) {
-        if (clocks > budget.clocks)
-            throw InputError(kWhere, fmt::format("{} takes {} clocks of a slot's {}, and dropping "
-                                                 "rows does not help; raise slot_us",
-                                                 what, clocks, budget.clocks));
-    };
-    check(timing_.code_load_clocks, "the load of the exposure code");
-    check(timing.overhead_clocks + timing.overhead_rows * full_row_clocks(timing, shape.cols),
-          "the overhead before the rows");
+    : scans_(timing, schedule, shape), budget_(budget) {
+    if (budget.clocks == 0) budget_.policy = OverrunPolicy::kStretch;
+    if (budget_.policy == OverrunPolicy::kDrop) check_droppable(scans_, budget.clocks);
 }
 
-const SlotCost& ReadoutCost::of(std::int64_t slot) {
-    if (slot < first_steady_slot_) return early_ = compute(slot);
-    SlotCost& known = by_phase_[static_cast<std::size_t>(slot % schedule_.period_slots())];
-    if (known.clocks == 0) known = compute(slot);
-    return known;
-}
-
-std::size_t ReadoutCost::rows_that_fit(const SlotTimes& times) const {
-    std::size_t fit = times.rows.size();
-    if (budget_.clocks == 0 || budget_.policy != OverrunPolicy::kDrop) return fit;
-    while (fit > 0 && times.rows[fit - 1].end_if_last - times.begin > budget_.clocks) --fit;
-    return fit;
-}
-
-void ReadoutCost::count(const RowTimes& row, ReadoutCounts& counts) const {
-    const std::uint64_t planes = wide(shape_.planes);
-    const std::uint64_t transferred = planes * wide(row.load.columns);
-    const std::uint64_t bits = transferred * wide(timing_.bits_per_sample);
-    const std::uint64_t conversions = timing_.adc_skip ? transferred : planes * wide(shape_.cols);
-    counts.samples += planes * wide(row.load.due);
-    counts.transferred += transferred;
-    counts.bits += bits;
-    counts.conversions += conversions;
-    ++counts.rows;
-    counts.convert_clocks += row.convert_end - row.select;
-    counts.link_clocks += row.transfer_end - row.transfer;
-    counts.energy_pj += timing_.row_select_pj +
-                        conversion_energy_pj(timing_) * static_cast<double>(conversions) +
-                        timing_.link_bit_pj * static_cast<double>(bits);
-}
-
-SlotTimes ReadoutCost::times(std::int64_t slot, std::int64_t begin) {
-    row_loads_.list(slot, loads_);
-    SlotTimes times = read_slot(timing_, shape_.cols, loads_, begin);
-    const std::size_t fit = rows_that_fit(times);
-    if (fit < times.rows.size()) {
-        times.rows.resize(fit);
-        times.end = fit > 0 ? times.rows.back().end_if_last : begin;
-    }
+SlotTimes ReadoutCost::times(std::int64_t slot, const SlotCost& cost) {
+    SlotTimes times = scans_.times(slot, cost.scan_begin);
+    std::erase_if(times.rows, [&](const RowTimes& row) { return row.load.row >= cost.end_row; });
+    times.end = times.rows.empty() ? cost.scan_begin : times.rows.back().end_if_last;
     return times;
 }
 
-SlotCost ReadoutCost::compute(std::int64_t slot) {
-    const SlotTimes times = this->times(slot, 0);  // fills loads_ with all rows that are due
-    SlotCost cost;
-    ReadoutCounts& counts = cost.counts;
-    for (const RowTimes& row : times.rows) count(row, counts);
-    const std::size_t read = times.rows.size();
-    for (const RowLoad& load : std::span(loads_).subspan(read))
-        counts.dropped_samples += wide(shape_.planes) * wide(load.due);
-    cost.end_row = read < loads_.size() ? std::max(loads_[read].row, 0) : shape_.rows;
-    cost.settle_clocks = times.settle;
-    counts.readout_clocks = times.end;
-    counts.energy_pj += timing_.code_bit_pj * static_cast<double>(shape_.pixels());
-    const std::int64_t needed = std::max(times.end, timing_.code_load_clocks);
-    cost.overrun = read < loads_.size() || (budget_.clocks > 0 && needed > budget_.clocks);
-    cost.clocks = std::max({needed, budget_.clocks, std::int64_t{1}});
-    cost.limit =
-        timing_.code_load_clocks > times.end ? ReadoutLimit::kCodeLoad : limit_of(timing_, times);
-    return cost;
+bool ReadoutCost::meets_deadlines(const ScanCost& scan) const {
+    return std::ranges::all_of(scan.deadlines, [&](const ScanDeadline& deadline) {
+        return slot_.scan_begin + deadline.end <= slot_.begin + deadline.slots * budget_.clocks;
+    });
+}
+
+ReadoutCost::Cut ReadoutCost::cut(std::int64_t delay) {
+    const SlotTimes times = scans_.times(slots_, delay);
+    const auto is_late = [&](const RowTimes& row) {
+        return row.load.row >= 0 &&
+               row.end_if_last > scans_.deadline_slots(slots_, row.load) * budget_.clocks;
+    };
+    const auto first_late = std::ranges::find_if(times.rows, is_late);
+    Cut left{.delay = delay, .counts = {}, .end_row = first_late->load.row};
+    if (first_late != times.rows.begin() && std::prev(first_late)->load.row >= 0)
+        for (const RowTimes& row : std::span(times.rows.begin(), first_late)) {
+            scans_.count(row, left.counts);
+            left.counts.readout_clocks = row.end_if_last - delay;
+        }
+    for (const RowTimes& row : std::span(first_late, times.rows.end()))
+        left.counts.dropped_samples +=
+            static_cast<std::uint64_t>(shape().planes) * static_cast<std::uint64_t>(row.load.due);
+    left.counts.energy_pj += timing().code_bit_pj * static_cast<double>(shape().pixels());
+    return left;
+}
+
+void ReadoutCost::drop_late_rows() {
+    const std::int64_t delay = slot_.scan_begin - slot_.begin;
+    const bool is_early = slots_ < first_steady_slot();
+    Cut& known = cuts_[is_early ? -1 : slots_ % schedule().period_slots()];
+    if (is_early || known.delay != delay) known = cut(delay);
+    slot_.counts = known.counts;
+    slot_.end_row = known.end_row;
+    slot_.overrun = true;
+}
+
+std::int64_t ReadoutCost::end_of_slot(const ScanCost& scan) {
+    const std::int64_t clocks =
+        std::max({budget_.clocks, timing().code_load_clocks, std::int64_t{1}});
+    if (!timing().exposes_while_reading)
+        return clocks +
+               (scans_.exposes(slots_ + 1) ? std::max(slot_.begin, scan_end_) : slot_.begin);
+    if (budget_.policy == OverrunPolicy::kStretch)
+        for (const ScanDeadline& deadline : scan.deadlines) {
+            std::int64_t& not_before = due_[slots_ + deadline.slots];
+            not_before = std::max(not_before, slot_.scan_begin + deadline.end);
+        }
+    std::int64_t end = slot_.begin + clocks;
+    if (const auto due = due_.find(slots_ + 1); due != due_.end()) {
+        end = std::max(end, due->second);
+        due_.erase(due);
+    }
+    return end;
+}
+
+const SlotCost& ReadoutCost::step() {
+    const ScanCost& scan = scans_.of(slots_);
+    slot_ = {.counts = scan.counts,
+             .begin = end_,
+             .scan_begin = std::max(end_, scan_end_),
+             .settle_clocks = scan.settle_clocks,
+             .end_row = scans_.shape().rows,
+             .limit = scan.limit};
+    if (budget_.policy == OverrunPolicy::kDrop && !meets_deadlines(scan)) drop_late_rows();
+    scan_end_ = slot_.scan_begin + slot_.counts.readout_clocks;
+    end_ = end_of_slot(scan);
+    slot_.clocks = end_ - slot_.begin;
+    if (budget_.clocks > 0 && slot_.clocks > budget_.clocks) slot_.overrun = true;
+    ++slots_;
+    return slot_;
+}
+
+void ReadoutCost::begin_at(std::int64_t slot) {
+    while (slots_ < slot) step();
+    for (auto& due : due_) due.second -= end_;
+    scan_end_ -= end_;
+    end_ = 0;
 }
 
 const SlotCost& ReadoutCost::add_next() {
-    const SlotCost& slot = of(slots_++);
-    overruns_ += slot.overrun ? 1 : 0;
-    clocks_ += slot.clocks;
-    totals_ += slot.counts;
-    return slot;
+    step();
+    overruns_ += slot_.overrun ? 1 : 0;
+    totals_ += slot_.counts;
+    return slot_;
 }
 
 std::int64_t slot_clocks(const ReadoutTiming& timing, double slot_us) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+#include <map>
 #include <vector>
 
 #include "core/exposure_schedule.h"
@@ -9,99 +9,88 @@
 #include "readout/timing/overrun_policy.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/row_loads.h"
+#include "readout/timing/scan_cost.h"
 #include "readout/timing/slot_readout.h"
 
 namespace stipple {
 
-/// The part of a readout that takes most of its time.
-enum class ReadoutLimit : std::uint8_t { kAdc, kLink, kRowOverhead, kCodeLoad };
-
-/// As a word: "adc", "link", "row_overhead", "code_load".
-[[nodiscard]] std::string_view name_of(ReadoutLimit limit);
-
 /// Duration of a slot.
 struct SlotBudget {
-    std::int64_t clocks = 0;  ///< 0: as long as the readout
+    std::int64_t clocks = 0;  ///< 0: as short as the readout allows
     OverrunPolicy policy = OverrunPolicy::kStretch;
 };
 
-/// Counts of a readout. The planes of a pixel have separate circuits that work in parallel, so they
-/// multiply samples, conversions, bits and energy, but not clocks.
-struct ReadoutCounts {
-    std::uint64_t samples = 0;          ///< in the stream
-    std::uint64_t dropped_samples = 0;  ///< due, but did not fit
-    std::uint64_t transferred = 0;  ///< values on the link, those of dark rows and groups included
-    std::uint64_t bits = 0;         ///< on the link
-    std::uint64_t conversions = 0;  ///< of all ADCs
-    std::int64_t rows = 0;          ///< selected, dark ones included
-    std::int64_t readout_clocks = 0;  ///< from the beginning of a slot to the end of its readout
-    std::int64_t convert_clocks = 0;  ///< while columns are selected and converted
-    std::int64_t link_clocks = 0;     ///< while the link transfers
-    double energy_pj = 0;
-
-    ReadoutCounts& operator+=(const ReadoutCounts& more);
-};
-
-/// Cost of a slot.
+/// A slot and the scan of the samples that are ready when it begins. In clocks since the first slot
+/// of the totals.
 struct SlotCost {
     ReadoutCounts counts;
-    std::int64_t clocks = 0;  ///< of the slot: the budget, or longer by readout or code load
-    int settle_clocks = 0;    ///< of its rows
-    int end_row = 0;          ///< rows from here on are dropped; rows of the window: none
-    bool overrun = false;     ///< the budget was too short
-    ReadoutLimit limit = ReadoutLimit::kLink;
+    std::int64_t begin = 0;       ///< of the slot
+    std::int64_t scan_begin = 0;  ///< later if the scan before has not ended
+    std::int64_t clocks = 0;      ///< of the slot: the budget, or longer by deadline or code load
+    int settle_clocks = 0;        ///< of its rows
+    int end_row = 0;              ///< rows from here on are dropped; rows of the window: none
+    bool overrun = false;         ///< stretched, or rows of its scan are dropped
+    ReadoutLimit limit = ReadoutLimit::kLink;  ///< of its scan
 };
 
-/// Cost of the readout slot by slot, and its totals. Depends on the schedule, not on the light.
+/// Slots and scans on one time line, slot by slot, and their totals. Depends on the schedule, not
+/// on the light.
+///
+/// The chip has one scan. It reads the due rows of a slot from the end of their exposures on, or as
+/// soon as the scan before has ended. If a row would miss its deadline (`ScanCosts`), then with
+/// kStretch the slot at whose end the row is due again lasts until it is read; with kDrop this row
+/// and the later ones of its scan are not read.
 class ReadoutCost {
   public:
     /// `shape`: the window that is read. `schedule` must outlive this.
-    /// \throws InputError as `check_window`, or if with kDrop not even overhead and code load fit
-    /// the budget.
+    /// \throws InputError as `check_window`, or if with kDrop overhead and code load do not even
+    /// fit the longest deadline.
     ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
                 SlotBudget budget);
 
-    /// Cost of `slot`. Steady slots of the same phase are equal and computed once.
-    [[nodiscard]] const SlotCost& of(std::int64_t slot);
-    /// Times of its rows from `begin` on, without dropped rows.
-    [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
+    /// Times of the rows that the scan of a slot reads. `cost`: that slot.
+    [[nodiscard]] SlotTimes times(std::int64_t slot, const SlotCost& cost);
 
-    /// The totals begin with this slot.
-    void begin_at(std::int64_t slot) { slots_ = slot; }
+    /// The totals begin with this slot; what earlier slots leave to read is known. Precondition:
+    /// nothing was added yet.
+    void begin_at(std::int64_t slot);
     /// Adds slot `slots()` to the totals and returns it.
     const SlotCost& add_next();
     [[nodiscard]] std::int64_t slots() const { return slots_; }
     [[nodiscard]] std::int64_t overruns() const { return overruns_; }
-    [[nodiscard]] std::int64_t clocks() const { return clocks_; }
+    [[nodiscard]] std::int64_t clocks() const { return end_; }
     [[nodiscard]] const ReadoutCounts& totals() const { return totals_; }
 
-    /// The timing, with the code load of the window instead of the array.
-    [[nodiscard]] const ReadoutTiming& timing() const { return timing_; }
-    [[nodiscard]] const ExposureSchedule& schedule() const { return schedule_; }
-    [[nodiscard]] FrameShape shape() const { return shape_; }
+    [[nodiscard]] const ReadoutTiming& timing() const { return scans_.timing(); }
+    [[nodiscard]] const ExposureSchedule& schedule() const { return scans_.schedule(); }
+    [[nodiscard]] FrameShape shape() const { return scans_.shape(); }
     [[nodiscard]] SlotBudget budget() const { return budget_; }
-    [[nodiscard]] RowLoads& row_loads() { return row_loads_; }
-    /// Earlier slots lack exposures that would have begun before slot 0.
-    [[nodiscard]] std::int64_t first_steady_slot() const { return first_steady_slot_; }
+    [[nodiscard]] RowLoads& row_loads() { return scans_.row_loads(); }
+    [[nodiscard]] std::int64_t first_steady_slot() const { return scans_.first_steady_slot(); }
 
   private:
-    [[nodiscard]] SlotCost compute(std::int64_t slot);
-    [[nodiscard]] std::size_t rows_that_fit(const SlotTimes& times) const;
-    void count(const RowTimes& row, ReadoutCounts& counts) const;
+    /// What is left of a scan that begins late.
+    struct Cut {
+        std::int64_t delay = -1;  ///< of its scan
+        ReadoutCounts counts;
+        int end_row = 0;
+    };
+    const SlotCost& step();
+    void drop_late_rows();
+    [[nodiscard]] Cut cut(std::int64_t delay);
+    [[nodiscard]] bool meets_deadlines(const ScanCost& scan) const;
+    [[nodiscard]] std::int64_t end_of_slot(const ScanCost& scan);
 
-    ReadoutTiming timing_;
-    const ExposureSchedule& schedule_;
-    FrameShape shape_;
+    ScanCosts scans_;
     SlotBudget budget_;
-    RowLoads row_loads_;
-    std::int64_t first_steady_slot_ = 0;
-    std::vector<SlotCost> by_phase_;  ///< of steady slots; `clocks` 0: not yet known
-    SlotCost early_;                  ///< of the last slot before those
-    std::vector<RowLoad> loads_;
+    SlotCost slot_;
+    std::int64_t end_ = 0;                      ///< of `slot_`
+    std::int64_t scan_end_ = 0;                 ///< of the last scan
+    std::map<std::int64_t, std::int64_t> due_;  ///< slots that end no earlier than a clock
+    std::map<std::int64_t, Cut> cuts_;          ///< the last one of each phase; -1: of early slots
 
     std::int64_t slots_ = 0;
     std::int64_t overruns_ = 0;
-    std::int64_t clocks_ = 0;
     ReadoutCounts totals_;
 };
 

@@ -42,7 +42,7 @@ double coded_sample_pj(const ReadoutRate& rate) {
 }
 
 bool fits_slot(const ReadoutRate& rate, const ReadoutCost& cost) {
-    return rate.slowest.clocks <= cost.budget().clocks;
+    return rate.min_slot_clocks <= static_cast<double>(cost.budget().clocks);
 }
 
 }  // namespace stipple

@@ -35,7 +35,7 @@ struct Utilisation {
 [[nodiscard]] double full_sample_pj(const ReadoutRate& rate, const ReadoutCost& cost);
 [[nodiscard]] double coded_sample_pj(const ReadoutRate& rate);
 
-/// True if the slowest slot is not longer than its budget.
+/// True if slots of the budget are long enough for all readouts to meet their deadlines.
 [[nodiscard]] bool fits_slot(const ReadoutRate& rate, const ReadoutCost& cost);
 
 /// The key `readout` of `emulate`. `light_throughput`: of schedule and filters, 0..1.
@@ -74,6 +74,7 @@ void visit_rate_figures(const ReadoutRate& rate, const ReadoutCost& cost, const 
         return static_cast<double>(clocks) / static_cast<double>(cost.timing().clock_hz);
     };
     const std::string& hypothetical = cost.timing().hypothetical;
+    add("exposes_while_reading", cost.timing().exposes_while_reading);
     add("hypothetical", hypothetical.empty() ? std::nullopt : std::optional(hypothetical));
     add("rows", cost.shape().rows);
     add("cols", cost.shape().cols);
@@ -88,9 +89,11 @@ void visit_rate_figures(const ReadoutRate& rate, const ReadoutCost& cost, const 
     add("slowest_settle_clocks", rate.slowest.settle_clocks);
     add("balanced_speedup", rate.balanced_speedup);
     add("balanced_row_clocks", rate.balanced.row);
-    add("slowest_slot_clocks", rate.slowest.clocks);
-    add("slowest_slot_time_s", seconds(rate.slowest.clocks));
+    add("min_slot_clocks", rate.min_slot_clocks);
+    add("slowest_readout_clocks", rate.slowest.counts.readout_clocks);
+    add("slowest_readout_time_s", seconds(rate.slowest.counts.readout_clocks));
     add("slowest_phase", rate.slowest_phase);
+    add("deadline_slots", rate.deadline_slots);
     add("mean_slot_clocks", rate.mean_slot_clocks);
     add("mean_coded_readout_hz", rate.mean_coded_hz);
     add("slot_clocks", cost.budget().clocks);

@@ -36,6 +36,10 @@ struct ReadoutTiming {
     int cols = 0;
     ColumnAddressing addressing;
 
+    /// True if pixels expose while others wait for their readout (pipelined global shutter). If
+    /// not, all pixels are closed while the chip reads.
+    bool exposes_while_reading = true;
+
     // Transfer of a row: set by the busiest channel, or by the table.
     int clocks_per_column = 1;  ///< of a channel
     int io_clocks = 0;          ///< of each row, beside its columns

@@ -106,6 +106,24 @@ RowLoad RowLoads::count_marked() {
     return load;
 }
 
+bool RowLoads::is_due(std::int64_t slot, int row) const {
+    const auto phase = static_cast<int>(slot % schedule_.period_slots());
+    const int first_row = row - row % block_rows_;
+    for (int i = first_row; i < std::min(first_row + block_rows_, shape_.rows); ++i)
+        if (std::ranges::any_of(schedule_.due(phase, i % schedule_.tile_rows()),
+                                [&](const DuePixel& pixel) {
+                                    return pixel.col < shape_.cols && pixel.span_slots <= slot + 1;
+                                }))
+            return true;
+    return false;
+}
+
+int RowLoads::due_again_slots(std::int64_t slot, int row) const {
+    int slots = 1;
+    while (!is_due(slot + slots, row)) ++slots;  // at the latest after a period
+    return slots;
+}
+
 void RowLoads::list(std::int64_t slot, std::vector<RowLoad>& loads) {
     loads.clear();
     RowLoad dark = full_row(timing_, shape_.cols);
@@ -114,6 +132,7 @@ void RowLoads::list(std::int64_t slot, std::vector<RowLoad>& loads) {
         mark_block(slot, first_row);
         if (marked_.empty()) continue;
         RowLoad load = count_marked();
+        load.due_again_slots = due_again_slots(slot, first_row);
         const int end_row = std::min(first_row + block_rows_, shape_.rows);
         for (load.row = first_row; load.row < end_row; ++load.row) {
             load.due = due_[index(load.row - first_row)];

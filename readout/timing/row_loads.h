@@ -17,6 +17,9 @@ struct RowLoad {
     int columns = 0;          ///< transferred: due columns, or all columns of their groups
     int channel_columns = 0;  ///< of the busiest channel
     int conversions = 1;      ///< of the busiest ADC
+    /// Slots until the row, or another one of its groups, is due again, and the samples that its
+    /// pixels keep must be read. Dark rows: 0.
+    int due_again_slots = 0;
 
     bool operator==(const RowLoad&) const = default;
 };
@@ -37,6 +40,11 @@ class RowLoads {
     /// Fills `loads` with the rows that are read at the end of `slot`, in scan order; dark rows
     /// first, if any row is read. Run time grows with the due pixels.
     void list(std::int64_t slot, std::vector<RowLoad>& loads);
+
+    /// True if pixels of the row, or of others of its groups, are due at the end of `slot`.
+    [[nodiscard]] bool is_due(std::int64_t slot, int row) const;
+    /// `RowLoad::due_again_slots` of a row. Precondition: is_due(slot, row).
+    [[nodiscard]] int due_again_slots(std::int64_t slot, int row) const;
 
     /// The columns that each channel transfers of `row` at the end of `slot`; for waveforms.
     [[nodiscard]] std::span<const int> channel_columns(std::int64_t slot, int row);

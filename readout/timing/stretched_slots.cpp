@@ -8,6 +8,9 @@
 namespace stipple {
 namespace {
 
+/// Slots without packets; more are not gone through.
+constexpr std::int64_t kMostSkipped = 1 << 20;
+
 ExposureSchedule whole_schedule(const StreamHeader& header) {
     const auto& [kind, exposure_slots, seed] = header.schedule_source;
     return kind == ScheduleSource::Kind::kRandom
@@ -51,8 +54,10 @@ void StretchedSlots::add(const SamplePacket& packet) {
     if (slots_++ == 0) set_up();
     if (!readout_) return;
     ReadoutCost& cost = readout_->cost;
-    total_us_ += static_cast<double>(cost.of(packet.slot).clocks) /
-                 static_cast<double>(cost.timing().clock_hz) * 1e6;
+    if (packet.slot - cost.slots() > kMostSkipped) return readout_.reset();
+    std::int64_t clocks = 0;
+    while (cost.slots() <= packet.slot) clocks = cost.add_next().clocks;
+    total_us_ += static_cast<double>(clocks) / static_cast<double>(cost.timing().clock_hz) * 1e6;
 }
 
 std::optional<double> StretchedSlots::mean_us() const {

@@ -77,6 +77,8 @@ std::optional<ReadoutTiming> read_timing(Config& config, int bits_per_sample) {
          timing.row_timing);
     read({"rows", kArray, "pixels", "rows of the array"}, timing.rows);
     read({"cols", kArray, "pixels", "columns of the array"}, timing.cols);
+    read({"exposes_while_reading", {}, "", "whether pixels expose while the chip reads"},
+         timing.exposes_while_reading);
     read_addressing(read, timing.addressing);
     read_transfer(read, timing);
     read_conversion(read, timing);

@@ -146,7 +146,10 @@ std::string Waveform::take_until(std::int64_t cycle) {
     return text;
 }
 
-std::string Waveform::slot(ReadoutCost& cost, std::int64_t slot, std::int64_t begin) {
+std::string Waveform::add_slot(ReadoutCost& cost) {
+    const std::int64_t slot = cost.slots();
+    const SlotCost& it = cost.add_next();
+    const std::int64_t begin = it.begin;
     std::string before = take_until(begin);
     if (now_.front().empty()) {  // initial values
         now_.front().assign(1, '0');
@@ -158,10 +161,10 @@ std::string Waveform::slot(ReadoutCost& cost, std::int64_t slot, std::int64_t be
     set(begin, kSlotStart, 1);
     set(begin + 1, kSlotStart, 0);
     set(begin, kSlot, slot);
-    set(begin, kOverrun, cost.of(slot).overrun ? 1 : 0);
+    set(begin, kOverrun, it.overrun ? 1 : 0);
     set(begin, kCodeLoad, timing_.code_load_clocks > 0 ? 1 : 0);
     set(begin + timing_.code_load_clocks, kCodeLoad, 0);
-    const SlotTimes times = cost.times(slot, begin);
+    const SlotTimes times = cost.times(slot, it);
     for (const RowTimes& row : times.rows)
         add_row(row, cost.row_loads().channel_columns(slot, row.load.row));
     return before;
@@ -169,6 +172,7 @@ std::string Waveform::slot(ReadoutCost& cost, std::int64_t slot, std::int64_t be
 
 std::string Waveform::tail(std::int64_t end) {
     set(end, kSlotStart, 0);
+    for (const Change& change : changes_) end = std::max(end, change.cycle);
     return take_until(end + 1) + fmt::format("#{}\nb{} {}\n", picoseconds(end, timing_.clock_hz),
                                              binary(end, 64), code_of(kCycle));
 }

@@ -24,10 +24,9 @@ class Waveform {
 
     /// Declarations and initial values: the beginning of the file.
     [[nodiscard]] std::string head() const;
-    /// The changes of `slot`, which begins at clock `begin`, by `cost`.
-    /// Precondition: slots are in order and `begin` is the end of the previous one.
-    [[nodiscard]] std::string slot(ReadoutCost& cost, std::int64_t slot, std::int64_t begin);
-    /// The end of the last slot, at clock `end`.
+    /// Adds the next slot of `cost`, the same in all calls; the changes before it.
+    [[nodiscard]] std::string add_slot(ReadoutCost& cost);
+    /// The changes up to the end of the last slot, at clock `end`, and of its scan.
     [[nodiscard]] std::string tail(std::int64_t end);
 
   private:

@@ -14,13 +14,9 @@ void WaveformFile::write(ReadoutCost& cost, const std::string& sensor, SlotRange
     const auto write = [&](const std::string& text) { file.write(std::as_bytes(std::span(text))); };
     Waveform waveform(cost.timing(), sensor);
     write(waveform.head());
-    std::int64_t begin = 0;
-    for (std::int64_t slot = range.first; slot < range.first + range.slots && keep_going();
-         ++slot) {
-        write(waveform.slot(cost, slot, begin));
-        begin += cost.of(slot).clocks;
-    }
-    write(waveform.tail(begin));
+    cost.begin_at(range.first);
+    for (std::int64_t i = 0; i < range.slots && keep_going(); ++i) write(waveform.add_slot(cost));
+    write(waveform.tail(cost.clocks()));
     file.close();
     output_.commit();
 }

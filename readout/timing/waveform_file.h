@@ -23,7 +23,8 @@ class WaveformFile {
     WaveformFile(const std::string& file, bool force) : output_(file, force) {}
 
     /// Writes the slots of `range`, of which the first begins at time 0, as long as `keep_going`
-    /// returns true. `sensor` is the name of the scope in the file.
+    /// returns true. `sensor` is the name of the scope in the file. Adds these slots to `cost`.
+    /// Precondition: nothing was added to it yet.
     /// \throws DeviceError.
     void write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
                const std::function<bool()>& keep_going);

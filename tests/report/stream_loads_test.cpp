@@ -52,7 +52,7 @@ TEST(StreamLoadsTest, ClocksAreThoseOfTheReadoutCost) {
     EXPECT_EQ(clocks["clock_hz"], setup.timing->clock_hz);
     EXPECT_EQ(clocks["slot_clocks"], cost.budget().clocks);
     for (std::size_t slot = 0; slot < kSlots; ++slot) {
-        const SlotCost& expected = cost.of(static_cast<std::int64_t>(slot));
+        const SlotCost& expected = cost.add_next();
         EXPECT_EQ(clocks["readout"][slot], expected.counts.readout_clocks);
         EXPECT_EQ(clocks["link"][slot], expected.counts.link_clocks);
         EXPECT_EQ(clocks["link_bits"][slot], expected.counts.bits);

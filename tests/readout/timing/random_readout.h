@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
 
+#include "core/exposure_schedule.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/row_loads.h"
 
@@ -58,6 +60,32 @@ inline ReadoutTiming random_timing(Draw& draw) {
     timing.overhead_clocks = draw(0, 20);
     timing.code_load_clocks = draw(0, 1) * draw(0, 200);
     return timing;
+}
+
+/// A schedule of a small tile: frames, exposures of several lengths, gaps within them or between.
+inline ExposureSchedule random_frames(Draw& draw) {
+    const int rows = draw(1, 4), cols = draw(1, 4), period = draw(1, 12);
+    const int pixels = rows * cols, own = draw(0, 2) == 0 ? 1 : pixels;
+    std::vector<std::vector<Exposure>> drawn(static_cast<std::size_t>(own));
+    for (auto& exposures : drawn)
+        for (int slot = 0; slot < period;) {
+            const int span = draw(1, std::min(period - slot, 8));
+            const auto mask = static_cast<std::uint64_t>(draw(0, 255)) | 1U;
+            if (draw(0, 4) > 0)
+                exposures.push_back({static_cast<std::uint32_t>(slot),
+                                     (mask & open_without_gap(span)) |
+                                         std::uint64_t{1} << static_cast<unsigned>(span - 1)});
+            slot += span + draw(0, 1) * draw(0, 3);
+        }
+    if (drawn.front().empty()) drawn.front().push_back({0, 1});
+    std::vector<Exposure> exposures;
+    std::vector<std::uint32_t> first{0};
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+        const auto& of_pixel = drawn[static_cast<std::size_t>(pixel % own)];
+        exposures.insert(exposures.end(), of_pixel.begin(), of_pixel.end());
+        first.push_back(static_cast<std::uint32_t>(exposures.size()));
+    }
+    return ExposureSchedule(rows, cols, period, first, exposures);
 }
 
 /// Rows of a sensor with loads that no schedule has made, some rows left out.

@@ -11,6 +11,7 @@
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"
+#include "tests/readout/timing/tick_chip.h"
 #include "tests/readout/timing/tick_readout.h"
 #include "tests/support/temporary_folder.h"
 
@@ -64,11 +65,10 @@ ReadoutCounts counted_by_ticks(const Case& it, std::int64_t slot) {
     return counts;
 }
 
-TEST(ReadoutCostTest, AgreesWithTheReferenceThatCountsClocks) {
+TEST(ReadoutCostTest, CountsAreThoseOfTheReferenceThatCountsClocks) {
     for (std::uint32_t seed = 0; seed < kSensors; ++seed) {
         const Case it(seed);
         ReadoutCost cost(it.timing, it.schedule, it.shape, {});
-        std::int64_t clocks = 0;
         std::uint64_t samples = 0;
         for (int slot = 0; slot < kSlots; ++slot) {
             const ReadoutCounts expected = counted_by_ticks(it, slot);
@@ -86,49 +86,147 @@ TEST(ReadoutCostTest, AgreesWithTheReferenceThatCountsClocks) {
             EXPECT_EQ(given.counts.link_clocks, expected.link_clocks);
             EXPECT_NEAR(given.counts.energy_pj, expected.energy_pj, 1e-9);
             EXPECT_FALSE(given.overrun);
-            EXPECT_EQ(given.clocks,
-                      std::max({expected.readout_clocks, code_load_clocks(it.timing, it.shape.rows),
-                                std::int64_t{1}}));
-            clocks += given.clocks;
             samples += expected.samples;
         }
         ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
-        EXPECT_EQ(cost.clocks(), clocks);
         EXPECT_EQ(cost.totals().samples, samples);
         EXPECT_EQ(cost.slots(), kSlots);
     }
 }
 
-TEST(ReadoutCostTest, DroppedRowsAreTheFewestThatLetTheRestFit) {
-    int with_drops = 0;
-    for (std::uint32_t seed = 0; seed < kSensors; ++seed) {
-        Case it(seed);
-        it.timing.overhead_rows = 0;
-        const SlotBudget budget{
-            it.timing.overhead_clocks + it.timing.code_load_clocks + it.draw(1, 60),
-            OverrunPolicy::kDrop};
-        ReadoutCost dropping(it.timing, it.schedule, it.shape, budget);
-        for (int slot = 0; slot < kSlots; ++slot) {
-            const SlotCost& given = dropping.of(slot);
-            std::vector<RowLoad> loads;
-            RowLoads(it.timing, it.schedule, it.shape).list(slot, loads);
-            const auto all = read_slot_by_ticks(it.timing, it.shape.cols, loads, 0).rows;
-            EXPECT_EQ(given.clocks, budget.clocks);
-            EXPECT_LE(given.counts.readout_clocks, budget.clocks);
-            EXPECT_EQ(given.overrun, given.end_row < it.shape.rows);
-            for (const RowTimes& row : all) {
-                const bool is_kept = row.load.row < given.end_row;
-                EXPECT_TRUE(is_kept || row.end_if_last > budget.clocks) << "seed " << seed;
-            }
-            const auto planes = static_cast<std::uint64_t>(it.shape.planes);
-            EXPECT_EQ(given.counts.samples,
-                      planes * count_due(it.schedule, slot, 0, given.end_row, it.shape.cols));
-            EXPECT_EQ(given.counts.samples + given.counts.dropped_samples,
-                      planes * count_due(it.schedule, slot, 0, it.shape.rows, it.shape.cols));
-            with_drops += given.overrun ? 1 : 0;
+// Frames, several lengths, gaps; sensors that expose while they read, and others.
+TEST(ReadoutCostTest, SlotsAreAsLongAsOnAChipThatCountsClocks) {
+    int waiting = 0, stretched = 0;
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        timing.exposes_while_reading = draw(0, 3) > 0;
+        const FrameShape shape{draw(1, timing.rows), timing.cols, 1};
+        const ExposureSchedule schedule = random_frames(draw);
+        const std::int64_t budget = draw(0, 3) * draw(1, 40);
+        const auto expected = slot_lengths_by_ticks(timing, schedule, shape, budget, 2 * kSlots);
+        ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
+        std::int64_t clocks = 0;
+        for (const std::int64_t length : expected) {
+            const SlotCost& slot = cost.add_next();
+            EXPECT_EQ(slot.begin, clocks);
+            EXPECT_EQ(slot.clocks, length);
+            EXPECT_EQ(slot.overrun, budget > 0 && length > budget);
+            EXPECT_EQ(slot.end_row, shape.rows);
+            waiting += slot.scan_begin > slot.begin ? 1 : 0;
+            stretched += slot.overrun ? 1 : 0;
+            clocks += length;
         }
+        EXPECT_EQ(cost.clocks(), clocks);
+        ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
     }
-    EXPECT_GT(with_drops, 100) << "the test means something";
+    EXPECT_GT(waiting, 1000) << "the test means something";
+    EXPECT_GT(stretched, 1000) << "the test means something";
+}
+
+// The rows before the first one that would be late are read, each in time.
+TEST(ReadoutCostTest, RowsAreDroppedFromTheFirstLateOneOn) {
+    int with_drops = 0, delayed = 0;
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        timing.overhead_rows = 0;
+        const FrameShape shape{draw(1, timing.rows), timing.cols, draw(1, 3)};
+        const ExposureSchedule schedule = random_frames(draw);
+        const SlotBudget budget{timing.overhead_clocks + timing.code_load_clocks + draw(1, 60),
+                                OverrunPolicy::kDrop};
+        ReadoutCost dropping(timing, schedule, shape, budget);
+        RowLoads row_loads(timing, schedule, shape);
+        std::int64_t free_from = 0;  ///< the scan
+        for (std::int64_t slot = 0; slot < 2 * kSlots; ++slot) {
+            const SlotCost given = dropping.add_next();
+            EXPECT_EQ(given.begin, slot * budget.clocks);
+            EXPECT_EQ(given.clocks, budget.clocks);
+            EXPECT_EQ(given.scan_begin, std::max(given.begin, free_from));
+            EXPECT_EQ(given.overrun, given.end_row < shape.rows);
+            std::vector<RowLoad> loads;
+            row_loads.list(slot, loads);
+            bool kept = false;
+            for (const RowTimes& row :
+                 read_slot_by_ticks(timing, shape.cols, loads, given.scan_begin).rows) {
+                if (row.load.row < 0) continue;
+                const bool in_time =
+                    row.end_if_last <=
+                    (slot + row_loads.due_again_slots(slot, row.load.row)) * budget.clocks;
+                EXPECT_TRUE(in_time || row.load.row >= given.end_row);
+                EXPECT_TRUE(!in_time || row.load.row != given.end_row);
+                if (row.load.row >= given.end_row) continue;
+                free_from = row.end_if_last;
+                kept = true;
+            }
+            const auto planes = static_cast<std::uint64_t>(shape.planes);
+            EXPECT_EQ(given.counts.samples,
+                      planes * count_due(schedule, slot, 0, given.end_row, shape.cols));
+            EXPECT_EQ(given.counts.samples + given.counts.dropped_samples,
+                      planes * count_due(schedule, slot, 0, shape.rows, shape.cols));
+            EXPECT_EQ(given.counts.rows > 0, kept);
+            with_drops += given.overrun ? 1 : 0;
+            delayed += given.scan_begin > given.begin ? 1 : 0;
+        }
+        ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
+    }
+    EXPECT_GT(with_drops, 1000) << "the test means something";
+    EXPECT_GT(delayed, 1000) << "the test means something";
+}
+
+TEST(ReadoutCostTest, APieceThatBeginsLateHasTheSlotsOfTheWhole) {
+    for (std::uint32_t seed = 0; seed < kSensors; ++seed) {
+        Draw draw(seed);
+        const ReadoutTiming timing = random_timing(draw);
+        const FrameShape shape{timing.rows, timing.cols, 1};
+        const ExposureSchedule schedule = random_frames(draw);
+        const SlotBudget budget{timing.overhead_clocks + 200 + draw(1, 60),
+                                draw(0, 1) == 0 ? OverrunPolicy::kDrop : OverrunPolicy::kStretch};
+        ReadoutCost whole(timing, schedule, shape, budget), piece(timing, schedule, shape, budget);
+        for (int slot = 0; slot < kSlots; ++slot) whole.add_next();
+        piece.begin_at(kSlots);
+        const std::int64_t begin = whole.clocks();
+        for (int slot = 0; slot < kSlots; ++slot) {
+            const SlotCost expected = whole.add_next();
+            const SlotCost given = piece.add_next();
+            EXPECT_EQ(given.begin + begin, expected.begin);
+            EXPECT_EQ(given.clocks, expected.clocks);
+            EXPECT_EQ(given.end_row, expected.end_row);
+            EXPECT_EQ(given.overrun, expected.overrun);
+        }
+        ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
+    }
+}
+
+// 750 frames/s of a chip that has 1069.6: frames of 4 slots need not be read within one.
+TEST(ReadoutCostTest, AFrameMayBeReadUntilTheNextOne) {
+    const auto timing = sensor_timing("lux1310");
+    const SlotBudget budget{slot_clocks(timing, 333.333), OverrunPolicy::kDrop};
+    for (const int open_slots : {1, 4}) {
+        const ExposureSchedule frames = full_schedule(open_slots, 4);
+        ReadoutCost cost(timing, frames, {1024, 1280, 1}, budget);
+        for (int slot = 0; slot < 40; ++slot) cost.add_next();
+        EXPECT_EQ(cost.overruns(), 0);
+        EXPECT_EQ(cost.totals().dropped_samples, 0);
+        EXPECT_EQ(cost.totals().samples, 10U * 1024 * 1280);
+    }
+}
+
+TEST(ReadoutCostTest, AChipThatCannotExposeWhileItReadsNeedsClosedSlots) {
+    auto timing = sensor_timing("lux1310");
+    timing.exposes_while_reading = false;
+    const SlotBudget budget{slot_clocks(timing, 333.333), OverrunPolicy::kDrop};
+    // A third of a millisecond of exposure and 0.935 ms of readout are shorter than four slots.
+    const ExposureSchedule short_frames = full_schedule(1, 4);
+    ReadoutCost cost(timing, short_frames, {1024, 1280, 1}, budget);
+    for (int slot = 0; slot < 40; ++slot) cost.add_next();
+    EXPECT_EQ(cost.totals().dropped_samples, 0);
+    const ExposureSchedule gapless = full_schedule(4, 4);
+    expect_parts(message_of<InputError>([&] {
+                     ReadoutCost(timing, gapless, {1024, 1280, 1}, budget);
+                     return 0;
+                 }),
+                 {"cannot expose while it reads", "stretch"});
 }
 
 TEST(ReadoutCostTest, AStretchedSlotLastsAsLongAsItsReadout) {
@@ -149,7 +247,7 @@ TEST(ReadoutCostTest, TheCodeOfAWindowLoadsInTheShareOfItsRows) {
     const auto every_slot = full_schedule(1, 1);
     for (const auto& [rows, clocks] : {std::pair{1024, 100000}, {512, 50000}, {100, 9766}}) {
         ReadoutCost cost(timing, every_slot, {rows, 16, 1}, {});
-        EXPECT_EQ(cost.of(0).clocks, clocks) << "rounded up";
+        EXPECT_EQ(cost.add_next().clocks, clocks) << "rounded up";
     }
 }
 
@@ -157,22 +255,9 @@ TEST(ReadoutCostTest, ASlotLastsAtLeastAsLongAsTheLoadOfItsCode) {
     const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
     const auto every_slot = full_schedule(1, 1);
     ReadoutCost cost(timing, every_slot, {1024, 1280, 1}, {});
-    EXPECT_EQ(cost.of(0).clocks, 100000);
-    EXPECT_EQ(cost.of(0).limit, ReadoutLimit::kCodeLoad);
-}
-
-TEST(ReadoutCostTest, SaysWhatTheRowsWaitFor) {
-    const auto limit = [](const char* sensor, std::vector<std::string> changes, int cols) {
-        const auto timing = sensor_timing(sensor, changes);
-        const auto every_slot = full_schedule(1, 1);
-        return ReadoutCost(timing, every_slot, {200, cols, 1}, {}).of(0).limit;
-    };
-    EXPECT_EQ(limit("lux1310", {}, 1280), ReadoutLimit::kLink);
-    EXPECT_EQ(limit("lux1310", {"timing.settle_clocks=[200]"}, 1280), ReadoutLimit::kAdc);
-    EXPECT_EQ(limit("imx273", {"timing.overhead_rows=0"}, 320), ReadoutLimit::kAdc);
-    EXPECT_EQ(limit("vita", {}, 1280), ReadoutLimit::kLink);
-    EXPECT_EQ(limit("vita", {}, 160), ReadoutLimit::kRowOverhead);
-    EXPECT_EQ(limit("cmv4000", {}, 2048), ReadoutLimit::kRowOverhead);
+    const SlotCost& slot = cost.add_next();
+    EXPECT_EQ(slot.clocks, 100000);
+    EXPECT_EQ(slot.limit, ReadoutLimit::kCodeLoad);
 }
 
 TEST(ReadoutCostTest, WhatDroppingRowsCannotHelpIsRefused) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "readout/schedules/tiled_schedule.h"
+#include "readout/timing/readout_cost.h"
 #include "sensor_model/sensor_config.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"
@@ -17,18 +19,80 @@
 namespace stipple {
 namespace {
 
-TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
+TEST(ReadoutRateTest, AConventionalCameraHasItsPublishedFrameRate) {
     const auto timing = sensor_timing("lux1310");
-    const auto rate = rate_of(timing, full_schedule(4, 4), {1024, 1280, 1});
+    const auto rate = rate_of(timing, full_schedule(4, 4), {1024, 1280, 1}, 0);
     EXPECT_EQ(rate.full.total, 84143);
-    EXPECT_EQ(rate.slowest.clocks, 84143);
+    EXPECT_EQ(rate.slowest.counts.readout_clocks, 84143);
     EXPECT_EQ(rate.slowest_phase, 3);
-    EXPECT_DOUBLE_EQ(rate.speedup, 1);
+    EXPECT_EQ(rate.deadline_slots, 4);
     EXPECT_NEAR(rate.full_hz, 1069.6, 0.1);
-    // In the other three slots, only the exposure code is loaded.
-    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, (84143 + 3 * 8640) / 4.0);
+    // A frame of 4 slots is transferred while the next one is exposed.
+    EXPECT_DOUBLE_EQ(rate.min_slot_clocks, 84143 / 4.0);
+    EXPECT_DOUBLE_EQ(rate.speedup, 4);
+    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks, 84143 / 4.0);
     EXPECT_NEAR(rate.full_energy_pj, 1024 * (100 + 1280 * (4 * 100 + 12 * 10.0)),
                 1);  // config/sensors/lux1310.toml; 12 bits cost four times as much as 10
+}
+
+// What must hold on the sold chip, whatever is coded: 1069.6 frames/s are 4278 slots of which one
+// in four begins a frame.
+TEST(ReadoutRateTest, FramesOfFourSlotsRunAtTheFrameRateOfTheChip) {
+    const auto timing = sensor_timing("lux1310");
+    const FrameShape shape{1024, 1280, 1};
+    const auto slots_hz = [&](const char* name) {
+        Config config(project_path("config/schedules") / (std::string(name) + ".toml"), {});
+        const auto named = read_schedule(config, shape, 1, timing.addressing);
+        return rate_of(timing, named.schedule, shape, 0).coded_hz;
+    };
+    EXPECT_NEAR(slots_hz("full1x"), 4 * 1069.6, 0.2);
+    EXPECT_NEAR(slots_hz("full4x"), 4 * 1069.6, 0.2);
+    EXPECT_NEAR(slots_hz("rolling"), 4252, 0.5);
+    EXPECT_NEAR(slots_hz("random"), 2860, 5);
+    EXPECT_NEAR(slots_hz("hardware_tiled"), 3500, 0.5);
+}
+
+// Its frame time is the sum of exposure and readout, as in the data sheets of such sensors.
+TEST(ReadoutRateTest, AChipThatCannotExposeWhileItReadsTakesTheSum) {
+    auto timing = sensor_timing("lux1310");
+    timing.exposes_while_reading = false;
+    const FrameShape shape{1024, 1280, 1};
+    constexpr std::int64_t kExposure = 45000;
+    EXPECT_DOUBLE_EQ(rate_of(timing, full_schedule(4, 4), shape, kExposure).min_slot_clocks,
+                     (4 * kExposure + 84143) / 4.0);
+    EXPECT_DOUBLE_EQ(rate_of(timing, full_schedule(1, 4), shape, kExposure).min_slot_clocks,
+                     (kExposure + 84143) / 4.0);
+    const auto coded = random_schedule(64, 1280, kPaperExposureSlots, 1);
+    const ReadoutRate rate = rate_of(timing, coded, shape, kExposure);
+    EXPECT_EQ(rate.deadline_slots, 0);
+    EXPECT_DOUBLE_EQ(rate.min_slot_clocks,
+                     static_cast<double>(kExposure + rate.slowest.counts.readout_clocks));
+    EXPECT_DOUBLE_EQ(rate.mean_slot_clocks,
+                     kExposure + static_cast<double>(rate.period.readout_clocks) / 15);
+}
+
+// Slots of the rate lose nothing; slots that are shorter by a clock, and shorter than the rate, do.
+TEST(ReadoutRateTest, IsTheFastestWithoutOverrun) {
+    int tested = 0;
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        timing.overhead_clocks += 20;
+        const FrameShape shape{timing.rows, timing.cols, 1};
+        const ExposureSchedule schedule = random_frames(draw);
+        const auto overruns = [&](std::int64_t budget, int slots) {
+            ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
+            while (cost.slots() < slots && cost.overruns() == 0) cost.add_next();
+            return cost.overruns();
+        };
+        const double slot_clocks = rate_of(timing, schedule, shape, 0).min_slot_clocks;
+        const auto whole = static_cast<std::int64_t>(std::ceil(slot_clocks));
+        EXPECT_EQ(overruns(whole, 200), 0) << "seed " << seed;
+        if (whole == 1) continue;
+        EXPECT_GT(overruns(whole - 1, 20000), 0) << "seed " << seed;
+        ++tested;
+    }
+    EXPECT_GT(tested, 900);
 }
 
 // docs/readout_timing.md: per-pixel random codes on a LUX1310 with channels that skip columns take
@@ -36,7 +100,7 @@ TEST(ReadoutRateTest, AConventionalCameraGainsNothing) {
 TEST(ReadoutRateTest, RandomCodesOnLux1310TakeTheDocumentedTime) {
     const auto timing = sensor_timing("lux1310");
     const FrameShape shape{256, 1280, 1};
-    const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape);
+    const auto rate = rate_of(timing, random_schedule(256, 1280, kPaperExposureSlots, 1), shape, 0);
     EXPECT_NEAR(rate.balanced.row, 80 * 4.0 / 15 + 2, 1e-9);
     EXPECT_NEAR(rate.speedup, 82 / 31.0, 0.1);
     EXPECT_GT(rate.balanced_speedup, 3.3);
@@ -66,7 +130,7 @@ TEST(ReadoutRateTest, GainsAreThoseOfTheDocumentedTable) {
         const FrameShape shape{timing.rows, timing.cols, 1};
         const HardwareTile tile{.addressing = timing.addressing, .array_cols = timing.cols};
         const auto gain = [&](const ExposureSchedule& schedule) {
-            const ReadoutRate rate = rate_of(timing, schedule, shape);
+            const ReadoutRate rate = rate_of(timing, schedule, shape, 0);
             EXPECT_NEAR(rate.balanced_speedup, row.bound, 0.005);
             return rate.speedup;
         };
@@ -82,7 +146,7 @@ TEST(ReadoutRateTest, GainsAreThoseOfTheDocumentedTable) {
 TEST(ReadoutRateTest, RandomCodesGainNothingInGroupsOf16By2) {
     const auto timing = sensor_timing("lux1310", {"timing.addressing=group"});
     const FrameShape shape{128, 1280, 1};
-    const auto rate = rate_of(timing, random_schedule(128, 1280, kPaperExposureSlots, 1), shape);
+    const auto rate = rate_of(timing, random_schedule(128, 1280, kPaperExposureSlots, 1), shape, 0);
     EXPECT_NEAR(rate.speedup, 1, 0.01);
 }
 
@@ -101,9 +165,9 @@ TEST(ReadoutRateTest, ATileInStepWithTheChannelsIsSlow) {
     timing.rows = 1;
     timing.cols = 60;
     timing.addressing.channels = 3;
-    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 4);
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}, 0).min_slot_clocks, 4);
     timing.addressing.channels = 4;
-    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}).slowest.clocks, 1);
+    EXPECT_EQ(rate_of(timing, schedule, {1, 60, 1}, 0).min_slot_clocks, 1);
 }
 
 bool reads_every_row(const ReadoutTiming& timing, const ExposureSchedule& schedule,
@@ -128,7 +192,7 @@ TEST(ReadoutRateTest, NoScheduleThatReadsEveryRowBeatsTheBound) {
         const auto schedule = random_schedule(draw(1, 5), timing.cols, std::vector{1, 2, 1}, seed);
         // A chip that settles less for fewer columns may gain by uneven rows.
         if (!timing.settle_clocks.empty() || !reads_every_row(timing, schedule, shape)) continue;
-        const auto rate = rate_of(timing, schedule, shape);
+        const auto rate = rate_of(timing, schedule, shape, 0);
         EXPECT_LE(rate.speedup, rate.balanced_speedup * (1 + 1e-12)) << "seed " << seed;
         ++tested;
     }
@@ -153,7 +217,7 @@ TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
                         project_path("config/schedules") / (std::string(name) + ".toml"), {});
                     const auto made = read_schedule(schedule, shape, 1, timing->addressing);
                     if (!reads_every_row(*timing, made.schedule, shape)) continue;
-                    const auto rate = rate_of(*timing, made.schedule, shape);
+                    const auto rate = rate_of(*timing, made.schedule, shape, 0);
                     EXPECT_LE(rate.speedup, rate.balanced_speedup * (1 + 1e-12))
                         << file.path().filename() << " " << name << " " << shape.cols;
                     ++tested;
@@ -164,7 +228,8 @@ TEST(ReadoutRateTest, NoSensorBeatsTheBound) {
 
 TEST(ReadoutRateTest, AScheduleThatReadsNothingIsRefused) {
     const ExposureSchedule nothing(1, 1, 1, {0, 0}, {});
-    EXPECT_THROW(static_cast<void>(rate_of(sensor_timing("vita"), nothing, {4, 4, 1})), InputError);
+    EXPECT_THROW(static_cast<void>(rate_of(sensor_timing("vita"), nothing, {4, 4, 1}, 0)),
+                 InputError);
 }
 
 }  // namespace

@@ -49,13 +49,16 @@ TEST(RowLoadsTest, AreThoseOfTheDefinition) {
             for (int row = 0; row < shape.rows; ++row) {
                 const auto columns = transferred(timing, schedule, shape, slot, row);
                 if (columns.empty()) continue;
+                int again = 1;
+                while (transferred(timing, schedule, shape, slot + again, row).empty()) ++again;
                 expected.push_back(
                     {.row = row,
                      .due = static_cast<int>(count_due(schedule, slot, row, 1, shape.cols)),
                      .columns = static_cast<int>(columns.size()),
                      .channel_columns = most_alike(columns, timing.addressing.channels),
                      .conversions = timing.adc_skip ? most_alike(columns, timing.adcs())
-                                                    : timing.columns_per_adc});
+                                                    : timing.columns_per_adc,
+                     .due_again_slots = again});
                 const auto by_channel = row_loads.channel_columns(slot, row);
                 EXPECT_EQ(std::accumulate(by_channel.begin(), by_channel.end(), 0),
                           expected.back().columns);

@@ -50,12 +50,8 @@ void parse(const std::string& text, Visit visit) {
 std::string waveform_of(ReadoutCost& cost, std::int64_t slots) {
     Waveform waveform(cost.timing(), "a chip");
     std::string text = waveform.head();
-    std::int64_t begin = 0;
-    for (std::int64_t slot = 0; slot < slots; ++slot) {
-        text += waveform.slot(cost, slot, begin);
-        begin += cost.of(slot).clocks;
-    }
-    return text + waveform.tail(begin);
+    for (std::int64_t slot = 0; slot < slots; ++slot) text += waveform.add_slot(cost);
+    return text + waveform.tail(cost.clocks());
 }
 
 // The file is sampled between its changes: busy clocks add up to those of the cost.
@@ -69,7 +65,6 @@ TEST(WaveformTest, BusyTimesAreThoseOfTheAccount) {
         const SlotBudget budget{draw(0, 1) * 1000, OverrunPolicy::kStretch};
         ReadoutCost cost(timing, schedule, shape, budget);
         constexpr std::int64_t kSlots = 9;
-        for (int slot = 0; slot < kSlots; ++slot) cost.add_next();
         Values total;
         Values before;
         parse(waveform_of(cost, kSlots), [&](std::int64_t time, const Values& values) {
