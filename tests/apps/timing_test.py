@@ -99,6 +99,14 @@ class TimingTest(ProgramTest):
         self.fails(1, ["must end within 1 slot of 333.333 us", "934.922 us"], "schedule", "check", "tiled", "--size",
                    "1280x1024", *slot)
 
+    def test_the_list_of_sensors_says_what_coding_gains(self):
+        for sensor in SENSORS:
+            line = next(line for line in self.succeed("list", "sensors").splitlines() if line.startswith(sensor))
+            told = re.search(r"coded ([\d.]+)(?: to ([\d.]+))? slots per full readout", line)
+            gains = [self.figures("timing", "--sensor", sensor, "--schedule", schedule)["speedup"]
+                     for schedule in ("random", "hardware_tiled")]
+            self.assertEqual([f"{gain:.2f}" for gain in gains], [told[1], told[2] or told[1]])
+
     def test_a_sensor_without_timing_is_refused_with_those_that_have_it(self):
         message = self.fails(INPUT, ["paper", "[timing]"], "timing", "--sensor", "paper")
         for sensor in SENSORS:
