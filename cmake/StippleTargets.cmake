@@ -71,12 +71,14 @@ function(stipple_verify_headers)
 endfunction()
 
 # stipple_reads(OUT [path ...]): for a test's ENVIRONMENT, what the test reads of the project, relative to
-# it, or runs of the build. scripts/run_tests takes it for what the test depends on. All may read config/
-# and load libstipple_opencv.so.
+# it, or runs of the build. scripts/run_tests takes it for what the test depends on, and refuses what does
+# not exist. All may read config/ and load libstipple_opencv.so.
 function(stipple_reads out)
     set(paths)
     foreach(path config ${CMAKE_BINARY_DIR}/libstipple_opencv.so ${ARGN})
-        cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+        if(NOT path MATCHES "^\\$<TARGET_FILE:")  # that of a target is absolute
+            cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+        endif()
         list(APPEND paths ${path})
     endforeach()
     list(JOIN paths ":" paths)

@@ -37,6 +37,7 @@ class RunTestsTest(unittest.TestCase):
             (self.root / "scripts").mkdir(parents=True, exist_ok=True)
             shutil.copy(SCRIPTS / name, self.root / "scripts")
         self.write("CMakePresets.json", json.dumps(PRESETS))
+        self.write("config/c", "text")
         self.lists = ["cmake_minimum_required(VERSION 3.25)", "project(p LANGUAGES NONE)", "enable_testing()"]
 
     def write(self, name, text):
@@ -67,13 +68,13 @@ class RunTestsTest(unittest.TestCase):
         done = subprocess.run([sys.executable, "-B", "scripts/run_tests", "p", *options], cwd=self.root,
                               env=self.environment, text=True, capture_output=True, check=False)
         self.assertNotIn("Traceback", done.stderr)
-        return sorted(self.ran.read_text().split()), done.stdout
+        return sorted(self.ran.read_text().split()), done.stdout + done.stderr
 
     def test_what_passed_runs_again_only_when_its_program_or_what_it_reads_changes(self):
         self.entry("test_one", reads="golden/one")
         self.entry("test_two", reads="pages/page.md")
         self.entry("check", reads=None)
-        for name in ("golden/one/a", "golden/one/deep/b", "pages/page.md", "pages/other.md", "config/c"):
+        for name in ("golden/one/a", "golden/one/deep/b", "pages/page.md", "pages/other.md"):
             self.write(name, "text")
         self.configure()
         self.assertEqual(self.run_tests()[0], ["check", "test_one", "test_two"])
@@ -89,6 +90,16 @@ class RunTestsTest(unittest.TestCase):
             self.assertEqual(self.run_tests()[0], ["check", *again], name)
             self.assertEqual(self.run_tests()[0], ["check"], name)
         self.assertEqual(self.run_tests("--all")[0], ["check", "test_one", "test_two"])
+
+    def test_what_a_test_reads_has_to_exist(self):
+        self.entry("test_one", reads="golden/one")
+        self.configure()
+        for options in ([], ["--all"]):
+            ran, printed = self.run_tests(*options)
+            self.assertEqual(ran, [])
+            self.assertIn(f"test_one: STIPPLE_READS names {self.root}/golden/one, which is neither", printed)
+        self.write("golden/one", "text")
+        self.assertEqual(self.run_tests()[0], ["test_one"])
 
     def test_what_passed_in_one_folder_does_not_run_again_in_another(self):
         self.entry("test_one", reads="golden/one")
