@@ -67,6 +67,8 @@ class CompareTest(ProgramTest):
             timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
             with self.assertRaises(KeyboardInterrupt):
+        # Where a shell's background job ignores it, Python has no handler of its own.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
                 call()
             timer.join()
 
