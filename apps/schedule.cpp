@@ -11,7 +11,7 @@ void add_schedule(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple schedule show two_bucket\n"
-        "  stipple schedule check tiled --sensor lux1310 --size 1280x1024\n"
+        "  stipple schedule check hardware_tiled --sensor lux1310\n"
         "  stipple schedule compile tiled -o tiled.mem\n"
         "\"stipple list schedules\" lists their names.");
 }

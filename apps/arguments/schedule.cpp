@@ -18,7 +18,9 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
         .listed("schedules")
         .required()
         .input();
-    add_size(command, "--size", choice.shape, {1, kMaxFrameSide}, "width and height of the array");
+    CommandOption size = add_size(command, "--size", choice.shape, {1, kMaxFrameSide},
+                                  "width and height of the array");
+    if (choice.shape.pixels() == 0) size.default_text("that of the sensor, or 640x480");
     command.add_option("--seed", choice.seed, "seed of random codes")
         .shows_default()
         .check(whole_check(0))

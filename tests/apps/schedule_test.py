@@ -104,11 +104,21 @@ class CheckTest(ProgramTest):
         self.assertTrue(self.figures(*arguments)["legal"])
         self.fails(INPUT, ["tiled", "lux1310", "slot ", "us"], *arguments, "--set",
                    "sensor.slot_us=10")
-
     def test_pixels_that_differ_from_their_group_are_remarked_on(self):
         figures = self.figures("schedule", "check", "tiled", "--sensor", "lux1310", "--size",
                                "320x240", "--set", "sensor.timing.addressing=group")
         self.assertTrue(figures["legal"])
+    def test_the_array_is_that_of_the_sensor(self):
+        """The whole array of lux1310 takes longer than its slot, a part of it does not."""
+        self.fails(INPUT, ["tiled on sensor lux1310, 1280 x 1024: slot "], "schedule", "check", "tiled", "--sensor",
+                   "lux1310")
+        told = self.succeed("schedule", "check", "tiled", "--sensor", "lux1310", "--size", "320x240")
+        self.assertIn("can run tiled at 320 x 240", told)
+        for sensor, size in {"lux1310": (1280, 1024), "imx273": (1408, 1080), "paper": (640, 480)}.items():
+            figures = self.figures("schedule", "check", "hardware_tiled", "--sensor", sensor, "--set",
+                                   "sensor.slot_us=20000")
+            self.assertEqual((figures["width"], figures["height"]), size)
+
         self.assertIn("pixel (0, 1)", figures["remark"])
 
 
