@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/explore_run.h"
 #include "apps/report/json_file.h"
+#include "apps/report/number_text.h"
 #include "apps/subcommands.h"
 
 namespace stipple {
@@ -22,12 +26,35 @@ nlohmann::ordered_json figures_of(const Exploration& exploration, bool has_budge
     return figures;
 }
 
+/// How many points have failed for each of the first reasons; empty if none has.
+std::string problems_text(const Exploration& exploration) {
+    constexpr std::size_t kShown = 8;
+    std::vector<std::pair<std::string, int>> problems;
+    for (const ExploredPoint& point : exploration.points()) {
+        if (point.problem.empty()) continue;
+        const auto known =
+            std::ranges::find(problems, point.problem, &std::pair<std::string, int>::first);
+        if (known == problems.end())
+            problems.emplace_back(point.problem, 1);
+        else
+            ++known->second;
+    }
+    std::string text;
+    for (std::size_t i = 0; i < std::min(problems.size(), kShown); ++i)
+        text +=
+            fmt::format("{} failed: {}\n", counted(problems[i].second, "point"), problems[i].first);
+    if (problems.size() > kShown)
+        text += fmt::format("{} more in the column \"problem\" of table.csv\n",
+                            counted(problems.size() - kShown, "reason"));
+    return text;
+}
+
 void explore(const ExploreRun& what, const RunOptions& run) {
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(figures_of(exploration, what.options.budget.has_value()));
     require_figures(what, exploration);
-    run.say(counts_text(what, exploration));
+    run.say(problems_text(exploration) + counts_text(what, exploration));
 }
 
 void add_budget(Command& command, ExploreOptions& options) {
@@ -71,7 +98,8 @@ void add_explore(Command& app, Action& action) {
         "Examples:\n"
         "  stipple explore config/spaces/bit_depth.toml -o results\n"
         "  stipple explore config/spaces/bit_depth.toml -o results --budget 10m\n"
-        "A second run does only what is new. A point that cannot be run is a row with the reason.");
+        "A second run does only what is new. A point that cannot be run is a row with the reason;\n"
+        "the exit code is 1 if no point could be run.");
     set_action(command, action, arguments, explore, [command, arguments] {
         if (!arguments->options.budget)
             command.refuse({"--rank"}, "is of --budget; add that or leave this out");

@@ -6,6 +6,7 @@ import resource
 import signal
 import time
 import unittest
+from collections import Counter
 
 import numpy as np
 from program import DEVICE, INPUT, STOPPED, USAGE, ProgramTest
@@ -119,6 +120,20 @@ class ExploreTest(ProgramTest):
         self.assertIn("bit_depth", rows[1]["problem"])
         self.assertIn("nosuch", next(row["problem"] for row in rows if row["sensor"] == "nosuch"))
         self.assertEqual((rows[1]["psnr_db"], rows[0]["problem"]), ("", ""))
+
+    def test_each_reason_is_told_with_the_number_of_its_points(self):
+        space = SPACE.replace('"lux1310"', '"nosuch"') + '[set]\n"sensor.bit_depth" = [8, 99]\n'
+        told = self.succeed("explore", self.write_space(space), "-o", "results")
+        problems = Counter(row["problem"] for row in self.rows() if row["problem"])
+        self.assertEqual(sorted(problems.values()), [2, 4])
+        for problem, count in problems.items():
+            self.assertIn(f"\n{count} points failed: {problem}\n", told)
+
+    def test_many_reasons_are_told_in_part(self):
+        names = ", ".join(f'"none{i}"' for i in range(11))
+        told = self.succeed("explore", self.write_space(SPACE.replace('"lux1310"', names)), "-o", "results")
+        self.assertEqual(told.count("\n2 points failed: "), 8)
+        self.assertIn('\n3 reasons more in the column "problem" of table.csv\n', told)
 
     def test_systems_set_values_that_belong_together(self):
         rows = self.systems_rows("""
