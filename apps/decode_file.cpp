@@ -19,6 +19,7 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
+#include "apps/report/zero_warning.h"
 #include "apps/rig_folder.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
@@ -79,6 +80,10 @@ constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "timeout"
 /// NaN without a sample.
 double saturated_fraction(const DecodeReport& report) {
     return static_cast<double>(report.saturated_samples) / static_cast<double>(report.samples);
+}
+
+double zero_fraction(const DecodeReport& report) {
+    return static_cast<double>(report.zero_samples) / static_cast<double>(report.samples);
 }
 
 nlohmann::ordered_json light_levels_json(const LightLevels& levels) {
@@ -189,6 +194,8 @@ DecodeReport DecodeRun::decode_frames() {
 void DecodeRun::tell() {
     json_.write(figures());
     warn_of_end();
+    say_warning(
+        zero_warning(arguments_.stream, zero_fraction(report_), reader_.header().calibration));
     run_.say(summary());
     if (const auto levels = writer_.light_levels()) run_.say(light_levels_text(*levels));
     tell_faults();
@@ -210,6 +217,7 @@ nlohmann::ordered_json DecodeRun::figures() const {
                                 {"slots", report_.slots},
                                 {"ended_by", kEndNames[static_cast<std::size_t>(end_)]},
                                 {"saturated_fraction", saturated_fraction(report_)},
+                                {"zero_fraction", zero_fraction(report_)},
                                 {"voxels", report_.voxels},
                                 {"voxels_per_second", voxels_per_second()},
                                 {"peak_memory_bytes", peak_memory_bytes()},
@@ -224,13 +232,15 @@ nlohmann::ordered_json DecodeRun::figures() const {
 }
 
 std::string DecodeRun::summary() const {
-    return fmt::format("{}: {}, method {}, {} s, {} million voxels/s, {} MB{}{}", arguments_.output,
-                       counted(report_.slots, "frame"), arguments_.method, rounded(report_.seconds),
-                       rounded(1e-6 * voxels_per_second()), peak_memory_bytes() / 1000000,
-                       report_.samples == 0 ? ""
-                                            : fmt::format(", {:.2f} % of the samples saturated",
-                                                          100 * saturated_fraction(report_)),
-                       calibrated_text(arguments_));
+    return fmt::format(
+        "{}: {}, method {}, {} s, {} million voxels/s, {} MB{}{}", arguments_.output,
+        counted(report_.slots, "frame"), arguments_.method, rounded(report_.seconds),
+        rounded(1e-6 * voxels_per_second()), peak_memory_bytes() / 1000000,
+        report_.samples == 0
+            ? ""
+            : fmt::format(", {:.2f} % of the samples saturated, {:.2f} % at DN 0",
+                          100 * saturated_fraction(report_), 100 * zero_fraction(report_)),
+        calibrated_text(arguments_));
 }
 
 /// Ends that the user may not expect.

@@ -18,6 +18,7 @@
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
+#include "apps/report/zero_warning.h"
 #include "apps/standard_error.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
@@ -25,6 +26,7 @@
 #include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
+#include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
 #include "readout/timing/waveform_file.h"
 
@@ -86,6 +88,8 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
         for (const std::string& note : end_notes(options.footage, input.footage(), setup.params,
                                                  options.resampling.has_value()))
             say_warning(note);
+    say_warning(
+        zero_warning(options.output, recorder.zero_fraction(), calibration_of(setup.params)));
     const double slots_per_second = static_cast<double>(progress.done()) / progress.seconds();
     json.write(emulation_json(recorder, slots_per_second));
     run.say(fmt::format("{}: {}", options.output, emulation_text(recorder, slots_per_second)));

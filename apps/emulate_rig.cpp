@@ -15,11 +15,13 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/text_file.h"
+#include "apps/report/zero_warning.h"
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"
 #include "io/frame_writer.h"
 #include "io/pending_output.h"
+#include "readout/coded_sensor.h"
 #include "readout/footage_origin.h"
 #include "readout/rig.h"
 #include "readout/rig_figures.h"
@@ -85,10 +87,13 @@ void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& js
     RigTotals totals;
     for (const RigRecorder& sensor : runs) totals.add(sensor.recorder(), sensor.sensor().share);
     json.write(rig_json(runs, totals, slots_per_second));
-    for (const RigRecorder& sensor : runs)
-        run.say(fmt::format("{}: {}",
-                            (fs::path(arguments.output) / sensor.sensor().file()).string(),
-                            emulation_text(sensor.recorder(), slots_per_second)));
+    for (const RigRecorder& sensor : runs) {
+        const StreamRecorder& recorder = sensor.recorder();
+        const std::string file = (fs::path(arguments.output) / sensor.sensor().file()).string();
+        say_warning(
+            zero_warning(file, recorder.zero_fraction(), calibration_of(recorder.setup().params)));
+        run.say(fmt::format("{}: {}", file, emulation_text(recorder, slots_per_second)));
+    }
     run.say(totals_text(totals));
 }
 

@@ -113,6 +113,7 @@ class RigBuffer {
         for (const PacketBuffer& buffer : buffers_) {
             report.samples += buffer.counts().samples();
             report.saturated_samples += buffer.counts().saturated();
+            report.zero_samples += buffer.counts().zeros();
         }
     }
 

@@ -26,6 +26,7 @@ struct DecodeReport {
     std::uint64_t voxels = 0;             ///< slots x planes x rows x cols
     std::uint64_t samples = 0;            ///< read for these slots
     std::uint64_t saturated_samples = 0;  ///< of these, only a lower bound
+    std::uint64_t zero_samples = 0;       ///< at DN 0, where noise is cut off
     double seconds = 0;                   ///< wall time, including the sink
 };
 

@@ -1,5 +1,7 @@
 #include "decoder/saturated_samples.h"
 
+#include <algorithm>
+
 #include "core/exposure_schedule.h"
 
 namespace stipple {
@@ -12,6 +14,7 @@ void SaturatedSamples::add(const SamplePacket& packet) {
             for (int plane = 0; plane < header_.shape.planes; ++plane)
                 if (responses_.at(plane, row, col).saturated(*dn++)) ++saturated_;
         });
+    zeros_ += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
     samples_ += packet.dn.size();
 }
 

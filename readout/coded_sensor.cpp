@@ -44,6 +44,7 @@ struct Band {
     std::vector<std::uint16_t> dn;          ///< planes of a pixel side by side
     std::vector<std::uint16_t> open_slots;  ///< of each due pixel, in physical mode
     std::uint64_t saturated = 0;
+    std::uint64_t zeros = 0;
     std::vector<std::uint8_t> open;  ///< of one row
     std::vector<float> light;        ///< of one plane, as the next three
     std::vector<float> electrons;
@@ -247,6 +248,7 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
         band.dn[i * planes + plane] = band.plane_dn[i];
         if (band.clipped[i] != 0 || band.plane_dn[i] == adc.max_dn()) ++band.saturated;
     }
+    band.zeros += static_cast<std::uint64_t>(std::ranges::count(band.plane_dn, 0));
 }
 
 void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row, Band& band) {
@@ -267,6 +269,7 @@ void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row,
     band.clipped.resize(samples);
     band.plane_dn.resize(samples);
     band.saturated = 0;
+    band.zeros = 0;
     for (int plane = 0; plane < shape.planes; ++plane)
         read(static_cast<std::uint32_t>(plane), band);
 }
@@ -299,6 +302,7 @@ void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
     for (const Band& band : bands) {
         packet.dn.insert(packet.dn.end(), band.dn.begin(), band.dn.end());
         stats.saturated_samples += band.saturated;
+        stats.zero_samples += band.zeros;
     }
     stats.samples += packet.dn.size();
 }

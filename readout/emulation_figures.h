@@ -17,6 +17,7 @@ void visit_emulation_figures(const StreamRecorder& recorder, const Add& add) {
     add("light_throughput", recorder.light_throughput());
     add("light_read", recorder.light_read());
     add("saturated_fraction", recorder.saturated_fraction());
+    add("zero_fraction", recorder.zero_fraction());
 }
 
 /// The speed of an emulation; std::nullopt where it is not known.

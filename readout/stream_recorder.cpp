@@ -59,6 +59,10 @@ double StreamRecorder::saturated_fraction() const {
     return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
 }
 
+double StreamRecorder::zero_fraction() const {
+    return static_cast<double>(stats().zero_samples) / static_cast<double>(stats().samples);
+}
+
 double StreamRecorder::light_throughput() const {
     return stipple::light_throughput(setup().schedule.schedule, emulator_->filters(),
                                      setup().shape);

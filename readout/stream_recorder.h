@@ -53,6 +53,8 @@ class StreamRecorder {
     /// Fraction of the samples that the full well has clipped or that are at full scale, dropped
     /// ones too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
+    /// The same of the samples that are DN 0.
+    [[nodiscard]] double zero_fraction() const;
     /// Fraction of the light that is collected in steady slots.
     [[nodiscard]] double light_throughput() const;
     /// Fraction of the light since slot 0 that the samples hold, as in Emulator.

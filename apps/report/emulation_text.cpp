@@ -28,8 +28,9 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
     const ReadoutStats& stats = recorder.stats();
     const std::string per_sample =
         fmt::format(", 1 for {:.2f} values of light", recorder.compression_ratio());
-    const std::string saturated =
-        fmt::format(", {:.2f} % of the samples saturated", 100 * recorder.saturated_fraction());
+    const std::string clipped =
+        fmt::format(", {:.2f} % of the samples saturated, {:.2f} % at DN 0",
+                    100 * recorder.saturated_fraction(), 100 * recorder.zero_fraction());
     const bool any = stats.samples > 0;
     std::string text = fmt::format(
         "{} of {} x {} x {}, {} of {} bits{}\n"
@@ -37,7 +38,7 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
         counted(recorder.samples(), "sample"), setup.params.bit_depth,
         any ? per_sample : ": no exposure ended within the footage",
-        100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? saturated : "",
+        100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? clipped : "",
         slots_per_second ? fmt::format(", {} slots/s", rounded(*slots_per_second)) : "");
     if (const ReadoutCost* cost = recorder.readout_cost())
         text.append(1, '\n').append(readout_text(*cost));

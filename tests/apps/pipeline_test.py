@@ -1,5 +1,6 @@
 """Footage in, stream, video out: figures that follow from the definitions."""
 
+import json
 import math
 import resource
 import struct
@@ -60,6 +61,31 @@ class PipelineTest(ProgramTest):
         self.assertEqual(figures["saturated_fraction"], 1)  # 900 e a slot
         self.assertIn("100.00 % of the samples saturated",
                       self.succeed("decode", "a.stipple", "-o", "a.npy", "--method", "naive"))
+
+    def test_the_part_at_dn_0_is_that_of_normal_noise(self):
+        """Read noise of 10 e is rounded to 0 below half a step. Without a black level there is a warning."""
+        half_step_e = 2000 / 255 / 2  # config/sensors/paper.toml
+        part = math.erfc(-half_step_e / 10 / math.sqrt(2)) / 2
+        self.write_flat("dark.npy", slots=16, rows=64, cols=64, light=0)
+        self.write_flat("light.npy", slots=16, light=0.5)
+
+        def zeros(*arguments):
+            done = self.run_program(*arguments, "--json", "-")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(done.stdout)["zero_fraction"], "are DN 0" in done.stderr
+
+        for arguments in (("emulate", "dark.npy", "-o", "dark.stipple"),
+                          ("decode", "dark.stipple", "-o", "decoded.npy", "--method", "naive")):
+            found, warned = zeros(*arguments)
+            self.assertAlmostEqual(found, part, delta=5 * math.sqrt(part * (1 - part) / 14000))
+            self.assertTrue(warned)
+        self.assertIn(" % at DN 0", self.succeed("emulate", "dark.npy", "-o", "again.stipple"))
+        self.assertEqual(zeros("emulate", "light.npy", "-o", "light.stipple"), (0, False))
+        # A black level of 1 DN leaves at 0 what is below -0.5 DN, 0.39 standard deviations: 35 %.
+        found, warned = zeros("emulate", "dark.npy", "-o", "black.stipple", "--set", "sensor.mode=physical", "--set",
+                              "sensor.black_level_dn=1")
+        self.assertGreater(found, 0.25)
+        self.assertFalse(warned)
 
     def test_the_saturated_part_of_a_sensor_whose_well_is_at_full_scale(self):
         mean, well, read_noise, max_dn = 9950, 10000, 10, 4095  # config/sensors/lux1310.toml

@@ -28,9 +28,11 @@ TEST(SaturatedSamplesTest, AreThoseThatMeasurementsTakeForBounds) {
 
     SaturatedSamples counted(recorded.header);
     std::uint64_t samples = 0;
+    std::uint64_t zeros = 0;
     for (const SamplePacket& packet : recorded.packets) {
         counted.add(packet);
         samples += packet.dn.size();
+        zeros += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
     }
     const auto measured =
         collect_measurements(recorded.header, recorded.packets, {0, video.slots(), 0, 0, kShape});
@@ -39,6 +41,8 @@ TEST(SaturatedSamplesTest, AreThoseThatMeasurementsTakeForBounds) {
     EXPECT_EQ(counted.samples(), samples);
     EXPECT_EQ(counted.saturated(), static_cast<std::uint64_t>(bounds));
     EXPECT_GT(bounds, 0);
+    EXPECT_EQ(counted.zeros(), zeros);
+    EXPECT_GT(zeros, 0U);
     EXPECT_LT(counted.saturated(), samples);
 }
 

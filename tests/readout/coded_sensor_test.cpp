@@ -163,7 +163,7 @@ TEST(CodedSensorTest, GivesTheDnOfTheFormulaWithoutNoise) {
     }
 }
 
-TEST(CodedSensorTest, CountsSlotsSamplesAndThoseAtFullScale) {
+TEST(CodedSensorTest, CountsSlotsSamplesAndThoseAtFullScaleAndZero) {
     const FluxVideo video = footage(25, kShape);
     const auto schedule = random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
     CodedSensor sensor({}, kShape, schedule, kSeed);
@@ -171,17 +171,21 @@ TEST(CodedSensorTest, CountsSlotsSamplesAndThoseAtFullScale) {
     packet.flags = SamplePacket::kDropped;  // what an earlier user left behind
     std::uint64_t samples = 0;
     std::uint64_t saturated = 0;
+    std::uint64_t zeros = 0;
     for (int slot = 0; slot < video.slots(); ++slot) {
         sensor.expose(video.frame(slot), packet);
         EXPECT_EQ(packet.flags, 0);
         samples += packet.dn.size();
         saturated += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 255));
+        zeros += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
     }
     EXPECT_EQ(sensor.stats().slots, 25);
     EXPECT_EQ(sensor.stats().samples, samples);
     EXPECT_EQ(sensor.stats().saturated_samples, saturated);
     EXPECT_GT(saturated, 0U);
     EXPECT_LT(saturated, samples);
+    EXPECT_EQ(sensor.stats().zero_samples, zeros);
+    EXPECT_GT(zeros, 0U);
 }
 
 // Without noise an exposure of n slots of the light x is clipped if n r x exceeds the full well,
