@@ -116,6 +116,7 @@ struct RunReport::Impl {
           videos(shape, area, options.quality, truth) {}
 
     [[nodiscard]] ordered_json data() const;
+    void note_differences(const Run& run);
 
     RunReportOptions options;
     FrameShape shape;
@@ -156,6 +157,26 @@ ordered_json RunReport::Impl::data() const {
     return json;
 }
 
+/// What keeps a run from being compared with the first one.
+void RunReport::Impl::note_differences(const Run& run) {
+    if (runs.empty()) return;
+    const StreamHeader& first = runs.front()->reader.header();
+    const StreamHeader& header = run.reader.header();
+    if (header.slot_us != first.slot_us)
+        notes.push_back(fmt::format(
+            "{}: its slots last {:g} us, those of {} {:g} us. The same slot is another time in "
+            "them, and figures of a slot or a frame cannot be compared.",
+            run.name, header.slot_us, runs.front()->name, first.slot_us));
+    const std::string footage = footage_of(header.provenance);
+    const std::string first_footage = footage_of(first.provenance);
+    if (!footage.empty() && !first_footage.empty() && footage != first_footage)
+        notes.push_back(fmt::format(
+            "{}: by its provenance, it saw other footage than {}, or other light of it. {}",
+            run.name, runs.front()->name,
+            truth_slots > 0 ? "The truth cannot be that of both, so quality cannot be compared."
+                            : "Their videos cannot be compared."));
+}
+
 RunReport::RunReport(RunReportOptions options, FrameShape shape, const FluxVideo* truth)
     : impl_(std::make_unique<Impl>(std::move(options), shape, truth)) {
     const PixelArea& area = impl_->area;
@@ -179,6 +200,7 @@ std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::s
     const FrameShape shape = decoded_shape(run->reader.header());
     if (shape != impl_->shape)
         throw InputError(stream.string(), shape_difference(shape, impl_->shape, "the report has"));
+    impl_->note_differences(*run);
     run->read(impl_->options);
     impl_->slots = std::max(impl_->slots, run->loads.slots());
     if (const auto all = run->reader.slots(); all && *all > impl_->options.slots)

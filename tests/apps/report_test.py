@@ -125,12 +125,28 @@ class ReportTest(ProgramTest):
         report = self.figures("report", "clip.stipple", "other/clip.stipple", "--method", "naive")
         self.assertEqual([video["name"] for video in report["videos"]], ["clip, naive", "other/clip, naive"])
 
+    def test_runs_that_cannot_be_compared_are_told(self):
+        self.write_scene(8, "16x16")
+        self.write_array("dim.npy", 0.5 * self.array("scene.npy"))
+        for name, more in {"alike": ["scene.npy", "--schedule", "tiled", "--seed", 5], "dim": ["dim.npy"],
+                           "scaled": ["scene.npy", "--scale", 0.5],
+                           "slow": ["scene.npy", "--set", "sensor.slot_us=7000"]}.items():
+            self.succeed("emulate", *more, "-o", f"{name}.stipple")
+        notes = self.figures("report", "clip.stipple", "alike.stipple", "dim.stipple", "scaled.stipple",
+                             "slow.stipple", "--truth", "scene.npy", "--method", "naive")["notes"]
+        self.assertEqual([note.partition(":")[0] for note in notes], ["dim", "scaled", "slow"])
+        for note in notes[:2]:
+            self.assertIn("other footage than clip", note)
+        self.assertIn("slots last 7000 us, those of clip 5000 us", notes[2])
+        self.assertEqual(data_of(self.page())["notes"], notes)
+
     def test_the_demo_leaves_a_page(self):
         self.succeed("demo", "--frames", 8, "--size", "16x16", "-o", "shown")
         data = data_of(self.page("shown/report.html"))
         self.assertEqual([video["name"] for video in data["videos"]],
                          ["truth", "4x exposure", "1x exposure", "1x, decoded", "coded, naive", "coded, decoded"])
         self.assertEqual([run["name"] for run in data["runs"]], ["full4x", "full1x", "random"])
+        self.assertEqual(data["notes"], [])
         self.assertEqual([video["run"] for video in data["videos"]], [None, 0, 1, 1, 2, 2])
 
     def test_what_cannot_be_used_is_named(self):
