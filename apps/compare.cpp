@@ -139,9 +139,10 @@ class Outputs {
 };
 
 ReadAhead read_result(const CompareOptions& options) {
-    return read_footage(
-        options.result,
-        {.transfer = Transfer::kLinear, .luminance = options.footage.luminance, .max_value = {}});
+    return read_footage(options.result, {.transfer = Transfer::kLinear,
+                                         .luminance = options.footage.luminance,
+                                         .max_value = {},
+                                         .negative = true});
 }
 
 QualityOptions quality_options(const CompareOptions& options, const QualityMetrics& metrics) {

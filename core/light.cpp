@@ -74,12 +74,16 @@ void linearise(std::span<float> values, Transfer transfer) {
     }
 }
 
-void check_light(std::span<const float> light, FrameShape shape, std::string_view where) {
+void check_light(std::span<const float> light, FrameShape shape, std::string_view where,
+                 bool negative) {
+    const auto is_good = [negative](float value) {
+        return is_light(negative ? std::abs(value) : value);
+    };
     bool good = true;
-    for (const float value : light) good &= is_light(value);
+    for (const float value : light) good &= is_good(value);
     if (good) return;
     std::size_t site = 0;
-    while (is_light(light[site])) ++site;
+    while (is_good(light[site])) ++site;
     const auto width = static_cast<std::size_t>(shape.cols);
     const std::size_t pixel = site % shape.pixels();
     const char* problem = std::isnan(light[site])   ? "light is not a number"

@@ -55,8 +55,9 @@ void check_packed(std::uint64_t bytes, std::uint64_t file_bytes, std::string_vie
 void linearise(std::span<float> values, Transfer transfer);
 
 /// \throws InputError naming place, row, column and plane of the first value that is NaN,
-/// infinite or negative.
-void check_light(std::span<const float> light, FrameShape shape, std::string_view where);
+/// infinite or, unless `negative` allows it, negative.
+void check_light(std::span<const float> light, FrameShape shape, std::string_view where,
+                 bool negative = false);
 
 /// Multiplies light by `factor`, in place. \throws InputError if light becomes infinite.
 void scale_light(std::span<float> light, double factor, std::string_view where);

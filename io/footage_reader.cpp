@@ -235,7 +235,7 @@ bool FootageReader::read(std::span<float> frame) {
     const auto read = [&](auto& source) {
         if (!source.read(light)) return false;
         impl_->make_linear(light);
-        check_light(light, impl_->source_shape, source.where());
+        check_light(light, impl_->source_shape, source.where(), impl_->options.negative);
         if (impl_->options.scale != 1) scale_light(light, impl_->options.scale, source.where());
         if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
             impl_->options.scale == 1)

@@ -26,6 +26,7 @@ struct FootageOptions {
     std::optional<RawFormat> raw = {};     ///< read a file without a header so, whatever its name
     double scale = 1;                      ///< factor on the light, before it is clipped; above 0
     std::optional<double> frames_hz = {};  ///< frame rate, instead of that of the source
+    bool negative = false;                 ///< take negative light, as unbiased estimates have it
 };
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
@@ -65,7 +66,7 @@ class FootageReader {
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,
     /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
-    /// infinite or negative light.
+    /// infinite light, or negative light that the options do not take.
     bool read(std::span<float> frame);
     /// Leaves out the next `frames` frames, unchecked; where the source cannot seek, they are read.
     /// \throws InputError as `read`.

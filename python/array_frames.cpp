@@ -114,7 +114,7 @@ std::span<const float> ArrayFrames::next() {
         linearise(own(light), transfer);
         light = frame_;
     }
-    check_light(light, source_, where);
+    check_light(light, source_, where, options_.negative);
     if (options_.scale != 1) {
         scale_light(own(light), options_.scale, where);
         light = frame_;

@@ -205,6 +205,7 @@ void bind_footage(py::module_& module) {
         .def("set_scale", &set_scale)
         .def("set_raw", &set_raw)
         .def("set_rate", &set_rate)
+        .def("take_negative", [](Reading& reading) { reading.options.negative = true; })
         .def("set_resampling", &set_resampling);
     py::class_<Footage>(module, "Footage").def(py::init<const py::object&, Reading>());
 }

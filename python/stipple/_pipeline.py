@@ -222,7 +222,7 @@ def compare(
     of each frame. Of videos of unequal length the frames that both have are compared, with a warning.
 
     result, reference: videos as for `emulate`, of the same shape. `transfer`, `raw` and `max_value` are those
-        of "stipple compare": transfer and raw are of the reference.
+        of "stipple compare": transfer and raw are of the reference. The light of the result may be negative.
     margin: frames left out at each end.
     max_value: clip the light of both to it first.
     peak: light of which PSNR and PU21-PSNR are.
@@ -232,7 +232,9 @@ def compare(
     pu21_ssim: compute it too.
     pixels_per_degree: pixels in a degree of visual angle, to compute pu21_csf_psnr_db too.
     """
-    a = _stipple.Footage(result, _stipple.Reading("linear", luminance, None))
+    reading = _stipple.Reading("linear", luminance, None)
+    reading.take_negative()
+    a = _stipple.Footage(result, reading)
     reading = _stipple.Reading(transfer, luminance, None)
     reading.set_raw(raw)
     b = _stipple.Footage(reference, reading)

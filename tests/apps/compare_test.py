@@ -25,6 +25,19 @@ class CompareTest(ProgramTest):
         with open(self.folder / name, newline="", encoding="ascii") as file:
             return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
+    def test_negative_light_of_the_result_counts_in_linear_light_alone(self):
+        """A display shows it as 0."""
+        for name, light in {"negative.npy": -0.1, "dark.npy": 0, "reference.npy": 0.1}.items():
+            self.write_flat(name, slots=2, rows=16, cols=16, light=light)
+        negative, dark = (self.figures("compare", name, "reference.npy") for name in ("negative.npy", "dark.npy"))
+        self.assertAlmostEqual(negative["psnr_db"], -20 * math.log10(0.2), 4)
+        self.assertAlmostEqual(dark["psnr_db"], 20, 4)
+        self.assertAlmostEqual(negative["psnr_gamma_db"], 20 / 2.2, 4)
+        for key in ("psnr_gamma_db", "pu21_psnr_db", "ssim"):
+            self.assertEqual(negative[key], dark[key], key)
+        self.fails(INPUT, ["negative.npy", "row 0, column 0", "light is negative"], "compare", "dark.npy",
+                   "negative.npy")
+
     def test_videos_of_unequal_length_are_compared_where_both_have_frames(self):
         same = self.figures("compare", "noisy.npy", "light.npy", "--until", 4)
         self.assertEqual((same["frames"], same["longer"]), (4, None))

@@ -80,6 +80,14 @@ TEST(LightTest, TheFirstValueThatIsNoLightIsNamed) {
     }
 }
 
+TEST(LightTest, NegativeLightIsTakenWhereItIsAllowed) {
+    constexpr FrameShape kShape{1, 2, 1};
+    check_light(std::vector<float>{-1, 1}, kShape, "a", true);
+    for (const float wrong :
+         {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
+        EXPECT_THROW(check_light(std::vector<float>{1, wrong}, kShape, "a", true), InputError);
+}
+
 TEST(LightTest, LuminanceHasTheWeightsOfRec709) {
     const std::vector<float> rgb{1, 0, 0, 2, 0, 1, 0, 2, 0, 0, 1, 2};
     std::vector<float> luminance(4);

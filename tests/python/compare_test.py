@@ -59,16 +59,22 @@ class CompareTest(ProgramTest):
             with self.subTest(name), self.assertRaisesRegex(ValueError, f"^{name}: {value:g} is not"):
                 stipple.compare(self.a, self.b, **{name: value})
 
+    def test_the_light_of_the_result_may_be_negative(self):
+        self.write_array("negative.npy", self.a - 0.5)
+        self.same(stipple.compare(self.a - np.float32(0.5), self.b), self.figures("compare", "negative.npy", "b.npy"))
+        with self.assertRaisesRegex(ValueError, "light is negative"):
+            stipple.compare(self.b, self.a - np.float32(0.5))
+
     def test_control_c_ends_it(self):
         """Without, it would take days, and so does making a stream of as much light."""
+        # Where a shell's background job ignores it, Python has no handler of its own.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         endless = np.broadcast_to(np.float32(0.5), (10**9, 16, 16))
         for call in (lambda: stipple.compare(endless, endless), lambda: stipple.emulate(endless)):
             # From another thread, which runs as long calls let others run.
             timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
             with self.assertRaises(KeyboardInterrupt):
-        # Where a shell's background job ignores it, Python has no handler of its own.
-        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
                 call()
             timer.join()
 
