@@ -57,6 +57,7 @@ py::dict evaluation_dict(const Evaluation& evaluation,
                          const std::optional<CameraFigures>& configured) {
     py::dict dict("measured"_a = figures_dict(evaluation.figures));
     if (configured) dict["configured"] = figures_dict(*configured);
+    dict["notes"] = emva1288::figure_notes(evaluation.figures, configured);
     dict["dark_mean_dn"] = evaluation.dark_mean_dn;
     dict["dark_deviation_dn"] = std::sqrt(evaluation.dark_variance_dn2);
     dict["dark_zero_fraction"] = evaluation.dark_zero_fraction;

@@ -77,6 +77,7 @@ nlohmann::ordered_json camera_json(const CameraReport& report) {
                  dark_deviations, bright_deviations] = report.evaluation;
     nlohmann::ordered_json json{{"measured", figures_json(figures)}};
     if (report.configured) json["configured"] = figures_json(*report.configured);
+    json["notes"] = emva1288::figure_notes(report.evaluation.figures, report.configured);
     json["dark_mean_dn"] = dark_mean;
     json["dark_deviation_dn"] = std::sqrt(dark_variance);
     json["dark_zero_fraction"] = zero_fraction;
@@ -96,6 +97,9 @@ std::string camera_text(const CameraReport& report) {
     if (report.configured) text += fmt::format("{:>12}{:>11}", "configured", "deviation");
     text += '\n';
     for (const Row& row : kRows) text += row_text(row, report);
+    for (const std::string& note :
+         emva1288::figure_notes(report.evaluation.figures, report.configured))
+        text += note + "\n";
     text.pop_back();
     return text;
 }

@@ -209,4 +209,19 @@ std::string bias_warning(const Evaluation& evaluation) {
         100 * evaluation.dark_zero_fraction);
 }
 
+std::vector<std::string> figure_notes(const CameraFigures& measured,
+                                      const std::optional<CameraFigures>& configured) {
+    std::vector<std::string> notes;
+    if (configured && measured.saturation_e < configured->saturation_e)
+        notes.emplace_back(
+            "Saturation is where the variance is largest, before the mean pixel is full: it is "
+            "below the configured one by definition, and so are largest SNR and dynamic range.");
+    if (measured.dsnu_row_e > measured.dsnu_e || measured.prnu_row > measured.prnu)
+        notes.emplace_back(
+            "DSNU and PRNU of rows contain the row noise that the mean of the images keeps; those "
+            "of all pixels are without it, and can be less.");
+    if (!notes.empty()) notes.back() += " See docs/characterize.md.";
+    return notes;
+}
+
 }  // namespace stipple::emva1288

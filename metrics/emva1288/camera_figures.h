@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,5 +59,10 @@ struct GroupStatistics {
 
 /// How the figures are biased; empty if they are not.
 [[nodiscard]] std::string bias_warning(const Evaluation& evaluation);
+
+/// What surprises in the measured figures, also beside configured ones, though it follows from the
+/// definitions of the standard; a sentence each.
+[[nodiscard]] std::vector<std::string> figure_notes(const CameraFigures& measured,
+                                                    const std::optional<CameraFigures>& configured);
 
 }  // namespace stipple::emva1288

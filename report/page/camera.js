@@ -44,6 +44,7 @@ function fillCameraTable() {
             ...(configured ? [(expected ?? null) === null ? '–' : shown(expected * scale), deviation] : []), unit];
   };
   fillTable(element('camera-table'), [head, ...kCameraFigures.map(row)]);
+  element('camera-notes').replaceChildren(...(data.camera.notes ?? []).map((note) => made('li', {}, note)));
 }
 
 function setUpCamera() {

@@ -63,6 +63,7 @@ class CharacterizeTest(ProgramTest):
         again = self.figures("characterize", "--evaluate", "series/emva1288_data.txt")
         self.assertEqual(again["measured"], figures["measured"])
         self.assertNotIn("configured", again)
+        self.assertEqual(again["notes"], [])  # of no configured saturation, and of no row noise
         self.succeed("characterize", "--evaluate", "series/emva1288_data.txt", "-o", "charts")
         self.expect_charts("charts")
 
@@ -83,6 +84,16 @@ class CharacterizeTest(ProgramTest):
         self.expect_configured(figures, set(BOUNDS) - {"saturation_e", "dsnu_e", "dsnu_high_pass_e"})
         low = figures["measured"]["saturation_e"] / figures["configured"]["saturation_e"]
         self.assertTrue(0.85 < low < 0.92, low)
+        self.assertIn("below the configured one by definition", figures["notes"][0])
+
+    def test_rows_that_seem_to_differ_more_than_the_pixels_have_a_note(self):
+        """t6 has row noise, of which the mean of 100 images keeps a tenth, and no DSNU."""
+        figures = self.series_of_t6()
+        self.assertGreater(figures["measured"]["dsnu_row_e"], figures["measured"]["dsnu_e"])
+        self.assertIn("of rows contain the row noise", figures["notes"][1])
+        told = self.succeed("characterize", "--evaluate", "series/emva1288_data.txt")
+        self.assertIn("of rows contain the row noise", told)
+        self.assertNotIn("below the configured one", told)
 
     def test_dark_current_and_temperature_are_part_of_the_dark_noise(self):
         """400 e/s at 44 degrees are 3200 e/s: 16 e in 5 ms."""
