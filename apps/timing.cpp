@@ -71,7 +71,7 @@ void add_timing(Command& app, Action& action) {
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();
-    add_size(command, "--roi", options->roi, {1, kMaxFrameSide},
+    add_size(command, "--roi,--size", options->roi, {1, kMaxFrameSide},
              "window: the first W columns and H rows")
         .default_text("the whole array");
     add_settings(command, sensor_sections(options->sensor),

@@ -92,9 +92,10 @@ of the readout. Fast from slot to slot; going back begins at the first. Raises I
              "Copies it to a file. force: replace one that is there. Raises OSError.")
         .def("__repr__", [](StreamFile& self) {
             const FrameShape shape = self.header().shape;
-            return fmt::format("<stipple.Stream {}: {} slots of {} x {} x {}>",
+            return fmt::format("<stipple.Stream {}: {} slot{} of {} x {} x {}>",
                                self.is_temporary() ? "(temporary)" : self.path().string(),
-                               self.slots(), shape.cols, shape.rows, shape.planes);
+                               self.slots(), self.slots() == 1 ? "" : "s", shape.cols, shape.rows,
+                               shape.planes);
         });
 }
 

@@ -63,12 +63,12 @@ std::string figures_text(const std::string& name, const ScheduleFigures& figures
             : fmt::format("{} to {}", figures.min_exposures, figures.max_exposures);
     return fmt::format(
         "{}: tile of {} x {} pixels, {} slots\n"
-        "compression {:.4g}, light throughput {:.4g} %, {} exposures a pixel, {} charge store{}\n"
+        "compression {:.4g}, light throughput {:.4g} %, {} exposure{} a pixel, {} charge store{}\n"
         "pixels read in a slot: {} to {}, mean {:.1f}; code memory {} bits",
         name, figures.tile_cols, figures.tile_rows, figures.period_slots, figures.compression_ratio,
-        100 * figures.light_throughput, exposures, figures.charge_stores,
-        figures.charge_stores == 1 ? "" : "s", figures.min_due, figures.max_due, figures.mean_due,
-        figures.code_memory_bits);
+        100 * figures.light_throughput, exposures, exposures == "1" ? "" : "s",
+        figures.charge_stores, figures.charge_stores == 1 ? "" : "s", figures.min_due,
+        figures.max_due, figures.mean_due, figures.code_memory_bits);
 }
 
 std::vector<ArrayPixel> sample_pixels(const ExposureSchedule& schedule, FrameShape array,

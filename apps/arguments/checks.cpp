@@ -76,9 +76,8 @@ void parse_size(const std::string& option, const std::string& text, SideRange si
 
 CommandOption add_size(Command& command, const std::string& name, FrameShape& shape,
                        SideRange sides, const std::string& text) {
-    const auto take = [name, sides, &shape](const std::string& size) {
-        parse_size(name, size, sides, shape);
-    };
+    const auto take = [option = name.substr(0, name.find(',')), sides,
+                       &shape](const std::string& size) { parse_size(option, size, sides, shape); };
     CommandOption option = command.add_parsed(name, take, text).type_name("WxH");
     return shape.pixels() == 0 ? option
                                : option.default_text(fmt::format("{}x{}", shape.cols, shape.rows));

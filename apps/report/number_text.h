@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <concepts>
 #include <string>
 #include <string_view>
@@ -13,9 +14,10 @@ namespace stipple {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Three digits, more in front of the point, never a power of ten: 0.0123, 1.23, 1234.
-[[nodiscard]] inline std::string rounded(double value) {
-    return value >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+/// Three digits, or so many, more in front of the point, never a power of ten: 0.0123, 1.23, 1234.
+[[nodiscard]] inline std::string rounded(double value, int digits = 3) {
+    return value >= std::pow(10, digits) - 0.5 ? fmt::format("{:.0f}", value)
+                                               : fmt::format("{:.{}g}", value, digits);
 }
 
 }  // namespace stipple

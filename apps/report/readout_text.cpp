@@ -42,11 +42,11 @@ std::string readout_text(const ReadoutCost& cost) {
     const double slots_hz = static_cast<double>(cost.slots()) / seconds_of(cost);
     const Utilisation use = utilisation(cost);
     std::string text = fmt::format(
-        "readout      {:.5g} slots/s of the sensor, {:.1f} % of the rows read, ADCs {:.1f} %, link "
+        "readout      {} slots/s of the sensor, {:.1f} % of the rows read, ADCs {:.1f} %, link "
         "{:.1f} % busy,\n"
         "             {} bits over the link, {:.4g} uJ; schedule memory {} bits, code {:.4g} "
         "Mbit/s",
-        slots_hz, 100 * use.rows, 100 * use.adc, 100 * use.link, totals.bits,
+        rounded(slots_hz, 5), 100 * use.rows, 100 * use.adc, 100 * use.link, totals.bits,
         totals.energy_pj * 1e-6, schedule_memory_bits(cost.schedule()),
         1e-6 * code_bits_per_second(cost, slots_hz));
     if (cost.overruns() > 0)

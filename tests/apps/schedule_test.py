@@ -63,6 +63,10 @@ class ShowTest(ProgramTest):
         for words in ("Schedule it's", "(0, 1)  1", ">read<", "charge store"):
             self.assertIn(words, image)
 
+    def test_one_exposure_is_one(self):
+        told = self.succeed("schedule", "show", "full4x")
+        self.assertIn(" 1 exposure a pixel, 1 charge store\n", told)
+
     def test_the_ruler_stands_over_the_slots(self):
         for slots, every in ((24, 4), (64, 4), (1024, 8)):
             ruler, line = self.succeed("schedule", "show", "full4x", "--pixels", 1, "--slots",
@@ -98,16 +102,12 @@ class CheckTest(ProgramTest):
         self.fails(INPUT, ["pixel (0, 0) slot", "charge_stores=2"], "emulate", light, "-o",
                    "clip.stipple", "--schedule", "two_bucket")
 
-
     def test_a_readout_must_fit_its_slot(self):
         arguments = ("schedule", "check", "tiled", "--sensor", "lux1310", "--size", "320x240")
         self.assertTrue(self.figures(*arguments)["legal"])
         self.fails(INPUT, ["tiled", "lux1310", "slot ", "us"], *arguments, "--set",
                    "sensor.slot_us=10")
-    def test_pixels_that_differ_from_their_group_are_remarked_on(self):
-        figures = self.figures("schedule", "check", "tiled", "--sensor", "lux1310", "--size",
-                               "320x240", "--set", "sensor.timing.addressing=group")
-        self.assertTrue(figures["legal"])
+
     def test_the_array_is_that_of_the_sensor(self):
         """The whole array of lux1310 takes longer than its slot, a part of it does not."""
         self.fails(INPUT, ["tiled on sensor lux1310, 1280 x 1024: slot "], "schedule", "check", "tiled", "--sensor",
@@ -119,6 +119,10 @@ class CheckTest(ProgramTest):
                                    "sensor.slot_us=20000")
             self.assertEqual((figures["width"], figures["height"]), size)
 
+    def test_pixels_that_differ_from_their_group_are_remarked_on(self):
+        figures = self.figures("schedule", "check", "tiled", "--sensor", "lux1310", "--size",
+                               "320x240", "--set", "sensor.timing.addressing=group")
+        self.assertTrue(figures["legal"])
         self.assertIn("pixel (0, 1)", figures["remark"])
 
 

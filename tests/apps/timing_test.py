@@ -112,6 +112,10 @@ class TimingTest(ProgramTest):
         for sensor in SENSORS:
             self.assertIn(sensor, message)
 
+    def test_size_is_another_name_of_roi(self):
+        self.assertEqual(self.figures("timing", "--sensor", "lux1310", "--size", "64x32"),
+                         self.figures("timing", "--sensor", "lux1310", *SMALL))
+
     def test_impossible_timing_names_the_constraint(self):
         for parts, arguments in (
                 (["2000 x 100", "1280 x 1024"], ["--roi", "2000x100"]),
