@@ -30,6 +30,23 @@ double nominal_gain(const StreamHeader& header, std::size_t pixel) {
     return nominal.responsivity * nominal.conversion_gain;
 }
 
+/// The errors that the light of a row shares, with a gain of 1 by the tile.
+double shared_by_rows(const StreamHeader& header, const std::vector<FieldExposure>& flat,
+                      std::size_t first_site, const EstimateMap& offset,
+                      const EstimateMap& dark_current) {
+    const std::size_t group = light_group(header, first_site);
+    double weights = 0, times = 0, noise = 0;
+    for (const FieldExposure& e : flat) {
+        const double t = e.seconds;
+        const double own = e.usual_variance(group);
+        weights += t * t / own;
+        times += t / own;
+        noise += t * t / (own * own) * e.row_error_dn2[first_site / header.shape.pixels()];
+    }
+    return (noise + times * times * offset.row_error) / (weights * weights) +
+           dark_current.row_error;
+}
+
 /// Light per second of each pixel of a plane in DN, by weighted least squares over the exposure
 /// times t of (y - b - d t) = light t. The errors of b and d are the same at all times.
 EstimateMap lights(const StreamHeader& header, const std::vector<FieldExposure>& flat,
@@ -60,6 +77,7 @@ EstimateMap lights(const StreamHeader& header, const std::vector<FieldExposure>&
                            dark_current.variance[i]) /
                           (nominal * nominal);
     }
+    map.row_error = shared_by_rows(header, flat, first_site, offset, dark_current);
     return map;
 }
 
@@ -92,6 +110,7 @@ void normalise(const CalibrationSeries& series, std::size_t first_site, Estimate
             light.value[i] /= mean;
             light.variance[i] /= mean * mean;
         }
+        if (pixels.front() == 0) light.row_error /= mean * mean;  // as one colour for all
     }
 }
 
@@ -114,6 +133,7 @@ EstimateMap gains_of(const CalibrationSeries& series, const ChipExposures& expos
             gain->value[i] = (weight * gain->value[i] + more * one.value[i]) / (weight + more);
             gain->variance[i] = 1 / (weight + more);
         }
+        gain->row_error = std::max(gain->row_error, one.row_error);  // of the mean it is less
     }
     return *gain;
 }

@@ -29,8 +29,14 @@ class DarkMaps {
     template <typename Visit>
     void visit_means(std::size_t pixel, const Visit& visit) const;
 
+    /// Calls visit(exposure, 1 / variance of y) for each exposure time of a usual pixel.
+    template <typename Visit>
+    void visit_exposures(const Visit& visit) const;
+    [[nodiscard]] double row_error(const FieldExposure& exposure) const;
+
     const StreamHeader& header_;
     std::span<const FieldExposure> dark_;
+    int plane_;
     std::size_t first_;  ///< site of the plane
 };
 

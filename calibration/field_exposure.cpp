@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "calibration/shrinkage.h"
@@ -53,6 +54,13 @@ FieldExposure linearised(FieldExposure exposure, const StreamHeader& header,
         }
         exposure.noise_dn2[group] = std::max(mean_of(variances, inliers(means)), kRoundingDn2);
     }
+    const double mean_dn =
+        std::accumulate(sums.sum.begin(), sums.sum.end(), 0.0) / static_cast<double>(sums.samples);
+    const auto slope = static_cast<double>(
+        curve == nullptr ? 1 : curve->slope(static_cast<std::uint16_t>(std::lround(mean_dn))));
+    exposure.row_error_dn2.clear();
+    for (int plane = 0; plane < header.shape.planes; ++plane)
+        exposure.row_error_dn2.push_back(slope * slope * sums.row_error(plane, header.shape));
     return exposure;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "calibration/field_samples.h"
 #include "decoder/response_curve.h"
@@ -23,6 +24,7 @@ struct FieldExposure {
     /// Temporal variance of a sample, mean over the sites of a group, in DN^2; at least 1 / 12,
     /// because the rounding errors of a sample without noise are the same in all frames.
     std::array<double, kMaxLightGroups> noise_dn2{};
+    std::vector<double> row_error_dn2 = {};  ///< by plane, ExposureSums::row_error
 
     [[nodiscard]] bool has(std::size_t site) const { return sums->count[site] > 0; }
     /// Mean sample of a site. Precondition: has(site).
@@ -32,6 +34,11 @@ struct FieldExposure {
     /// Variance of the mean of a site's samples: noise / number of samples. A site with more than
     /// four times the noise of its group has its own. Precondition: has(site).
     [[nodiscard]] double mean_variance(std::size_t site, std::size_t group) const;
+    /// The same of a site with the noise of its group and the mean number of samples.
+    [[nodiscard]] double usual_variance(std::size_t group) const {
+        return noise_dn2[group] * static_cast<double>(sums->count.size()) /
+               static_cast<double>(sums->samples);
+    }
 };
 
 /// `sums` must outlive the result.

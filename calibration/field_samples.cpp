@@ -15,6 +15,26 @@ double ExposureSums::variance(std::size_t site) const {
     return std::max(static_cast<double>(sum_of_squares[site]) - all * all / n, 0.0) / (n - 1);
 }
 
+double ExposureSums::row_error(int plane, FrameShape shape) const {
+    const auto cols = index(shape.cols);
+    double error = 0, measured = 0;
+    for (std::size_t row = 0; row < index(shape.rows); ++row) {
+        const std::size_t line = index(plane) * index(shape.rows) + row;
+        const RowSums& frames = rows[line];
+        const double n = frames.frames;
+        if (n < 2 || cols < 2) continue;
+        const double of_mean =
+            std::max(frames.square_of_mean - frames.mean * frames.mean / n, 0.0) / (n - 1) / n;
+        double of_site = 0;
+        for (std::size_t site = line * cols; site < (line + 1) * cols; ++site)
+            of_site += variance(site) / n / shape.cols;
+        // A mean of C sites, each of variance v with e in common, has the variance e + (v - e) / C.
+        error += (of_mean - of_site / shape.cols) * shape.cols / (shape.cols - 1);
+        ++measured;
+    }
+    return measured > 0 ? std::max(error / measured, 0.0) : 0;
+}
+
 std::uint64_t FieldSamples::count(std::size_t site) const {
     std::uint64_t count = 0;
     for (const auto& [time, sums] : exposures_) count += sums.count[site];
@@ -34,6 +54,7 @@ ExposureSums& FieldSamples::at(std::int64_t exposure_ns) {
         sums.count.resize(shape_.sites());
         sums.sum.resize(shape_.sites());
         sums.sum_of_squares.resize(shape_.sites());
+        sums.rows.resize(index(shape_.planes) * index(shape_.rows));
     }
     return sums;
 }
@@ -44,6 +65,20 @@ FieldCollector::FieldCollector(const StreamHeader& header, FieldSamples& field)
       responses_(header),
       by_open_slots_(index(kMaxExposureSlots) + 1) {
     assert(header.shape == field.shape());
+}
+
+/// The samples of a whole row, planes of a pixel side by side.
+void FieldCollector::add_row(int row, std::span<const std::uint16_t> dn, ExposureSums& sums) const {
+    const auto planes = index(header_.shape.planes);
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+        double mean = 0;
+        for (std::size_t i = plane; i < dn.size(); i += planes) mean += dn[i];
+        mean /= header_.shape.cols;
+        RowSums& frames = sums.rows[plane * index(header_.shape.rows) + index(row)];
+        ++frames.frames;
+        frames.mean += mean;
+        frames.square_of_mean += mean * mean;
+    }
 }
 
 void FieldCollector::add(const SamplePacket& packet) {
@@ -61,14 +96,21 @@ void FieldCollector::add(const SamplePacket& packet) {
         if (responses_.at(plane, row, col).saturated(static_cast<std::uint16_t>(value)))
             ++sums.saturated;
     };
-    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row) {
+        const std::uint16_t* const begin = dn;
+        ExposureSums* first = nullptr;
+        int alike = 0;
         visit_due_pixels(
             header_.schedule, packet.slot, row, shape.cols, [&](int col, const DuePixel& due) {
                 ExposureSums*& sums = by_open_slots_[due.light_slots];
                 if (sums == nullptr)
                     sums = &field_.at(std::llround(header_.slot_us * 1000 * due.light_slots));
+                if (first == nullptr) first = sums;
+                if (sums == first) ++alike;
                 for (int plane = 0; plane < shape.planes; ++plane) take(*sums, plane, row, col);
             });
+        if (alike == shape.cols) add_row(row, {begin, dn}, *first);
+    }
 }
 
 }  // namespace stipple

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "core/geometry.h"
@@ -12,11 +13,19 @@
 
 namespace stipple {
 
+/// Sums of the means of a row over the frames in which all of its pixels were read.
+struct RowSums {
+    double frames = 0;
+    double mean = 0;            ///< in DN
+    double square_of_mean = 0;  ///< in DN^2
+};
+
 /// Sums of the samples of each site at one exposure time; order (plane, row, col).
 struct ExposureSums {
     std::vector<std::uint32_t> count;
     std::vector<std::uint64_t> sum;             ///< of DN
     std::vector<std::uint64_t> sum_of_squares;  ///< of DN
+    std::vector<RowSums> rows;                  ///< order (plane, row)
     std::uint64_t samples = 0;                  ///< of all sites
     std::uint64_t saturated = 0;                ///< of these, only a lower bound (PixelResponse)
     std::uint64_t zeros = 0;                    ///< of these, DN 0
@@ -27,10 +36,14 @@ struct ExposureSums {
     }
     /// Unbiased variance between the samples of a site. Precondition: it has two samples.
     [[nodiscard]] double variance(std::size_t site) const;
+    /// Variance of the errors that the means of the sites of a row have in common, as row noise
+    /// makes them: of the mean of a row, beyond that of independent sites; mean over the rows of a
+    /// plane. 0 if no row was read whole in two frames.
+    [[nodiscard]] double row_error(int plane, FrameShape shape) const;
 };
 
-/// The samples of a chip in a constant, uniform field, or in the dark, by exposure time. Sums are
-/// exact, so their order has no influence.
+/// The samples of a chip in a constant, uniform field, or in the dark, by exposure time. Sums of
+/// sites are exact, so their order has no influence.
 class FieldSamples {
   public:
     /// An array of this shape.
@@ -63,6 +76,8 @@ class FieldCollector {
     void add(const SamplePacket& packet);
 
   private:
+    void add_row(int row, std::span<const std::uint16_t> dn, ExposureSums& sums) const;
+
     const StreamHeader& header_;
     FieldSamples& field_;
     SiteResponses responses_;

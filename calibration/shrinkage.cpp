@@ -18,13 +18,13 @@ constexpr int kMinLines = 8;  ///< fewer do not tell their variance
 struct Lines {
     std::vector<double> mean;
     double variance = 0;        ///< of the quantity; 0: not significant
-    double error_variance = 0;  ///< of a mean, by the scatter within its line
+    double error_variance = 0;  ///< of a mean, by the scatter within its line and what it shares
 };
 
-/// `line_of(i)` is the line of pixel i.
+/// `line_of(i)` is the line of pixel i, `shared` the variance of the errors that its pixels share.
 template <typename LineOf>
 Lines lines_of(const std::vector<double>& residual, const std::vector<bool>& used, int count,
-               const LineOf& line_of) {
+               const LineOf& line_of, double shared = 0) {
     Lines lines{.mean = std::vector<double>(index(count))};
     std::vector<double> pixels(index(count)), squares(index(count));
     for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -45,7 +45,7 @@ Lines lines_of(const std::vector<double>& residual, const std::vector<bool>& use
     }
     if (measured < kMinLines) return lines;
     between /= measured - 1;
-    lines.error_variance = error / measured;
+    lines.error_variance = error / measured + shared;
     const double excess = between - lines.error_variance;
     if (excess > kLineSigmas * lines.error_variance * std::sqrt(2 / (measured - 1)))
         lines.variance = excess;
@@ -107,13 +107,16 @@ PatternVariances shrink(EstimateMap& map) {
     const auto row_of = [cols](std::size_t i) { return i / cols; };
     const Lines columns = lines_of(residual, used, map.cols, col_of);
     double line_error = remove_lines(columns, col_of, residual, value);
-    const Lines rows = lines_of(residual, used, map.rows, row_of);
-    line_error += remove_lines(rows, row_of, residual, value);
+    const Lines rows = lines_of(residual, used, map.rows, row_of, map.row_error);
+    const double removed_error = rows.variance > 0 ? map.row_error : 0;
+    map.row_error = remove_lines(rows, row_of, residual, value);
+    line_error += map.row_error;
     pattern.cols = columns.variance;
     pattern.rows = rows.variance;
     std::vector<double> squares(residual.size());
     std::ranges::transform(residual, squares.begin(), [](double r) { return r * r; });
-    pattern.pixels = std::max(mean_of(squares, used) - mean_of(map.variance, used), 0.0);
+    pattern.pixels =
+        std::max(mean_of(squares, used) - mean_of(map.variance, used) + removed_error, 0.0);
     for (std::size_t i = 0; i < value.size(); ++i) {
         const double v = map.variance[i];
         if (!used[i]) {

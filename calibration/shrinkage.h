@@ -11,6 +11,7 @@ struct EstimateMap {
     int cols = 0;
     std::vector<double> value;
     std::vector<double> variance;  ///< of the estimate; infinite where nothing was measured
+    double row_error = 0;  ///< part of the variance: of errors that the pixels of a row share
 };
 
 /// What makes the pixels of a map differ: variances of the quantity itself, without those of its
@@ -30,9 +31,9 @@ struct PatternVariances {
 ///
 /// v is the variance of the estimate and S the variance of the pixels: that of the estimates minus
 /// the mean v, at least 0. Rows and columns are shrunk likewise, by the variance that the mean of a
-/// line has; they are 0 unless they differ by more than three standard deviations of what pixels
-/// without lines give. Outliers, more than six standard deviations (1.4826 x median absolute
-/// deviation) from the median, keep their own estimates.
+/// line has, in which `row_error` counts whole; they are 0 unless they differ by more than three
+/// standard deviations of what pixels without lines give. Outliers, more than six standard
+/// deviations (1.4826 x median absolute deviation) from the median, keep their own estimates.
 PatternVariances shrink(EstimateMap& map);
 
 /// The pixels of which `shrink` takes the means: measured, and no outliers.

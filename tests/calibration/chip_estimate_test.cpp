@@ -22,6 +22,7 @@ const double kScatter = 5 * std::sqrt(2 / kPixels);
 /// A chip of 16 bits whose sites differ: y = 500 + offset + dark t + gain light t, in DN.
 struct Chip {
     std::vector<double> gain, offset, dark;
+    double row_noise_dn = 0;  ///< of each row of each frame
 
     explicit Chip(double prnu, double dsnu, double dark_spread) {
         std::mt19937 random(3);
@@ -60,11 +61,14 @@ void expose(const Chip& chip, double slot_us, double light_dn_per_s, int frames,
     const double t = slot_us * 1e-6;
     for (int frame = 0; frame < frames; ++frame) {
         SamplePacket packet{.slot = frame, .rows = kShape.rows, .dn = {}};
-        for (std::size_t i = 0; i < kShape.sites(); ++i)
+        double row_dn = 0;
+        for (std::size_t i = 0; i < kShape.sites(); ++i) {
+            if (i % 64 == 0 && chip.row_noise_dn > 0) row_dn = chip.row_noise_dn * normal(random);
             packet.dn.push_back(static_cast<std::uint16_t>(std::clamp(
                 std::round(500 + chip.offset[i] + chip.dark[i] * t +
-                           chip.gain[i] * light_dn_per_s * t + noise_dn * normal(random)),
+                           chip.gain[i] * light_dn_per_s * t + row_dn + noise_dn * normal(random)),
                 0.0, 65535.0)));
+        }
         collector.add(packet);
     }
 }
@@ -134,6 +138,32 @@ TEST(ChipEstimateTest, GainVarianceIsThatOfFlatFieldCorrection) {
     EXPECT_NEAR(std::sqrt(static_cast<double>(estimate.calibration.sites[0].gain_variance)),
                 10.0 / 1e4 / 5, 0.05 * 10.0 / 1e4 / 5);
     EXPECT_NEAR(std::sqrt(estimate.gain.pixels), 0.02, 0.02 * kScatter);
+}
+
+// The mean of n frames has the row noise of variance s^2 / n in all pixels of a row. 64 rows of 25
+// frames tell s^2 to sqrt(2 / (64 x 24)) = 3.6 %.
+TEST(ChipEstimateTest, RowNoiseIsNoPatternOfRows) {
+    Chip chip(0.02, 3, 40);
+    chip.row_noise_dn = 5;
+    const Series series = series_of(chip, 25, 10);
+    for (const auto& [time, sums] : series.dark.exposures())
+        EXPECT_NEAR(sums.row_error(0, kShape), 25.0 / 25, 5 * 0.036);
+    const ChipEstimate estimate = series.estimate();
+    EXPECT_EQ(estimate.offset_dn.rows, 0);
+    EXPECT_EQ(estimate.dark_dn_per_s.rows, 0);
+    EXPECT_EQ(estimate.gain.rows, 0);
+    EXPECT_EQ(estimate.readout_noise_dn2.rows, 0);
+    EXPECT_NEAR(estimate.offset_dn.pixels, 9, 9 * 2 * kScatter);
+}
+
+TEST(ChipEstimateTest, APatternOfRowsIsFoundBesideRowNoise) {
+    Chip chip(0, 0, 0);
+    chip.row_noise_dn = 5;
+    for (std::size_t i = 0; i < kShape.sites(); ++i) chip.offset[i] = i / 64 % 2 == 0 ? 3 : -3;
+    const ChipEstimate estimate = series_of(chip, 25, 10).estimate();
+    // Offsets of +-3 DN, each with an error of about 1 DN: the variance of 64 rows has one of
+    // 2 x 3 x 1 / sqrt(64) and sqrt(2 / 64) x 1.
+    EXPECT_NEAR(estimate.offset_dn.rows, 9, 5 * std::hypot(0.75, 0.18));
 }
 
 TEST(ChipEstimateTest, WithoutNoiseThePatternIsExact) {

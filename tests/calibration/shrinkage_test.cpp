@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -74,6 +75,43 @@ TEST(ShrinkageTest, ColumnsAreFoundAndRowsAreNot) {
     // A column's mean has the variance 1 / 100, less than the pixel's own measurement by far.
     EXPECT_LT(mean_square(map, truth), 0.02);
     EXPECT_GE(map.variance[0], 0.009);
+}
+
+/// `map` with an error of each row.
+EstimateMap with_row_errors(EstimateMap map, const std::vector<double>& error) {
+    for (std::size_t i = 0; i < map.value.size(); ++i) map.value[i] += error[i / kSide];
+    return map;
+}
+
+// Errors of variance 0.25 that a row shares, and pixels of variance 1 in all.
+TEST(ShrinkageTest, ErrorsThatARowSharesAreNoPatternOfRows) {
+    const std::vector<double> truth(kSide * kSide, 7), errors = normal_values(0, 0.5);
+    EstimateMap map = with_row_errors(measured(truth, 0.75), errors);
+    std::ranges::fill(map.variance, 1);
+    EstimateMap unaware = map;
+    EXPECT_NEAR(shrink(unaware).rows, 0.25, 0.25 * 5 * std::sqrt(2.0 / 99));
+    map.row_error = 0.25;
+    const PatternVariances pattern = shrink(map);
+    EXPECT_EQ(pattern.rows, 0);
+    EXPECT_LT(pattern.pixels, 0.07);
+    EXPECT_EQ(map.row_error, 0);
+    EXPECT_LT(mean_square(map, truth), 0.01);
+}
+
+// The rows differ by a variance of 4, known to 4 + 0.25: of the latter S v / (S + v) is left.
+TEST(ShrinkageTest, APatternOfRowsIsFoundAboveTheErrorsThatRowsShare) {
+    std::vector<double> truth(kSide * kSide);
+    const std::vector<double> rows = normal_values(0, 2), pixels = normal_values(0, 1);
+    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = rows[i / kSide] + pixels[i];
+    std::vector<double> errors = normal_values(0, 0.5);
+    std::ranges::reverse(errors);  // other ones than those of the rows
+    EstimateMap map = with_row_errors(measured(truth, 0.75), errors);
+    std::ranges::fill(map.variance, 1);
+    map.row_error = 0.25;
+    const PatternVariances pattern = shrink(map);
+    EXPECT_NEAR(pattern.rows, 4, 4.25 * 5 * std::sqrt(2.0 / 99));
+    EXPECT_NEAR(pattern.pixels, 1, 1.75 * 0.07);
+    EXPECT_NEAR(map.row_error, 4 * 0.26 / 4.26, 0.02);
 }
 
 TEST(ShrinkageTest, AnOutlierKeepsItsOwnEstimate) {
