@@ -22,6 +22,7 @@
 #include "decoder/rivals/bennett2005.h"
 #include "decoder/rivals/conventional_schedule.h"
 #include "decoder/rivals/frame_decoding.h"
+#include "decoder/rivals/kang2003.h"
 #include "decoder/rivals/shahar2011.h"
 #include "decoder/rivals/vbm4d.h"
 #include "decoder/rivals/zhang2009.h"
@@ -120,6 +121,9 @@ constexpr NamedDecodeMethod kMethods[] = {
      [](Config& config, DecodeOptions& options) { read_options(config, options.shahar2011); },
      [](const BlockTask& block) { return super_resolve_time(block, block.options.shahar2011); },
      require_conventional},
+    {"kang2003", DecodeMethod::kKang2003,
+     "alternating exposure times only: HDR video, merged along motion (after Kang et al. 2003)",
+     kMaxCoreSites, 44, [](Config&, DecodeOptions&) {}, merge_exposure_times, require_alternating},
 };
 
 }  // namespace

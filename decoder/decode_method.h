@@ -28,6 +28,7 @@ enum class DecodeMethod {
     kZhang2009,     ///< principal components of patches along optical flow
     kVbm4d,         ///< collaborative filter of volumes along motion
     kShahar2011,    ///< temporal super-resolution by self-similarity
+    kKang2003,      ///< frames of alternating exposure times, merged along motion
 };
 
 /// A row of the table of methods.

@@ -91,7 +91,7 @@ struct SharedExposures {
     bool each_of_most = false;  ///< of the sites with samples
 };
 
-/// Nothing if sites differ, or exposures overlap or differ in length.
+/// Nothing if sites differ or exposures overlap.
 std::optional<SharedExposures> find_exposures(const Measurements& measurements) {
     if (measurements.interleaved) return {};
     ExposureList list;
@@ -104,10 +104,6 @@ std::optional<SharedExposures> find_exposures(const Measurements& measurements) 
     SharedExposures found{list.in_order(), list.each_of_most(sites)};
     const std::vector<FrameExposure>& exposures = found.exposures;
     if (std::ranges::adjacent_find(exposures, overlap) != exposures.end()) return {};
-    const auto unlike_the_first = [&](const FrameExposure& e) {
-        return span(e) != span(exposures.front()) || e.open_slots != exposures.front().open_slots;
-    };
-    if (std::ranges::any_of(exposures, unlike_the_first)) return {};
     return found;
 }
 
@@ -128,11 +124,18 @@ std::optional<std::vector<FrameExposure>> shared_exposures(const Measurements& m
     return found ? found->exposures : std::optional<std::vector<FrameExposure>>();
 }
 
+bool equally_long(std::span<const FrameExposure> exposures) {
+    return std::ranges::all_of(exposures, [&](const FrameExposure& e) {
+        return span(e) == span(exposures.front()) && e.open_slots == exposures.front().open_slots;
+    });
+}
+
 std::optional<std::vector<FrameExposure>> frame_exposures(const Measurements& measurements) {
     if (!measurements.weight.empty()) return {};
     auto found = find_exposures(measurements);
     if (!found || found->exposures.empty() || !found->each_of_most) return {};
     const std::vector<FrameExposure>& exposures = found->exposures;
+    if (!equally_long(exposures)) return {};
     const bool every_slot = span(exposures.front()) == 1 &&
                             exposures.back().last_slot - exposures.front().first_slot + 1 ==
                                 static_cast<int>(exposures.size());

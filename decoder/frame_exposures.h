@@ -26,8 +26,11 @@ struct FrameExposure {
 [[nodiscard]] std::optional<std::vector<FrameExposure>> shared_exposures(
     const Measurements& measurements);
 
-/// The same, but nothing without samples, if exposures are weighted, and if each slot is a frame,
-/// because there are then no slots between frames.
+/// True if all have the same number of slots and of open slots.
+[[nodiscard]] bool equally_long(std::span<const FrameExposure> exposures);
+
+/// The frames as `shared_exposures`, but nothing without samples, if exposures are weighted or not
+/// equally long, and if each slot is a frame, because there are then no slots between frames.
 [[nodiscard]] std::optional<std::vector<FrameExposure>> frame_exposures(
     const Measurements& measurements);
 

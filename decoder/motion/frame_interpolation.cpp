@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "core/index.h"
@@ -89,15 +90,13 @@ class Between {
     }
 
     void write(std::span<float> light) const {
-        for (int plane = 0; plane < shape_.planes; ++plane) {
-            const auto before = frames_.plane(first_, plane);
-            const auto after = frames_.plane(first_ + 1, plane);
-            float* out = &light[index(plane) * shape_.pixels()];
-            visit([&](std::size_t i, int row, int col) {
-                const auto [a, b] = along(before, after, row, col, shift_[i]);
-                out[i] = a + share_ * (b - a);
-            });
-        }
+        write(light,
+              [this](Pair pair) { return pair.first + share_ * (pair.second - pair.first); });
+    }
+
+    /// The frame that is not at the time of this slot. Precondition: share is 0 or 1.
+    void write_moved(std::span<float> light) const {
+        write(light, [this](Pair pair) { return share_ > 0 ? pair.first : pair.second; });
     }
 
   private:
@@ -105,6 +104,18 @@ class Between {
         float first;
         float second;
     };
+
+    template <typename Blend>
+    void write(std::span<float> light, const Blend& blend) const {
+        for (int plane = 0; plane < shape_.planes; ++plane) {
+            const auto before = frames_.plane(first_, plane);
+            const auto after = frames_.plane(first_ + 1, plane);
+            float* out = &light[index(plane) * shape_.pixels()];
+            visit([&](std::size_t i, int row, int col) {
+                out[i] = blend(along(before, after, row, col, shift_[i]));
+            });
+        }
+    }
 
     template <typename Body>
     void visit(const Body& body) const {
@@ -191,27 +202,47 @@ class Between {
     std::vector<float> misfit_;  ///< along it
 };
 
+std::vector<MotionField> motion_of(const FluxVideo& frames) {
+    const bool can_move =
+        frames.slots() > 1 && std::min(frames.shape().rows, frames.shape().cols) >= kMinMotionSide;
+    return can_move ? estimate_motion(frames, {}) : std::vector<MotionField>();
+}
+
 }  // namespace
 
 FluxVideo interpolate_frames(const FluxVideo& frames, std::span<const float> centre_slots,
-                             int slots) {
-    const FrameShape shape = frames.shape();
-    FluxVideo video(slots, shape);
-    const bool can_move = frames.slots() > 1 && std::min(shape.rows, shape.cols) >= kMinMotionSide;
-    const auto motion = can_move ? estimate_motion(frames, {}) : std::vector<MotionField>();
-    parallel_for(0, slots, [&](int slot) {
-        const auto at = static_cast<float>(slot);
+                             std::span<const float> times) {
+    FluxVideo video(static_cast<int>(times.size()), frames.shape());
+    const auto motion = motion_of(frames);
+    parallel_for(0, video.slots(), [&](int i) {
+        const float at = times[index(i)];
         const auto next = std::ranges::upper_bound(centre_slots, at);
         const auto after = static_cast<int>(next - centre_slots.begin());
         if (after == 0 || next == centre_slots.end()) {
-            std::ranges::copy(frames.frame(std::max(after - 1, 0)), video.frame(slot).begin());
+            std::ranges::copy(frames.frame(std::max(after - 1, 0)), video.frame(i).begin());
             return;
         }
         const float before = centre_slots[index(after - 1)];
-        Between(frames, motion, after - 1, (at - before) / (*next - before))
-            .write(video.frame(slot));
+        Between(frames, motion, after - 1, (at - before) / (*next - before)).write(video.frame(i));
     });
     return video;
+}
+
+FluxVideo interpolate_frames(const FluxVideo& frames, std::span<const float> centre_slots,
+                             int slots) {
+    std::vector<float> times(index(slots));
+    std::iota(times.begin(), times.end(), 0.0F);
+    return interpolate_frames(frames, centre_slots, times);
+}
+
+MovedFrames move_frames(const FluxVideo& frames) {
+    MovedFrames moved{frames, frames};
+    const auto motion = motion_of(frames);
+    parallel_for(0, frames.slots() - 1, [&](int i) {
+        Between(frames, motion, i, 0).write_moved(moved.next.frame(i));
+        Between(frames, motion, i, 1).write_moved(moved.previous.frame(i + 1));
+    });
+    return moved;
 }
 
 }  // namespace stipple

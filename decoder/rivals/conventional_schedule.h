@@ -11,8 +11,15 @@ namespace stipple {
 /// without exposures is never read and may be among them.
 [[nodiscard]] bool conventional(const ExposureSchedule& schedule);
 
+/// The same, but with exposures of 2 to 4 lengths.
+[[nodiscard]] bool alternating(const ExposureSchedule& schedule);
+
 /// \throws InputError that names `stream` and the method, unless the schedule is conventional.
 void require_conventional(const ExposureSchedule& schedule, std::string_view stream,
                           std::string_view method);
+
+/// \throws InputError that names `stream` and the method, unless the schedule is alternating.
+void require_alternating(const ExposureSchedule& schedule, std::string_view stream,
+                         std::string_view method);
 
 }  // namespace stipple

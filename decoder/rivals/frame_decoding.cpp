@@ -45,12 +45,18 @@ FrameNoise noise_of_samples(const Measurements& frames) {
     return {mean(dark_variance), mean(per_light)};
 }
 
-std::vector<FrameExposure> exposures_of_frames(const Measurements& measurements) {
+std::vector<FrameExposure> exposures_of_frames(const Measurements& measurements,
+                                               FrameLengths lengths) {
     auto exposures = shared_exposures(measurements);
-    if (exposures) return std::move(*exposures);
-    throw InputError("samples",
-                     "pixels have different exposures; this method takes the frames of a "
-                     "conventional camera");
+    if (!exposures)
+        throw InputError("samples",
+                         "pixels have different exposures; this method takes the frames of a "
+                         "conventional camera");
+    if (lengths == FrameLengths::kEqual && !equally_long(*exposures))
+        throw InputError("samples",
+                         "exposures have different lengths; of the methods of conventional "
+                         "cameras only kang2003 takes them");
+    return std::move(*exposures);
 }
 
 DeliveredFrames delivered_frames(const BlockTask& block, std::span<const FrameExposure> exposures) {

@@ -46,8 +46,11 @@ using FrameFilter = std::function<std::optional<FluxVideo>(const DeliveredFrames
 [[nodiscard]] std::optional<FluxVideo> decode_frames(const BlockTask& block,
                                                      const FrameFilter& filter);
 
+enum class FrameLengths { kEqual, kAny };
+
 /// The frames of a block; none without samples. \throws InputError as decode_frames.
-[[nodiscard]] std::vector<FrameExposure> exposures_of_frames(const Measurements& measurements);
+[[nodiscard]] std::vector<FrameExposure> exposures_of_frames(
+    const Measurements& measurements, FrameLengths lengths = FrameLengths::kEqual);
 
 /// Their light, without the samples of stuck pixels.
 [[nodiscard]] DeliveredFrames delivered_frames(const BlockTask& block,

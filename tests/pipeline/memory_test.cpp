@@ -61,14 +61,26 @@ void return_freed_arrays() {
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
 }
 
+/// 16 exposures of 1 slot, then one of 2, 3 and 4 slots.
+ExposureSchedule four_times() {
+    std::vector<Exposure> exposures;
+    for (std::uint32_t slot = 0; slot < 16; ++slot) exposures.push_back({slot, 1});
+    exposures.insert(exposures.end(), {{16, 0b11}, {18, 0b111}, {21, 0b1111}});
+    return {1, 1, 25, {0, 19}, exposures};
+}
+
 /// Records and decodes so many slots of a chequered scene; the bytes that decoding takes.
 std::uint64_t decode_scene(int slots, FrameShape shape, DecodeMethod method) {
     const TemporaryFolder folder;
     FluxVideo video(slots, shape);
     for (std::size_t i = 0; i < video.voxels(); ++i)
         video.data()[i] = static_cast<float>((i / 7 + i % 240) % 50) / 50;
-    // A frame in each slot is what takes most of a conventional camera's memory.
-    if (named(method).check_schedule == nullptr)
+    // A frame in each slot is what takes most of a conventional camera's memory; of alternating
+    // exposure times, most frames of 1 slot and few of three others.
+    if (method == DecodeMethod::kKang2003)
+        write_recording(video, {.name = "four times", .source = {}, .schedule = four_times()}, 1,
+                        folder / "clip.stipple");
+    else if (named(method).check_schedule == nullptr)
         write_recording(video, "tiled", folder / "clip.stipple");
     else
         write_recording(video, {.name = "full", .source = {}, .schedule = full_schedule(1, 1)}, 1,
@@ -103,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, MemoryTest,
                                          DecodeMethod::kBest, DecodeMethod::kReddy2011,
                                          DecodeMethod::kHitomi2011, DecodeMethod::kInterpolated,
                                          DecodeMethod::kBennett2005, DecodeMethod::kZhang2009,
-                                         DecodeMethod::kVbm4d, DecodeMethod::kShahar2011),
+                                         DecodeMethod::kVbm4d, DecodeMethod::kShahar2011,
+                                         DecodeMethod::kKang2003),
                          [](const auto& method) { return std::string(named(method.param).name); });
 
 }  // namespace

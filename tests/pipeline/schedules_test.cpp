@@ -52,8 +52,10 @@ struct ScheduleFigures {
 
 const std::map<std::string, ScheduleFigures> kFigures = {
     // naive, fast; of a mosaic naive, fast; at rest fast, best
+    {"alternating", {{25.26, 25.55}, {27.62, 28.41}, {38.76, 40.19}}},
     {"coded_rolling_shutter_exposure", {{25.24, 33.28}, {27.97, 31.98}, {23.91, 24.83}}},
     {"coded_rolling_shutter_staggered", {{23.83, 30.46}, {26.90, 30.87}, {15.14, 15.41}}},
+    {"dol", {{24.03, 25.97}, {26.41, 26.11}, {37.01, 39.50}}},
     {"flexible_voxels", {{18.85, 27.29}, {21.66, 26.02}, {34.39, 37.32}}},
     {"full1x", {{25.84, 36.96}, {28.07, 34.57}, {39.36, 42.53}}},
     {"full4x", {{23.83, 25.42}, {26.91, 28.52}, {15.14, 15.36}}},

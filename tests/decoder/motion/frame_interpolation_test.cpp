@@ -66,6 +66,29 @@ TEST(FrameInterpolationTest, MovesWhatMoves) {
     }
 }
 
+TEST(FrameInterpolationTest, IsThatOfTheSlotsAtAnyTimes) {
+    const FluxVideo frames = moving_texture(3, 0.5F, 1.5F, 4);
+    const std::vector<float> centres{0, 4, 8};
+    const FluxVideo slots = interpolate_frames(frames, centres, 9);
+    const FluxVideo some = interpolate_frames(frames, centres, std::vector<float>{3, 3.5F, 4, 9});
+    EXPECT_TRUE(std::ranges::equal(some.frame(0), slots.frame(3)));
+    EXPECT_LT(rms(some.frame(1), slots.frame(3)), rms(slots.frame(3), slots.frame(4)));
+    EXPECT_TRUE(std::ranges::equal(some.frame(2), frames.frame(1)));
+    EXPECT_TRUE(std::ranges::equal(some.frame(3), frames.frame(2)));
+}
+
+TEST(FrameInterpolationTest, MovesEachFrameToTheTimesOfItsNeighbours) {
+    const FluxVideo frames = moving_texture(3, 0.5F, 1.5F, 4);  // 6 pixels from frame to frame
+    const MovedFrames moved = move_frames(frames);
+    for (const int i : {0, 1}) {
+        const double apart = rms(frames.frame(i), frames.frame(i + 1));
+        EXPECT_LT(rms(moved.next.frame(i), frames.frame(i)), apart / 4);
+        EXPECT_LT(rms(moved.previous.frame(i + 1), frames.frame(i + 1)), apart / 4);
+    }
+    EXPECT_TRUE(std::ranges::equal(moved.previous.frame(0), frames.frame(0)));
+    EXPECT_TRUE(std::ranges::equal(moved.next.frame(2), frames.frame(2)));
+}
+
 TEST(FrameInterpolationTest, GivesTheSameBitsForAnyNumberOfThreads) {
     const FluxVideo frames = moving_texture(3, 0.5F, 1.5F, 4);
     const auto with = [&](int threads) {

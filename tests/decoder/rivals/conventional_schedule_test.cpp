@@ -40,6 +40,17 @@ TEST(ConventionalScheduleTest, HasWeightsThatAreEqualUpToAFactor) {
     EXPECT_FALSE(conventional(pair_of(3, 3, {0.5F, 0.2F, 1.0F, 0.2F, 0, 0, 0, 0})));
 }
 
+TEST(ConventionalScheduleTest, IsAlternatingWithTwoToFourExposureTimes) {
+    EXPECT_TRUE(alternating({1, 1, 4, {0, 2}, {{0, 1}, {2, 3}}}));
+    EXPECT_TRUE(alternating({1, 2, 4, {0, 2, 2}, {{0, 1}, {2, 3}}})) << "a column without samples";
+    EXPECT_TRUE(alternating({1, 1, 10, {0, 4}, {{0, 1}, {1, 3}, {3, 7}, {6, 15}}}));
+    EXPECT_FALSE(alternating({1, 1, 15, {0, 5}, {{0, 1}, {1, 3}, {3, 7}, {6, 15}, {10, 31}}}));
+    EXPECT_FALSE(alternating(full_schedule(4, 4)));
+    EXPECT_FALSE(alternating({1, 1, 8, {0, 2}, {{0, 3}, {3, 5}}})) << "2 open slots each";
+    EXPECT_FALSE(alternating({1, 2, 4, {0, 1, 2}, {{0, 1}, {0, 3}}})) << "pixels differ";
+    EXPECT_FALSE(alternating({1, 1, 3, {0, 0}, {}})) << "nothing is read";
+}
+
 TEST(ConventionalScheduleTest, TheErrorNamesStreamMethodAndRemedy) {
     EXPECT_NO_THROW(require_conventional(full_schedule(4, 4), "clip.stipple", "vbm4d"));
     expect_parts(message_of<InputError>([] {
@@ -47,6 +58,10 @@ TEST(ConventionalScheduleTest, TheErrorNamesStreamMethodAndRemedy) {
                                           "clip.stipple", "vbm4d");
                  }),
                  {"clip.stipple: the method vbm4d", "full1x and full4x", "naive, fast or best"});
+    expect_parts(
+        message_of<InputError>(
+            [] { require_alternating(full_schedule(4, 4), "clip.stipple", "kang2003"); }),
+        {"clip.stipple: the method kang2003", "alternating and dol", "naive, fast or best"});
 }
 
 }  // namespace

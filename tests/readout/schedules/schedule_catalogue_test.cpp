@@ -174,8 +174,10 @@ TEST(ScheduleCatalogueTest, HoldsThePublishedSchedulesWithTheirFigures) {
         int stores;
     };
     for (const auto& [name, samples, light, stores] : {
+             Published{"alternating", 1 / 4.0, 5 / 8.0, 1},
              Published{"coded_rolling_shutter_exposure", 1 / 4.0, 7 / 12.0, 1},
              Published{"coded_rolling_shutter_staggered", 1 / 4.0, 1, 1},
+             Published{"dol", 1 / 4.0, 1, 1},
              Published{"flexible_voxels", 1 / 16.0, 1 / 16.0, 1},
              Published{"full1x", 1 / 4.0, 1 / 4.0, 1},
              Published{"full4x", 1 / 4.0, 1, 1},
