@@ -101,7 +101,8 @@ CalibrationTile tile_of(const PhysicalTerms& terms) {
 Calibration calibration_of(const SensorParams& params) {
     return {.bit_depth = params.bit_depth,
             .rounding = params.rounding,
-            .black_level_dn = params.physical.black_level_dn,
+            .black_level_dn = params.physical.black_level_dn +
+                              params.storage_dark_e() / 2 / params.gain_e_per_dn(),
             .gain_e_per_dn = params.gain_e_per_dn(),
             .read_noise_e = params.temporal_read_noise_e(),
             .full_well_e = params.full_well_e,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "core/philox.h"
@@ -26,6 +27,12 @@ float mean_of(const SiteTraits& site, float light, float dark_slots) {
            site.dark_e_per_slot * dark_slots;
 }
 
+/// Standard deviation at low gain, reset noise included.
+double low_gain_noise(const PhysicalTerms& terms) {
+    return std::sqrt(terms.low_gain_read_noise_e * terms.low_gain_read_noise_e +
+                     terms.reset_noise_e * terms.reset_noise_e);
+}
+
 /// Charge above which a pixel is read at low gain.
 float gain_limit(const PhysicalTerms& terms) {
     return terms.dual_gain_limit_e == 0 ? std::numeric_limits<float>::infinity()
@@ -42,7 +49,8 @@ PhysicalPixels::PhysicalPixels(const SensorParams& params, FrameShape shape, std
       full_well_e_(static_cast<float>(params.full_well_e)),
       loss_per_e_(static_cast<float>(params.physical.response_loss / params.full_well_e)),
       dual_gain_limit_e_(gain_limit(params.physical)),
-      low_gain_noise_e_(static_cast<float>(params.physical.low_gain_read_noise_e)),
+      low_gain_noise_e_(static_cast<float>(low_gain_noise(params.physical))),
+      storage_e_per_row_(static_cast<float>(params.storage_dark_e() / shape.rows)),
       doublings_per_slot_(params.physical.temperature_drift_c_per_s * params.slot_us * 1e-6 /
                           params.physical.dark_doubling_c),
       shot_noise_(params.shot_noise),
@@ -58,13 +66,19 @@ Charge PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
 
 Charge PhysicalPixels::expose_one(const SiteTraits& site, float light, float dark_slots,
                                   const SampleDraws& draws) const noexcept {
-    const float mean = mean_of(site, light, dark_slots);
+    const float mean = mean_of(site, light, dark_slots) + draws.storage_e;
     const float count = shot_noise_ ? static_cast<float>(poisson_one(mean, draws.shot)) : mean;
     return charge(count, site, normal_one(draws.read), draws.shared_noise_e);
 }
 
 float PhysicalPixels::dark_factor(std::uint32_t slot) const noexcept {
     return static_cast<float>(power_of_two(std::clamp(doublings_per_slot_ * slot, -900.0, 30.0)));
+}
+
+float PhysicalPixels::storage_e(std::uint32_t pixel, std::uint32_t slot,
+                                std::uint32_t plane) const noexcept {
+    const bool alive = pattern_.plane(plane)[pixel].responsivity_e > 0;
+    return alive ? storage_e_per_row_ * static_cast<float>(pixel / cols_) * dark_factor(slot) : 0;
 }
 
 float PhysicalPixels::column_noise_e(std::uint32_t pixel, std::uint32_t slot,
@@ -135,6 +149,8 @@ void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, st
         for (std::size_t i = 0; i < n; ++i)
             mean[i] = mean_of(sites[pixel[i]], exposed.light[begin + i],
                               static_cast<float>(exposed.open_slots[begin + i]) * dark);
+        if (storage_e_per_row_ > 0)
+            for (std::size_t i = 0; i < n; ++i) mean[i] += storage_e(pixel[i], slot, plane);
         sample_words(pixel, address, std::span(shot).first(n), std::span(read).first(n));
         normal(std::span(read).first(n), std::span(noise).first(n));
         fill_row_noise(pixel, slot, plane, std::span(shared).first(n));

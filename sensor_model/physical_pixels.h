@@ -19,25 +19,27 @@ struct ExposedPixels {
     std::span<const std::uint16_t> open_slots;  ///< slots in which each was open
 };
 
-/// The random words of one sample, and the noise that it shares with its row and its column.
+/// The random words of one sample, the noise that it shares with its row and its column, and the
+/// mean dark signal of its wait.
 struct SampleDraws {
     std::uint32_t shot;
     std::uint32_t read;
     float shared_noise_e;
+    float storage_e = 0;
 };
 
 /// Light to charge in the physical mode (docs/sensor_model.md):
 ///
 ///     electrons = g (Q + V + offset + row noise + column noise)
-///     Q = min(Z, w) (1 - e min(Z, w) / w),   Z ~ Poisson(R x + D n)
+///     Q = min(Z, w) (1 - e min(Z, w) / w),   Z ~ Poisson(R x + D n + S row / rows)
 ///
-/// with light x, n open slots, responsivity R, D dark electrons per slot, full well w, response
-/// loss e, read and reset noise V and relative conversion gain g of the pixel. The result is the
-/// input of the ADC, in electrons at gain 1. V has the standard deviation `low_gain_read_noise_e`
-/// where min(Z, w) exceeds `dual_gain_limit_e`. Row noise is one draw per (row, slot, plane, tap)
-/// at the address (row, slot, kRowNoise, plane + 256 tap); taps are equal blocks of columns. Column
-/// noise is one draw per (column, slot, plane) at (column, slot, kColumnNoise, plane). As in
-/// PixelArray, the words depend on seed, slot, plane and pixel only.
+/// with light x, n open slots, responsivity R, D dark electrons per slot, S electrons per scan of
+/// the storage node, full well w, response loss e, read and reset noise V and relative conversion
+/// gain g of the pixel. The result is the input of the ADC, in electrons at gain 1. V has the read
+/// noise `low_gain_read_noise_e` where min(Z, w) exceeds `dual_gain_limit_e`. Row noise is one draw
+/// per (row, slot, plane, tap) at the address (row, slot, kRowNoise, plane + 256 tap); taps are
+/// equal blocks of columns. Column noise is one draw per (column, slot, plane) at (column, slot,
+/// kColumnNoise, plane). As in PixelArray, the words depend on seed, slot, plane and pixel only.
 class PhysicalPixels {
   public:
     /// \throws InputError as `validate`. Precondition: shape.sites() > 0.
@@ -56,6 +58,11 @@ class PhysicalPixels {
     /// Row noise of a sample in electrons.
     [[nodiscard]] float row_noise_e(std::uint32_t pixel, std::uint32_t slot,
                                     std::uint32_t plane) const noexcept;
+
+    /// Mean dark signal of the storage node, in electrons: a row waits row / rows of the scan for
+    /// its readout. Nothing in dead pixels.
+    [[nodiscard]] float storage_e(std::uint32_t pixel, std::uint32_t slot,
+                                  std::uint32_t plane) const noexcept;
 
     /// Temporal column noise of a sample in electrons.
     [[nodiscard]] float column_noise_e(std::uint32_t pixel, std::uint32_t slot,
@@ -88,6 +95,7 @@ class PhysicalPixels {
     float loss_per_e_;         ///< of the response
     float dual_gain_limit_e_;  ///< infinite: one gain
     float low_gain_noise_e_;
+    float storage_e_per_row_;
     double doublings_per_slot_;  ///< of the dark current
     bool shot_noise_;
     std::uint64_t seed_;

@@ -57,11 +57,9 @@ void visit_shared_light_keys(Terms& terms, const Visit& visit) {
           terms.row_skew_slots);
 }
 
-/// The keys of mode "physical" only.
+/// The keys of mode "physical" of dark currents and their temperature.
 template <typename Terms, typename Visit>
-void visit_physical_keys(Terms& terms, const Visit& visit) {
-    visit({"quantum_efficiency", {1e-3, 1}, "electrons/photon", "quantum efficiency"},
-          terms.quantum_efficiency);
+void visit_dark_keys(Terms& terms, const Visit& visit) {
     visit({"dark_current_e_per_s", {0, 1e9}, "electrons/s", "dark current at dark_reference_c"},
           terms.dark_current_e_per_s);
     visit({"dark_reference_c", {-200, 200}, "degrees Celsius", "where dark currents are given"},
@@ -72,6 +70,21 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
           terms.dark_doubling_c);
     visit({"temperature_drift_c_per_s", {-100, 100}, "kelvins/s", "rise of temperature_c"},
           terms.temperature_drift_c_per_s);
+    visit({"storage_dark_current_e_per_s",
+           {0, 1e9},
+           "electrons/s",
+           "of charge that waits to be read"},
+          terms.storage_dark_current_e_per_s);
+    visit({"storage_wait_us", {0, 1e9}, "us", "scan of all rows: a row waits row / rows of it"},
+          terms.storage_wait_us);
+}
+
+/// The keys of mode "physical" only.
+template <typename Terms, typename Visit>
+void visit_physical_keys(Terms& terms, const Visit& visit) {
+    visit({"quantum_efficiency", {1e-3, 1}, "electrons/photon", "quantum efficiency"},
+          terms.quantum_efficiency);
+    visit_dark_keys(terms, visit);
     visit({"dsnu_e", {0, 1e5}, "electrons", "DSNU: standard deviation of the pixels' offsets"},
           terms.dsnu_e);
     visit({"prnu", {0, 0.5}, "", "PRNU: relative standard deviation of the responsivity"},

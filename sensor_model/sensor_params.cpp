@@ -71,10 +71,22 @@ void check_together(const SensorParams& params) {
         fail(params, "dark_current_e_per_s",
              fmt::format("{:.3g} electrons in a slot at {} degrees; more than 1e9",
                          params.dark_e_per_slot(), terms.temperature_c));
+    if ((terms.storage_wait_us == 0) != (terms.storage_dark_current_e_per_s == 0))
+        fail(params, "storage_wait_us",
+             "needs storage_dark_current_e_per_s, and the other way round");
+    if (params.storage_dark_e() / 2 >= (max_dn - terms.black_level_dn) * params.gain_e_per_dn())
+        fail(params, "storage_dark_current_e_per_s", "leaves nothing of the converter for light");
     if ((terms.dual_gain_limit_e == 0) != (terms.low_gain_read_noise_e == 0))
         fail(params, "dual_gain_limit_e", "needs low_gain_read_noise_e, and the other way round");
     if (terms.hot_pixel_fraction + terms.dead_pixel_fraction > 0.5)
         fail(params, "hot_pixel_fraction", "more than half of the pixels are hot or dead");
+}
+
+/// Mean electrons that a dark current gives in a time.
+double dark_e(const SensorParams& params, double current_e_per_s, double time_us) {
+    const double warmer_c = params.physical.temperature_c - params.physical.dark_reference_c;
+    return current_e_per_s * power_of_two(warmer_c / params.physical.dark_doubling_c) *
+           (time_us * 1e-6);
 }
 
 void check_physical(const SensorParams& params) {
@@ -90,15 +102,17 @@ void check_physical(const SensorParams& params) {
 }  // namespace
 
 double SensorParams::dark_e_per_slot() const {
-    const double warmer_c = physical.temperature_c - physical.dark_reference_c;
-    return physical.dark_current_e_per_s * power_of_two(warmer_c / physical.dark_doubling_c) *
-           (slot_us * 1e-6);
+    return dark_e(*this, physical.dark_current_e_per_s, slot_us);
+}
+
+double SensorParams::storage_dark_e() const {
+    return dark_e(*this, physical.storage_dark_current_e_per_s, physical.storage_wait_us);
 }
 
 double SensorParams::saturation_e() const {
     const int max_dn = (1 << bit_depth) - 1;
     const double range_e = (max_dn - physical.black_level_dn) * gain_e_per_dn();
-    return std::min(full_well_e, range_e) - dark_e_per_slot();
+    return std::min(full_well_e, range_e) - dark_e_per_slot() - storage_dark_e() / 2;
 }
 
 double SensorParams::temporal_read_noise_e() const {
@@ -108,7 +122,7 @@ double SensorParams::temporal_read_noise_e() const {
     if (!physical.row_noise_e.empty()) row2 /= static_cast<double>(physical.row_noise_e.size());
     const double column = physical.column_temporal_noise_e;
     return std::sqrt(read_noise_e * read_noise_e + physical.reset_noise_e * physical.reset_noise_e +
-                     row2 + column * column);
+                     row2 + column * column + storage_dark_e() / 2);
 }
 
 double default_black_level_dn(const SensorParams& params) {

@@ -38,11 +38,15 @@ struct SensorParams {
     }
     /// Mean dark signal of one open slot, in electrons; without hot pixels.
     [[nodiscard]] double dark_e_per_slot() const;
+    /// Mean dark signal, in electrons, of a storage node that waits `storage_wait_us`; the mean
+    /// over the rows is half of it.
+    [[nodiscard]] double storage_dark_e() const;
     /// Mean electrons of light at which a pixel without defects reaches the full well or the
     /// highest DN.
     [[nodiscard]] double saturation_e() const;
     /// Standard deviation of the temporal noise of a readout, in electrons: read, reset, row noise
-    /// (root mean square over the taps) and column noise; of dual-gain pixels at high gain.
+    /// (root mean square over the taps), column noise and the mean dark signal of the storage node;
+    /// of dual-gain pixels at high gain.
     [[nodiscard]] double temporal_read_noise_e() const;
 
     bool operator==(const SensorParams&) const = default;

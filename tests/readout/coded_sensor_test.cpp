@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -270,6 +271,34 @@ TEST(CalibrationOfTest, SaysTheGainNoiseAndWellOfEquationOne) {
                                .full_well_e = 9000,
                                .electrons_per_unit = 500};
     EXPECT_EQ(found, expected);
+}
+
+TEST(CalibrationOfTest, SaysTheReadAndResetNoiseOfASample) {
+    const Calibration found = calibration_of(
+        {.read_noise_e = 9, .mode = SensorMode::kPhysical, .physical = {.reset_noise_e = 12}});
+    EXPECT_DOUBLE_EQ(found.read_noise_e, 15);
+}
+
+// 20000 e/s in 5 ms are 100 e, and 50 in the mean over the rows; one DN is 2 e.
+TEST(CalibrationOfTest, TheBlackLevelAndItsNoiseHaveTheMeanLeakageOfTheStorageNodes) {
+    const SensorParams params{
+        .full_scale_e = 8190,
+        .bit_depth = 12,
+        .mode = SensorMode::kPhysical,
+        .physical = {
+            .storage_dark_current_e_per_s = 20000, .storage_wait_us = 5000, .black_level_dn = 40}};
+    const Calibration found = calibration_of(params);
+    EXPECT_DOUBLE_EQ(found.black_level_dn, 40 + 25);
+    EXPECT_DOUBLE_EQ(found.read_noise_e, std::sqrt(100 + 50));
+    const FrameShape shape{.rows = 128, .cols = 512, .planes = 1};
+    const auto full = full_schedule(1, 1);
+    CodedSensor sensor(params, shape, full, kSeed);
+    SamplePacket packet;
+    sensor.expose(std::vector<float>(shape.sites()), packet);
+    double mean = 0;
+    for (const auto dn : packet.dn) mean += static_cast<double>(dn) / 65536;
+    // 127 / 256 of 100 e. The mean of 65536 samples scatters by 0.03 DN; 5 of that.
+    EXPECT_NEAR(mean, 40 + 25 * 127.0 / 128, 0.15);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ PhysicalTerms every_term() {
             .dark_current_e_per_s = 300,
             .temperature_c = 31,
             .temperature_drift_c_per_s = 100,
+            .storage_dark_current_e_per_s = 4000,
+            .storage_wait_us = 5000,
             .dsnu_e = 4,
             .prnu = 0.02,
             .read_noise_spread = 0.3,
@@ -92,9 +94,9 @@ TEST(PhysicalPixelsTest, IsTheFormulaWordByWordOnEverySimdTarget) {
                     pixels.row_noise_e(pixel, 5, 1) + pixels.column_noise_e(pixel, 5, 1);
                 const float dark_slots =
                     static_cast<float>(exposures.open_slots[i]) * pixels.dark_factor(5);
-                const Charge charge =
-                    pixels.expose_one(pixels.pattern().plane(1)[pixel], exposures.light[i],
-                                      dark_slots, {block[0], block[1], shared});
+                const Charge charge = pixels.expose_one(
+                    pixels.pattern().plane(1)[pixel], exposures.light[i], dark_slots,
+                    {block[0], block[1], shared, pixels.storage_e(pixel, 5, 1)});
                 ASSERT_EQ(electrons[i], charge.electrons)
                     << target << " sample " << i << " of " << count;
                 ASSERT_EQ(clipped[i] != 0, charge.clipped)
@@ -163,6 +165,42 @@ TEST(PhysicalPixelsTest, AddsTheVariancesOfResetReadAndOffsets) {
                    100 + 36 + 144);
 }
 
+TEST(PhysicalPixelsTest, TheResetNoiseOfEachExposureIsItsOwn) {
+    // The same pixels in two slots: if they shared the draw, the difference would lack it.
+    const SensorParams params = physical({.reset_noise_e = 20});
+    const PhysicalPixels pixels(params, kShape, kSeed);
+    Exposures dark;
+    dark.pixels.resize(kShape.pixels());
+    std::iota(dark.pixels.begin(), dark.pixels.end(), 0U);
+    dark.light.assign(kShape.pixels(), 0);
+    dark.open_slots.assign(kShape.pixels(), 1);
+    const auto first = expose(pixels, dark, 3, 0);
+    const auto second = expose(pixels, dark, 4, 0);
+    double variance = 0;
+    for (std::size_t i = 0; i < first.size(); ++i)
+        variance += std::pow(static_cast<double>(first[i]) - static_cast<double>(second[i]), 2) /
+                    static_cast<double>(first.size());
+    EXPECT_NEAR(variance, 2 * (100 + 400), 0.01 * variance);  // as expect_moments
+}
+
+TEST(PhysicalPixelsTest, AStorageNodeLeaksWhileItsRowWaits) {
+    // 10000 e/s at 20 degrees, so 20000 at 28: 100 e in 5 ms. Row r of 512 waits r / 512
+    // of it, in the mean 511 / 1024; the variance of r / 512 is 1 / 12.
+    const PhysicalTerms terms{
+        .temperature_c = 28, .storage_dark_current_e_per_s = 10000, .storage_wait_us = 5000};
+    const double mean = 100 * 511.0 / 1024;
+    expect_moments(flat_field(physical(terms), 0, 3), mean, 100 + mean + 1e4 / 12);
+    const PhysicalPixels pixels(physical(terms), kShape, kSeed);
+    EXPECT_EQ(pixels.storage_e(1023, 7, 0), 0) << "the first row";
+    EXPECT_NEAR(pixels.storage_e(256 * 1024, 7, 0), 50, 1e-4);
+    EXPECT_NEAR(pixels.storage_e(511 * 1024 + 5, 7, 0), 100 * 511 / 512.0, 1e-4);
+    SensorParams exact = physical(terms);
+    exact.shot_noise = false;
+    exact.read_noise_e = 0;
+    const PhysicalPixels mean_only(exact, kShape, kSeed);
+    EXPECT_NEAR(expose(mean_only, {{256 * 1024}, {0.5}, {1}}, 3, 0)[0], 500 + 50, 1e-3);
+}
+
 TEST(PhysicalPixelsTest, SpreadsTheResponsivity) {
     expect_moments(flat_field(physical({.quantum_efficiency = 0.5, .prnu = 0.05}), 4, 4), 2000,
                    2000 + 100 * 100 + 100);
@@ -228,6 +266,9 @@ TEST(PhysicalPixelsTest, ReadsWithTheNoiseOfLowGainAboveTheLimit) {
     params.shot_noise = false;
     expect_moments(flat_field(params, 2, 1), 2000, 100);
     expect_moments(flat_field(params, 2.125F, 1), 2125, 2500);
+    params.physical.reset_noise_e = 30;  // is in the charge, whatever the gain
+    expect_moments(flat_field(params, 2, 1), 2000, 100 + 900);
+    expect_moments(flat_field(params, 2.125F, 1), 2125, 2500 + 900);
 }
 
 TEST(PhysicalPixelsTest, TheDarkCurrentDoublesWithTheDriftOfTheTemperature) {
@@ -263,6 +304,7 @@ TEST(PhysicalPixelsTest, RefusesTermsOutsideTheirRange) {
     EXPECT_THROW(PhysicalPixels(physical({.prnu = -1}), kShape, 1), InputError);
     EXPECT_THROW(PhysicalPixels(physical({.dual_gain_limit_e = 100}), kShape, 1), InputError);
     EXPECT_THROW(PhysicalPixels(physical({.low_gain_read_noise_e = 9}), kShape, 1), InputError);
+    EXPECT_THROW(PhysicalPixels(physical({.storage_wait_us = 9}), kShape, 1), InputError);
     EXPECT_THROW(PhysicalPixels(physical({.transmittance = {1, 1}}), kShape, 1), InputError);
 }
 

@@ -67,5 +67,21 @@ TEST(SensorParamsTest, TemporalNoiseIsTheRootOfTheSumOfVariances) {
     EXPECT_DOUBLE_EQ(params.temporal_read_noise_e(), std::sqrt(100 + 16 + 25 + 144));
 }
 
+TEST(SensorParamsTest, ChargeThatWaitsHasADarkSignalWithItsNoise) {
+    SensorParams params;
+    params.mode = SensorMode::kPhysical;
+    params.physical = {
+        .temperature_c = 28, .storage_dark_current_e_per_s = 1600, .storage_wait_us = 4000};
+    EXPECT_DOUBLE_EQ(params.storage_dark_e(), 2 * 1600 * 0.004);  // doubled by 8 kelvins
+    EXPECT_DOUBLE_EQ(params.temporal_read_noise_e(), std::sqrt(100 + 6.4));
+    EXPECT_DOUBLE_EQ(params.saturation_e(), 2000 - 6.4);
+    params.slot_us *= 16;
+    EXPECT_DOUBLE_EQ(params.storage_dark_e(), 2 * 1600 * 0.004) << "whatever the exposure time";
+    EXPECT_EQ(params.dark_e_per_slot(), 0);
+    EXPECT_NO_THROW(validate(params));
+    params.physical.storage_dark_current_e_per_s = 5e5;  // 4000 e, in the mean 2000: full scale
+    EXPECT_NE(message_of(params).find("storage_dark_current_e_per_s"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace stipple
