@@ -134,12 +134,7 @@ std::optional<std::vector<FrameExposure>> frame_exposures(const Measurements& me
     if (!measurements.weight.empty()) return {};
     auto found = find_exposures(measurements);
     if (!found || found->exposures.empty() || !found->each_of_most) return {};
-    const std::vector<FrameExposure>& exposures = found->exposures;
-    if (!equally_long(exposures)) return {};
-    const bool every_slot = span(exposures.front()) == 1 &&
-                            exposures.back().last_slot - exposures.front().first_slot + 1 ==
-                                static_cast<int>(exposures.size());
-    if (every_slot) return {};
+    if (!equally_long(found->exposures)) return {};
     return std::move(found->exposures);
 }
 

@@ -10,12 +10,15 @@
 namespace stipple {
 namespace {
 
-/// A frame's one exposure has all its read noise, most of it below 0 where it is dark, and no other
-/// sample says what the filter has taken.
-DecodeOptions options_of_frames(DecodeOptions options) {
+/// A frame's one exposure has all its read noise, most of it below 0 where it is dark.
+DecodeOptions options_of_frames(const BlockTask& block, std::span<const FrameExposure> exposures) {
+    DecodeOptions options = block.options;
+    if (block.calibration.noise_free)
+        options.best = without_noise(options.best);
+    else if (exposures.front().open_slots == 1 && !block.measurements.mosaic)
+        options.best = for_direct_samples(options.best);
     options.best.offset_slots = 1;
     options.best.min_light = -1;
-    options.best.residual_gain = 0;
     return options;
 }
 
@@ -37,7 +40,7 @@ std::optional<FluxVideo> decode_with_prior(
     Measurements frames = measurements_of_frames(measurements, *exposures, noise);
     mask_defects(frames);
     const auto lights = decode({frames, noise_of_frames(block.calibration, *exposures),
-                                options_of_frames(block.options), block.progress});
+                                options_of_frames(block, *exposures), block.progress});
     if (!lights) return {};
     return video_of_frames(measurements, *exposures, *lights);
 }

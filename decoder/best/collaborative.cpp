@@ -10,6 +10,7 @@
 #include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/best/collaborative_filter.h"
+#include "decoder/best/residual_gain.h"
 #include "decoder/best/variance_stabilisation.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
@@ -43,7 +44,8 @@ class CollaborativeSolver {
           pilot_(x.slots(), x.shape()),
           runs_(site_runs(x.shape())),
           step_(index(x.slots()) * x.shape().pixels()),
-          prox_(measurements) {
+          prox_(measurements),
+          samples_per_voxel_(samples_per_voxel(measurements)) {
         for_each_sensor(measurements,
                         [&](Measurements& sensor) { sensors_.emplace_back(sensor, noise); });
     }
@@ -135,11 +137,14 @@ class CollaborativeSolver {
 
     /// Residual feedback: a share of (samples - forward model of the estimate) is added to the
     /// samples, as in generalised alternating projection (Liao et al., SIAM J. Imaging Sci. 7(2),
-    /// 2014). What was added decays, so that the noise does not return. The residuals of several
-    /// sensors add up in a voxel, so each has its part of the gain.
+    /// 2014). What was added decays, so that the noise does not return; the gain is that of
+    /// residual_gain.h. Without decay all of the residuals is added in the end, noise too, and the
+    /// gain is the length of a step. The residuals of several sensors add up in a voxel, so each
+    /// has its part of the gain.
     void add_residuals(Sensor& sensor) {
         Measurements& m = sensor.measurements;
         const float gain = options_.residual_gain / static_cast<float>(sensors_.size());
+        const bool by_noise = options_.residual_decay < 1;
         FluxVideo& explained = noisy_;  // which is not needed until the next iteration
         sample(m, x_.data(), explained.data());
         for_each_slot([&](int slot) {
@@ -149,21 +154,26 @@ class CollaborativeSolver {
                 const float sampled = sensor.sampled[i];
                 float residual = sampled - explained.data()[i];
                 if (saturated) residual = std::max(residual, 0.0F);
+                const float dark =
+                    m.dark_variance.empty() ? noise_.variance(0) : m.dark_variance[i];
+                const float part =
+                    by_noise ? residual_part(samples_per_voxel_, dark, m.variance[i]) : 1;
                 float& sum = m.sum[i];
-                sum = sampled + options_.residual_decay * (sum - sampled) + gain * residual;
+                sum = sampled + options_.residual_decay * (sum - sampled) + gain * part * residual;
             }
         });
     }
 
     void enforce_data_consistency(float sigma) {
+        const float variance = options_.data_step * sigma * sigma;
         for_each_slot([&](int slot) {
             const std::size_t pixels = shape().pixels();
-            const float share = sigma * sigma / static_cast<float>(shape().planes);
+            const float share = variance / static_cast<float>(shape().planes);
             const auto light = std::as_const(x_).frame(slot);
             for (std::size_t i = 0; i < pixels; ++i) {
                 float sum = 0;
                 for (std::size_t site = i; site < light.size(); site += pixels) sum += light[site];
-                step_[index(slot) * pixels + i] = share * sum + sigma * sigma * scale_.offset;
+                step_[index(slot) * pixels + i] = share * sum + variance * scale_.offset;
             }
         });
         parallel_for(0, static_cast<int>(runs_.size()),
@@ -184,6 +194,7 @@ class CollaborativeSolver {
     std::vector<SiteRun> runs_;
     std::vector<float> step_;
     JointProx prox_;
+    float samples_per_voxel_;
     std::vector<MotionField> motion_;
     PatchGroups groups_;
 };
@@ -243,6 +254,17 @@ void read_options(Config& config, CollaborativeOptions& options) {
           "first iterations of a mosaic, with patches from nearby"},
          options.mosaic.near_iterations);
     read_matching(config, "mosaic.near.", options.mosaic.near);
+    read({"direct.iterations", kIterations, "", "iterations on samples of one slot each"},
+         options.direct.iterations);
+    read({"direct.match_every", kEvery, "iterations", "match_every and motion_every of these"},
+         options.direct.match_every);
+    read({"direct.patch_stride", {1, kPatchSide}, "pixels", "patch_stride of these"},
+         options.direct.patch_stride);
+    read({"direct.data_step",
+          {0.01, 100},
+          "",
+          "step size of their data-consistency step, times sigma^2 (x + offset)"},
+         options.direct.data_step);
     read({"noise_free.iterations", kIterations, "", "iterations without noise"},
          options.noise_free.iterations);
     read({"noise_free.first_sigma", kSigma, "", "first_sigma without noise"},
@@ -251,6 +273,15 @@ void read_options(Config& config, CollaborativeOptions& options) {
          options.noise_free.min_sigma);
     read({"noise_free.light_offset", {1e-4, 1e3}, "flux", "light_offset without noise"},
          options.noise_free.light_offset);
+}
+
+CollaborativeOptions for_direct_samples(CollaborativeOptions options) {
+    options.iterations = options.direct.iterations;
+    options.match_every = options.motion_every = options.direct.match_every;
+    options.patch_stride = options.direct.patch_stride;
+    options.data_step = options.direct.data_step;
+    options.first_sigma = 0;  // the last one holds
+    return options;
 }
 
 CollaborativeOptions without_noise(CollaborativeOptions options) {

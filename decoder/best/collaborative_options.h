@@ -27,6 +27,16 @@ struct NoiseFreeFilterOptions {
     float light_offset = 0.5F;
 };
 
+/// Options for frames of one slot, one sample a pixel: each sample is the light of a voxel with its
+/// noise, so that all that is left is to take the noise out. The filter assumes the last sigma in
+/// all iterations, and the data-consistency step follows the samples.
+struct DirectFilterOptions {
+    int iterations = 8;
+    int match_every = 3;  ///< iterations, of motion too
+    int patch_stride = 3;
+    float data_step = 2.5F;
+};
+
 /// The method `best`; the values were found on natural and high-speed footage
 /// (docs/notes/decoder_experiments.md).
 struct CollaborativeOptions {
@@ -47,13 +57,19 @@ struct CollaborativeOptions {
     float light_offset = 0.002F;
     float offset_slots = 32;  ///< length of the exposure whose read noise sets the offset
     float min_light = 0;      ///< minimum of the light, flux; at least -offset
-    /// Residual feedback: r <- decay r + gain (y - A x); y + r replaces the samples y.
-    float residual_gain = 0.25F;
+    /// Residual feedback: r <- decay r + gain part (y - A x), with the part of residual_gain.h;
+    /// y + r replaces the samples y.
+    float residual_gain = 0.46F;
     float residual_decay = 0.9F;
+    float data_step = 1;    ///< step size of the data-consistency step / (sigma^2 (x + offset))
     float momentum = 0.6F;  ///< beta of x + beta (x - x_previous)
     MosaicFilterOptions mosaic = {};
+    DirectFilterOptions direct = {};
     NoiseFreeFilterOptions noise_free = {};
 };
+
+/// The options that take the place of `options` for frames of one slot, one sample a pixel.
+[[nodiscard]] CollaborativeOptions for_direct_samples(CollaborativeOptions options);
 
 /// The options that take the place of `options` for samples without noise.
 [[nodiscard]] CollaborativeOptions without_noise(CollaborativeOptions options);
