@@ -160,6 +160,7 @@ void add_emulate(Command& app, Action& action) {
     add_sensor_arguments(command, options->sensor);
     add_rig(command, *options);
     add_footage_arguments(command, options->reading);
+    add_part_arguments(command, options->reading);
     add_resample_arguments(command, options->resampling, options->reading);
     add_max_value(command, options->reading.max_value);
     command

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <variant>
@@ -13,6 +14,7 @@
 #include "core/error.h"
 #include "core/hdr_curves.h"
 #include "core/light.h"
+#include "core/memory_limit.h"
 #include "io/cine_file.h"
 #include "io/fits_reader.h"
 #include "io/footage_files.h"
@@ -131,6 +133,7 @@ Source open_source(const fs::path& source, const FootageOptions& options) {
 struct FootageReader::Impl {
     Source source;
     FootageOptions options;
+    std::string name;
     std::string extension;
     FrameShape source_shape;
     SourceTraits traits;
@@ -139,9 +142,21 @@ struct FootageReader::Impl {
     bool looked_at_brightness = false;
     bool at_end = false;
     std::vector<float> colour;  ///< the frame before its reduction to luminance
+    std::vector<float> whole;   ///< the frame before its reduction to the part
+    std::optional<FrameReduction> reduction;
+    int position = 0;  ///< frame of the source that comes next
 
     Impl(const fs::path& path, const FootageOptions& wanted);
     [[nodiscard]] bool reduces() const { return options.luminance && source_shape.planes == 3; }
+    /// Of frames that are not reduced to the part yet.
+    [[nodiscard]] FrameShape whole_shape() const {
+        return {source_shape.rows, source_shape.cols, reduces() ? 1 : source_shape.planes};
+    }
+    /// Number of frames of the source, if it declares it.
+    [[nodiscard]] std::optional<int> source_slots() const;
+    void check_frames() const;
+    bool read_whole(std::span<float> frame);
+    void skip(int frames);
     void make_linear(std::span<float> light) const;
     void warn(std::string text) {
         if (!text.empty()) warnings.push_back(std::move(text));
@@ -149,7 +164,10 @@ struct FootageReader::Impl {
 };
 
 FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
-    : source(open_source(path, wanted)), options(wanted), extension(lower_extension(path)) {
+    : source(open_source(path, wanted)),
+      options(wanted),
+      name(path.string()),
+      extension(lower_extension(path)) {
     source_shape = std::visit([](const auto& s) { return s.shape(); }, source);
     if (reduces()) colour.resize(source_shape.sites());
     std::visit(
@@ -162,13 +180,35 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         traits.frames_hz = video->frames_hz();
     if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
-        throw InputError(path.string(),
+        throw InputError(name,
                          "is the mosaic of a colour filter array, of which there is "
                          "no --luminance");
-    transfer =
-        transfer_of(options, traits, std::holds_alternative<VideoReader>(source), path.string());
-    for (std::string& text : reading_warnings(traits, options, path.string()))
-        warn(std::move(text));
+    transfer = transfer_of(options, traits, std::holds_alternative<VideoReader>(source), name);
+    for (std::string& text : reading_warnings(traits, options, name)) warn(std::move(text));
+    check_frames();
+    if (options.part.has_whole_frames()) return;
+    constexpr std::uint64_t kSiteBytes = 12;  // the whole frame and two steps of its reduction
+    check_memory(kSiteBytes * whole_shape().sites(), name,
+                 fmt::format("frames of {} x {}", source_shape.cols, source_shape.rows),
+                 input_bytes(path));
+    reduction.emplace(options.part, whole_shape(), traits.filter, name);
+}
+
+std::optional<int> FootageReader::Impl::source_slots() const {
+    const auto slots_of = [](const auto& frames) -> std::optional<int> {
+        if constexpr (requires { frames.slots(); }) return frames.slots();
+        return std::nullopt;
+    };
+    return std::visit(slots_of, source);
+}
+
+/// \throws InputError if it is known that the source has not all frames of the part.
+void FootageReader::Impl::check_frames() const {
+    const FrameRange& frames = options.part.frames;
+    const auto slots = source_slots();
+    if (slots && std::max(frames.begin + 1, frames.end.value_or(0)) > *slots)
+        throw InputError(
+            name, fmt::format("has {} frames, so not all of --frames {}", *slots, text_of(frames)));
 }
 
 /// Light of HDR video has the primaries of BT.709 afterwards, as all other.
@@ -186,17 +226,13 @@ FootageReader::FootageReader(FootageReader&&) noexcept = default;
 FootageReader& FootageReader::operator=(FootageReader&&) noexcept = default;
 
 FrameShape FootageReader::shape() const {
-    FrameShape shape = impl_->source_shape;
-    if (impl_->reduces()) shape.planes = 1;
-    return shape;
+    return impl_->reduction ? impl_->reduction->shape() : impl_->whole_shape();
 }
 
 std::optional<int> FootageReader::slots() const {
-    const auto slots_of = [](const auto& source) -> std::optional<int> {
-        if constexpr (requires { source.slots(); }) return source.slots();
-        return std::nullopt;
-    };
-    return std::visit(slots_of, impl_->source);
+    const FrameRange& frames = impl_->options.part.frames;
+    const auto slots = frames.end ? frames.end : impl_->source_slots();
+    return slots ? std::optional<int>(*slots - frames.begin) : std::nullopt;
 }
 
 std::optional<double> FootageReader::frames_hz() const {
@@ -229,42 +265,70 @@ std::vector<std::string> FootageReader::take_warnings() {
     return std::exchange(impl_->warnings, {});
 }
 
-bool FootageReader::read(std::span<float> frame) {
-    assert(frame.size() == shape().sites());
-    const auto light = impl_->reduces() ? std::span<float>(impl_->colour) : frame;
-    const auto read = [&](auto& source) {
-        if (!source.read(light)) return false;
-        impl_->make_linear(light);
-        check_light(light, impl_->source_shape, source.where(), impl_->options.negative);
-        if (impl_->options.scale != 1) scale_light(light, impl_->options.scale, source.where());
-        if (!std::exchange(impl_->looked_at_brightness, true) && !impl_->options.max_value &&
-            impl_->options.scale == 1)
-            impl_->warn(brightness_warning(light, source.where()));
+bool FootageReader::Impl::read_whole(std::span<float> frame) {
+    const auto light = reduces() ? std::span<float>(colour) : frame;
+    const auto read = [&](auto& frames) {
+        if (!frames.read(light)) return false;
+        make_linear(light);
+        check_light(light, source_shape, frames.where(), options.negative);
+        if (options.scale != 1) scale_light(light, options.scale, frames.where());
+        if (!std::exchange(looked_at_brightness, true) && !options.max_value && options.scale == 1)
+            warn(brightness_warning(light, frames.where()));
         return true;
     };
-    if (!std::visit(read, impl_->source)) {
-        if (const auto* video = std::get_if<VideoReader>(&impl_->source);
-            video != nullptr && !std::exchange(impl_->at_end, true))
-            for (std::string& text : video->warnings()) impl_->warn(std::move(text));
+    if (!std::visit(read, source)) {
+        if (const auto* video = std::get_if<VideoReader>(&source);
+            video != nullptr && !std::exchange(at_end, true))
+            for (std::string& text : video->warnings()) warn(std::move(text));
         return false;
     }
-    if (impl_->reduces()) reduce_to_luminance(light, frame);
-    if (impl_->options.max_value) {
-        const auto max_light = static_cast<float>(*impl_->options.max_value);
+    ++position;
+    if (reduces()) reduce_to_luminance(light, frame);
+    return true;
+}
+
+void FootageReader::Impl::skip(int frames) {
+    std::vector<float> light;
+    const auto skip_frames = [&](auto& reader) {
+        if constexpr (requires { reader.skip(frames); }) return reader.skip(frames);
+        light.resize(reader.shape().sites());
+        for (int i = 0; i < frames && reader.read(light); ++i) {
+        }
+    };
+    std::visit(skip_frames, source);
+    position += frames;
+}
+
+bool FootageReader::read(std::span<float> frame) {
+    assert(frame.size() == shape().sites());
+    Impl& impl = *impl_;
+    const FrameRange& frames = impl.options.part.frames;
+    if (impl.position < frames.begin) impl.skip(frames.begin - impl.position);
+    if (frames.end && impl.position >= *frames.end) return false;
+    std::span<float> whole = frame;
+    if (impl.reduction) {
+        impl.whole.resize(impl.whole_shape().sites());
+        whole = impl.whole;
+    }
+    if (!impl.read_whole(whole)) {
+        if (impl.position == frames.begin && frames.begin > 0)
+            throw InputError(impl.name, fmt::format("ends before --frames {}", text_of(frames)));
+        if (frames.end)
+            throw InputError(impl.name,
+                             fmt::format("ends before the end of --frames {}", text_of(frames)));
+        return false;
+    }
+    if (impl.reduction) (*impl.reduction)(whole, frame);
+    if (impl.options.max_value) {
+        const auto max_light = static_cast<float>(*impl.options.max_value);
         for (float& value : frame) value = std::min(value, max_light);
     }
     return true;
 }
 
 void FootageReader::skip(int frames) {
-    std::vector<float> light;
-    const auto skip = [&](auto& source) {
-        if constexpr (requires { source.skip(frames); }) return source.skip(frames);
-        light.resize(source.shape().sites());
-        for (int i = 0; i < frames && source.read(light); ++i) {
-        }
-    };
-    std::visit(skip, impl_->source);
+    const int begin = impl_->options.part.frames.begin;
+    impl_->skip(frames + std::max(begin - impl_->position, 0));
 }
 
 }  // namespace stipple

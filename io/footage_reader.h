@@ -10,6 +10,7 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/light.h"
+#include "io/footage_part.h"
 #include "io/image.h"
 #include "io/raw_format.h"
 
@@ -27,6 +28,7 @@ struct FootageOptions {
     double scale = 1;                      ///< factor on the light, before it is clipped; above 0
     std::optional<double> frames_hz = {};  ///< frame rate, instead of that of the source
     bool negative = false;                 ///< take negative light, as unbiased estimates have it
+    FootagePart part = {};                 ///< of the frames, once they are light
 };
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
@@ -38,14 +40,15 @@ struct FootageOptions {
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.
-    /// \throws InputError if it is missing, unreadable, empty or of a wrong shape.
+    /// \throws InputError if it is missing, unreadable, empty or of a wrong shape, or has no such
+    /// part.
     explicit FootageReader(const std::filesystem::path& source, const FootageOptions& options = {});
     ~FootageReader();
     FootageReader(FootageReader&&) noexcept;
     FootageReader& operator=(FootageReader&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
-    /// Number of frames, if the source declares it; a video file may not.
+    /// Number of frames in the part, if the source declares it; a video file may not.
     [[nodiscard]] std::optional<int> slots() const;
 
     /// Frame rate at which a video plays or a camera took the frames, if the source declares it.
@@ -66,7 +69,8 @@ class FootageReader {
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,
     /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
-    /// infinite light, or negative light that the options do not take.
+    /// infinite light, or negative light that the options do not take, or if the source ends before the
+    /// part does.
     bool read(std::span<float> frame);
     /// Leaves out the next `frames` frames, unchecked; where the source cannot seek, they are read.
     /// \throws InputError as `read`.

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "core/shell_quoted.h"
 #include "core/toml_keys.h"
@@ -66,6 +67,11 @@ toml::table footage_table(const FootageOrigin& footage) {
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
     if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
+    const FootagePart& part = footage.reading.part;
+    if (part.frames != FrameRange()) table.insert("frames", text_of(part.frames));
+    if (part.crop) table.insert("crop", text_of(*part.crop));
+    if (part.bin != 1) table.insert("bin", part.bin);
+    if (part.size) table.insert("resize", text_of(CropArea{part.size->rows, part.size->cols}));
     if (footage.reading.scale != 1) table.insert("scale", footage.reading.scale);
     if (!footage.resample.empty()) table.insert("resample", footage.resample);
     if (footage.reading.frames_hz) table.insert("frames_hz", *footage.reading.frames_hz);
@@ -100,18 +106,18 @@ std::string text_of(const toml::node_view<const toml::node>& node) {
     return node.value<std::string>().value_or("");
 }
 
-/// The options of a command that differ from their defaults.
-std::string options_of(const toml::table& provenance) {
-    const auto footage = provenance["footage"];
-    const auto options = provenance["options"];
+/// The options of the footage that differ from their defaults.
+std::string footage_options(const toml::node_view<const toml::node>& footage) {
     std::string text;
     const auto add = [&](std::string_view option, const std::string& value) {
         text += fmt::format(" {} {}", option, shell_quoted(value));
     };
-    const SensorChoice defaults;
     if (const auto it = text_of(footage["transfer"]); it != "linear") add("--transfer", it);
     if (const auto it = text_of(footage["raw"]); !it.empty()) add("--raw", it);
     if (footage["luminance"].value_or(false)) text += " --luminance";
+    for (const char* key : {"frames", "crop", "resize"})
+        if (const auto it = text_of(footage[key]); !it.empty()) add(fmt::format("--{}", key), it);
+    if (const auto bin = footage["bin"].value<std::int64_t>()) add("--bin", std::to_string(*bin));
     if (const auto scale = footage["scale"].value<double>())
         add("--scale", fmt::format("{}", *scale));
     if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
@@ -119,6 +125,17 @@ std::string options_of(const toml::table& provenance) {
         add("--frames-hz", fmt::format("{}", *hz));
     if (const auto max_value = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *max_value));
+    return text;
+}
+
+/// The options of a command that differ from their defaults.
+std::string options_of(const toml::table& provenance) {
+    const auto options = provenance["options"];
+    std::string text = footage_options(provenance["footage"]);
+    const auto add = [&](std::string_view option, const std::string& value) {
+        text += fmt::format(" {} {}", option, shell_quoted(value));
+    };
+    const SensorChoice defaults;
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
     if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
         add("--schedule", it);
@@ -177,6 +194,11 @@ std::string command_of(const std::string& provenance) {
         fmt::format("stipple emulate {} -o again.stipple{}", shell_quoted(name), options_of(table));
     if (!is_plain_text(command, false)) command.clear();
     return command;
+}
+
+std::string options_of(const FootageOptions& reading) {
+    const toml::table table{{"footage", footage_table({.reading = reading})}};
+    return footage_options(std::as_const(table)["footage"]);
 }
 
 std::string footage_of(const std::string& provenance) {

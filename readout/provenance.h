@@ -31,6 +31,10 @@ struct FootageOrigin {
 /// without control characters, because `provenance` is not trusted.
 [[nodiscard]] std::string command_of(const std::string& provenance);
 
+/// The options of `emulate` that read footage so, each after a blank: " --luminance --bin 2".
+/// Quoted for a shell.
+[[nodiscard]] std::string options_of(const FootageOptions& reading);
+
 /// The section [footage] of `provenance`, as TOML: the origin of the light. Empty if there is none.
 [[nodiscard]] std::string footage_of(const std::string& provenance);
 

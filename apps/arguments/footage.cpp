@@ -53,6 +53,42 @@ void add_resample_arguments(Command& command, std::optional<Resampling>& method,
         .default_text("that in its file")
         .check(number_check(kMinFramesHz, kMaxFramesHz))
         .type_name("HZ");
+}
+
+void add_part_arguments(Command& command, FootageOptions& options) {
+    FootagePart& part = options.part;
+    const auto parsed = [](const char* option, auto& target, auto parse) {
+        return [option, &target, parse](const std::string& text) {
+            try {
+                target = parse(text);
+            } catch (const InputError& e) {
+                throw UsageError(option, e.what());
+            }
+        };
+    };
+    command
+        .add_parsed("--frames", parsed("--frames", part.frames, parse_frame_range),
+                    "frames A to B - 1 of the footage; A or B may be left out")
+        .default_text("all")
+        .type_name("A:B");
+    command
+        .add_parsed("--crop", parsed("--crop", part.crop, parse_crop_area),
+                    "area of the frames: width, height, first column, first row; WxH is the middle")
+        .default_text("all")
+        .type_name("WxH+X+Y");
+    command.add_option("--bin", part.bin, "then take the mean light of N x N pixels")
+        .shows_default()
+        .check(whole_check(1, FootagePart::kMaxBin))
+        .type_name("N");
+    command
+        .add_parsed(
+            "--resize",
+            [&part](const std::string& text) {
+                parse_size("--resize", text, {1, kMaxFrameSide}, part.size.emplace());
+            },
+            "then reduce to this width and height, by the mean light of areas")
+        .default_text("as they are")
+        .type_name("WxH");
     command.add_option("--scale", options.scale, "multiply light by this: the exposure")
         .shows_default()
         .check(positive_check())

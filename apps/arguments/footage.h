@@ -21,7 +21,10 @@ void add_raw_argument(Command& command, std::optional<RawFormat>& raw, const std
 /// `--max-value V`: positive and finite.
 void add_max_value(Command& command, std::optional<double>& max_value);
 
-/// `--resample`, `--frames-hz` and `--scale`.
+/// `--frames`, `--crop`, `--bin`, `--resize` and `--scale`.
+void add_part_arguments(Command& command, FootageOptions& options);
+
+/// `--resample` and `--frames-hz`.
 void add_resample_arguments(Command& command, std::optional<Resampling>& method,
                             FootageOptions& options);
 
