@@ -11,6 +11,7 @@
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/subcommands.h"
+#include "core/config.h"
 
 namespace stipple {
 namespace {
@@ -49,7 +50,9 @@ std::string problems_text(const Exploration& exploration) {
     return text;
 }
 
-void explore(const ExploreRun& what, const RunOptions& run) {
+void explore(const ExploreRun& named, const RunOptions& run) {
+    ExploreRun what = named;
+    what.space = find_config(ConfigKind::kSpaces, named.space).string();
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(figures_of(exploration, what.options.budget.has_value()));
@@ -87,17 +90,22 @@ void add_budget(Command& command, ExploreOptions& options) {
 void add_explore(Command& app, Action& action) {
     Command command = app.add_command("explore", "A table of many sensors, schedules and decoders");
     const auto arguments = std::make_shared<ExploreRun>();
-    command.add_option("SPACE", arguments->space, "what to try, a TOML file (docs/explore.md)")
+    command
+        .add_option("SPACE", arguments->space,
+                    "what to try: a TOML file (docs/explore.md), or one of \"stipple list spaces\"")
         .required()
+        .listed("spaces")
         .input();
     add_results(command, arguments->results);
+    add_reading(command, arguments->options.reading);
     add_budget(command, arguments->options);
     command.add_flag("--no-report", arguments->no_report, "leave out report.html");
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
-        "  stipple explore config/spaces/bit_depth.toml -o results\n"
-        "  stipple explore config/spaces/bit_depth.toml -o results --budget 10m\n"
+        "  stipple explore bit_depth -o results\n"
+        "  stipple explore bit_depth -o results --budget 10m\n"
+        "  stipple explore space.toml -o results --transfer srgb --luminance --crop 320x240\n"
         "A second run does only what is new. A point that cannot be run is a row with the reason;\n"
         "the exit code is 1 if no point could be run.");
     set_action(command, action, arguments, explore, [command, arguments] {

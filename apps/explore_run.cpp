@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/arguments/command_line.h"
+#include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/number_text.h"
 #include "apps/report/own_command.h"
@@ -29,6 +31,7 @@ bool keep_going() {
 /// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
 void run_point(Exploration& exploration, std::uint64_t number) {
     const Trial* const trial = exploration.begin(number);
+    for (const std::string& warning : exploration.take_warnings()) say_warning(warning);
     if (trial == nullptr) return;
     try {
         const auto stream = exploration.store().stream_of(trial->identity);
@@ -53,6 +56,10 @@ void run_points(Exploration& exploration, Progress& progress) {
     }
 }
 
+std::string page_title(const ExploreRun& what) {
+    return what.title.empty() ? std::filesystem::path(what.space).filename().string() : what.title;
+}
+
 }  // namespace
 
 void add_results(Command& command, std::string& results) {
@@ -60,6 +67,11 @@ void add_results(Command& command, std::string& results) {
         .type_name("RESULTS")
         .required()
         .output();
+}
+
+void add_reading(Command& command, FootageOptions& reading) {
+    add_footage_arguments(command, reading);
+    add_part_arguments(command, reading);
 }
 
 Exploration explored(const ExploreRun& what, const RunOptions& run) {
@@ -75,7 +87,7 @@ Exploration explored(const ExploreRun& what, const RunOptions& run) {
     exploration.store().write("table.csv", csv_table(exploration));
     if (!what.no_report) {
         exploration.store().write("report.html",
-                                  results_page(exploration, what.space, own_command()));
+                                  results_page(exploration, page_title(what), own_command()));
         say_warning(chart_warning());
     }
     return exploration;

@@ -10,12 +10,16 @@ namespace stipple {
 struct ExploreRun {
     std::string space;    ///< file
     std::string results;  ///< folder
+    std::string title;    ///< of the page; empty: the name of the file
     ExploreOptions options;
     bool no_report = false;
 };
 
 /// The option -o RESULTS.
 void add_results(Command& command, std::string& results);
+
+/// How the footage of all points is read.
+void add_reading(Command& command, FootageOptions& reading);
 
 /// Runs all points of the space, until a signal asks to stop, and writes table.csv and report.html
 /// into the results. \throws InputError, DeviceError.

@@ -47,7 +47,8 @@ std::string title_of(const std::string& comment) {
         const bool sentence = comment[end] == '.' && std::isupper(comment[end + 2]) != 0;
         if (comment[end + 1] == ' ' && (sentence || comment[end] == ':')) break;
     }
-    std::string title = comment.substr(0, end);
+    std::string title = end + 2 < comment.size() ? comment.substr(0, end) : comment;
+    if (title.ends_with('.')) title.pop_back();
     if (const auto page = title.rfind(" (docs/"); page != std::string::npos) title.resize(page);
     return title;
 }
@@ -68,9 +69,10 @@ std::vector<Entry> entries_of(const std::string& kind) {
         for (const NamedDecodeMethod& method : decode_methods())
             entries.push_back({std::string(method.name), std::string(method.text)});
     else
-        entries = configurations(kind == "sensors" ? ConfigKind::kSensors
-                                 : kind == "rigs"  ? ConfigKind::kRigs
-                                                   : ConfigKind::kSchedules);
+        entries = configurations(kind == "sensors"  ? ConfigKind::kSensors
+                                 : kind == "rigs"   ? ConfigKind::kRigs
+                                 : kind == "spaces" ? ConfigKind::kSpaces
+                                                    : ConfigKind::kSchedules);
     return entries;
 }
 
@@ -139,10 +141,10 @@ void list(const ListOptions& options, const RunOptions& run) {
 
 void add_list(Command& app, Action& action) {
     Command command = app.add_command(
-        "list", "Names of sensors, schedules, rigs, scenes or methods, keys of --set");
+        "list", "Names of sensors, schedules, rigs, spaces, scenes or methods, keys of --set");
     const auto options = std::make_shared<ListOptions>();
     command.add_option("KIND", options->kind, "list of names, or of the keys of --set")
-        .one_of({"sensors", "schedules", "rigs", "scenes", "methods", "keys"})
+        .one_of({"sensors", "schedules", "rigs", "spaces", "scenes", "methods", "keys"})
         .required();
     command.add_option("SECTION", options->section, "section of the keys")
         .default_text("all")

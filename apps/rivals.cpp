@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,12 +10,12 @@
 #include <variant>
 #include <vector>
 
-#include "apps/arguments/sensor.h"
 #include "apps/explore_run.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
+#include "core/joined.h"
 #include "explore/results_table.h"
 
 namespace stipple {
@@ -24,7 +25,8 @@ struct RivalsArguments {
     std::string footage;
     std::string results;
     std::string space = "rivals";
-    std::string sensor = "paper";
+    std::string sensor = {};  ///< empty: that of the space
+    FootageOptions reading = {};
     std::vector<std::string> systems = {};  ///< empty: all
     std::string dictionary = {};            ///< empty: that of the space
 };
@@ -36,25 +38,55 @@ struct RivalColumn {
     double scale;
     int digits;
 };
-constexpr RivalColumn kColumns[] = {{"Mbit/s", &TrialFigures::megabits_per_second, 1, 1},
+constexpr RivalColumn kColumns[] = {{"field %", &TrialFigures::field_of_view, 100, 0},
+                                    {"samples", &TrialFigures::samples_per_voxel, 1, 3},
                                     {"light %", &TrialFigures::light_throughput, 100, 0},
-                                    {"stops", &TrialFigures::dynamic_range_stops, 1, 1},
+                                    {"stops", &TrialFigures::sample_range_stops, 1, 1},
                                     {"PSNR dB", &TrialFigures::psnr_db, 1, 2},
                                     {"gamma dB", &TrialFigures::psnr_gamma_db, 1, 2},
                                     {"PU21 dB", &TrialFigures::pu21_psnr_db, 1, 2},
                                     {"slots/s", &TrialFigures::readout_slots_per_second, 1, 0},
+                                    {"Mbit/s", &TrialFigures::megabits_per_second, 1, 0},
+                                    {"code", &TrialFigures::code_megabits_per_second, 1, 0},
+                                    {"uJ/slot", &TrialFigures::energy_uj_per_slot, 1, 0},
                                     {"decode s", &TrialFigures::decode_seconds, 1, 1}};
 
+/// What is compared, and what the headings leave open.
+std::string legend_of(const Exploration& exploration) {
+    for (const ExploredPoint& point : exploration.points())
+        if (point.figures)
+            return fmt::format(
+                "\n\ncompared: slots {} (first:end) of {}, light up to {}\n"
+                "samples: per voxel of the clip; stops: range of the samples; slots/s: the most "
+                "of the readout;\nMbit/s of samples and of exposure code: at the slot rate of the "
+                "sensor, or this one if it is less",
+                point.figures->compared_slots, point.slots, kBrightestLight);
+    return {};
+}
+
+/// The system of each point; of a space without systems the values that differ.
+std::vector<std::string> names_of(const Space& space) {
+    std::vector<std::string> names;
+    for (std::uint64_t number = 0; number < space.size(); ++number) {
+        const SpacePoint point = space.point(number);
+        std::vector<std::string> values;
+        for (std::size_t i = 0; i < point.size(); ++i)
+            if (space.systems.empty() ? space.axes[i].values.size() > 1
+                                      : space.axes[i].name == "system")
+                values.push_back(point[i]);
+        names.push_back(joined(values));
+    }
+    return names;
+}
+
 std::string table_of(const Exploration& exploration) {
-    const Space& space = exploration.space();
-    const std::size_t axis = space.axis("system");
-    const std::size_t width =
-        column_width(space.axes[axis].values, [](const std::string& name) { return name; });
+    const std::vector<std::string> names = names_of(exploration.space());
+    const std::size_t width = column_width(names, [](const std::string& name) { return name; });
     std::string text(width, ' ');
     for (const RivalColumn& column : kColumns) text += fmt::format("  {:>8}", column.heading);
-    for (std::uint64_t number = 0; number < space.size(); ++number) {
+    for (std::size_t number = 0; number < names.size(); ++number) {
         const ExploredPoint& point = exploration.points()[number];
-        text += fmt::format("\n{:<{}}", space.point(number)[axis], width);
+        text += fmt::format("\n{:<{}}", names[number], width);
         for (const RivalColumn& column : kColumns) {
             const double value =
                 point.figures ? point.figures.value().*column.value : TrialFigures::kNone;
@@ -65,7 +97,7 @@ std::string table_of(const Exploration& exploration) {
         }
         if (!point.problem.empty()) text += "  " + point.problem;
     }
-    return text;
+    return text + legend_of(exploration);
 }
 
 nlohmann::ordered_json json_of(const TableValue& value) {
@@ -91,10 +123,14 @@ nlohmann::ordered_json json_of(const Exploration& exploration) {
 }
 
 void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
-    ExploreRun what{.space = find_config(ConfigKind::kSpaces, arguments.space).string(),
-                    .results = arguments.results,
-                    .options = {}};
-    what.options.replaced = {{"footage", {arguments.footage}}, {"sensor", {arguments.sensor}}};
+    ExploreRun what{
+        .space = find_config(ConfigKind::kSpaces, arguments.space).string(),
+        .results = arguments.results,
+        .title = "Rivals: " + std::filesystem::path(arguments.footage).filename().string(),
+        .options = {}};
+    what.options.reading = arguments.reading;
+    what.options.replaced = {{"footage", {arguments.footage}}};
+    if (!arguments.sensor.empty()) what.options.replaced.push_back({"sensor", {arguments.sensor}});
     if (!arguments.systems.empty()) what.options.replaced.push_back({"system", arguments.systems});
     if (!arguments.dictionary.empty())
         what.options.replaced.push_back({"decoder.dictionary", {arguments.dictionary}});
@@ -109,15 +145,21 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
 
 void add_rivals(Command& app, Action& action) {
     Command command =
-        app.add_command("rivals", "Coded exposure and its rivals at equal bandwidth on a scene");
+        app.add_command("rivals", "Coded exposure and its rivals on a scene, with equal samples");
     const auto arguments = std::make_shared<RivalsArguments>();
     command
-        .add_option("FOOTAGE", arguments->footage,
-                    "footage in linear light, or a scene of \"stipple list scenes\"")
+        .add_option("FOOTAGE", arguments->footage, "footage, or a scene of \"stipple list scenes\"")
         .required()
         .input();
     add_results(command, arguments->results);
-    add_sensor(command, arguments->sensor);
+    add_reading(command, arguments->reading);
+    command
+        .add_option("--sensor", arguments->sensor,
+                    "sensor of the systems, of \"stipple list sensors\"")
+        .default_text("that of the space")
+        .type_name("NAME|FILE")
+        .listed("sensors")
+        .input();
     command
         .add_option("--space", arguments->space,
                     "the systems: a name of config/spaces or a file (docs/explore.md)")
@@ -137,8 +179,10 @@ void add_rivals(Command& app, Action& action) {
     command.footer(
         "Example:\n"
         "  stipple rivals pan -o results\n"
-        "Each system records the footage with the same bits per second and the same aperture, and\n"
-        "decodes it. A system that cannot do it is a row with the reason (docs/rivals.md).");
+        "  stipple rivals clip.mp4 -o results --transfer srgb --luminance --crop 320x240\n"
+        "Each system records the footage through the same aperture with about as many samples a\n"
+        "second, unless its name says otherwise, and decodes it. A system that cannot do it is a\n"
+        "row with the reason (docs/rivals.md).");
     set_action(command, action, arguments, compare_rivals);
 }
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "core/error.h"
 #include "core/input_file.h"
+#include "explore/compared_slots.h"
 #include "explore/ranking.h"
 
 namespace stipple {
@@ -130,8 +132,10 @@ std::vector<std::uint64_t> Exploration::best_first() const {
 void Exploration::use_light(const std::string& footage) {
     if (light_ && footage == footage_) return;
     light_.reset();
-    light_ = read_light(space_, footage, keep_going_);
+    light_ = read_light(space_, footage, options_.reading, keep_going_);
     footage_ = footage;
+    compared_.clear();
+    std::ranges::move(light_->warnings, std::back_inserter(warnings_));
     if (light_->is_whole) whole_slots_[footage] = light_->video.slots();
 }
 
@@ -151,8 +155,12 @@ const Trial* Exploration::begin(std::uint64_t number) {
     const SpacePoint values = space_.point(number);
     try {
         use_light(space_.value(values, "footage"));
+        if (!compared_.contains(slots()))
+            compared_[slots()] = compared_slots(space_, *light_, slots(), keep_going_);
         trial_.reset();
-        trial_ = set_up_trial(space_, values, *light_, slots());
+        trial_ = set_up_trial(space_, values, *light_, slots(), compared_[slots()]);
+        point.slots = trial_->slots;
+        point.compared = trial_->compared;
     } catch (const InputError& e) {
         if (!keep_going_()) throw TrialStopped();  // which has cut the input short
         fail(number, e.what());
@@ -173,7 +181,6 @@ void Exploration::take(std::uint64_t number, const std::string& identity,
     ExploredPoint& point = points_[number];
     point.touched = true;
     point.rung = static_cast<int>(rung_);
-    point.slots = slots();
     point.figures = figures;
     point.address = TrialStore::address_of(identity);
     point.problem.clear();

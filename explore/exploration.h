@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/budget.h"
@@ -16,6 +17,7 @@ namespace stipple {
 
 struct ExploreOptions {
     std::vector<SpaceAxis> replaced;  ///< axes with other values than in the space
+    FootageOptions reading = {};      ///< of all footage
     bool force = false;               ///< run trials again that RESULTS has
     std::optional<Budget> budget;     ///< none: each point with the whole clip
     /// Name of the column by which points are ranked after a rung; empty: by dominance in rate, dB
@@ -25,9 +27,10 @@ struct ExploreOptions {
 
 /// A row of the table.
 struct ExploredPoint {
-    bool touched = false;  ///< false: not reached yet
-    int rung = 0;          ///< the last one that it was tried in, from 1
-    int slots = 0;         ///< of that trial
+    bool touched = false;    ///< false: not reached yet
+    int rung = 0;            ///< the last one that it was tried in, from 1
+    int slots = 0;           ///< of the last trial
+    ComparedSlots compared;  ///< of these
     std::optional<TrialFigures> figures;
     std::string problem;  ///< why there are none, or none of a later rung
     std::string address;  ///< of the trial of `figures` in the store
@@ -63,6 +66,10 @@ class Exploration {
     /// The trial of the last `begin` that did not return null, and its light.
     [[nodiscard]] const Trial& trial() const { return *trial_; }
     [[nodiscard]] const TrialLight& light() const { return *light_; }
+    /// The slots that this trial compares.
+    [[nodiscard]] ComparedSlots compared() const { return trial_->compared; }
+    /// Of the footage that was read since the last call.
+    [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     /// What determines a trial that was begun. Precondition: neither `put` nor `fail` was called.
     [[nodiscard]] const std::string& identity(std::uint64_t number) const {
         return begun_.at(number);
@@ -73,6 +80,7 @@ class Exploration {
     void fail(std::uint64_t number, const std::string& problem);
 
     [[nodiscard]] const Space& space() const { return space_; }
+    [[nodiscard]] const FootageOptions& reading() const { return options_.reading; }
     [[nodiscard]] const std::string& space_text() const { return text_; }
     [[nodiscard]] const TrialStore& store() const { return store_; }
     [[nodiscard]] const std::vector<ExploredPoint>& points() const { return points_; }
@@ -112,6 +120,8 @@ class Exploration {
     std::map<std::string, int> whole_slots_;  ///< of footage that was read to its end
     std::string footage_;                     ///< of light_
     std::optional<TrialLight> light_;
+    std::map<int, ComparedSlots> compared_;  ///< of light_, by the number of its slots
+    std::vector<std::string> warnings_;
     std::optional<Trial> trial_;
     std::map<std::uint64_t, std::string> begun_;  ///< identities of trials that may be running
 };

@@ -9,7 +9,9 @@
 
 #include "core/parsed_number.h"
 #include "core/shell_quoted.h"
+#include "explore/point_view.h"
 #include "explore/trial.h"
+#include "readout/provenance.h"
 
 namespace stipple {
 namespace {
@@ -36,55 +38,71 @@ std::string operand(const std::string& name) {
 }
 
 /// Whether the other commands can make the point: to a rig as it is they can tell its own keys
-/// only.
+/// only, and they know neither binning nor windows of a sensor.
 bool has_steps(const Space& space, const SpacePoint& point) {
-    return space.rig(point).empty() ||
-           (space.value(point, "sensor") == SensorChoice().sensor &&
-            space.value(point, "seed") == std::to_string(SensorChoice().seed) &&
-            space.settings(point, "sensor").empty());
+    return !has_view(space, point) &&
+           (space.rig(point).empty() ||
+            (space.value(point, "sensor") == SensorChoice().sensor &&
+             space.value(point, "seed") == std::to_string(SensorChoice().seed) &&
+             space.settings(point, "sensor").empty()));
 }
 
-std::string steps(const Space& space, const SpacePoint& point, int slots) {
+/// `compare` leaves out as many frames at both ends: the first end + begin have the same middle.
+std::string compare_command(const std::string& footage, const PointClip& clip) {
+    auto [begin, end] = clip.compared;
+    if (begin >= end) end = clip.slots - (begin = usual_margin(clip.slots));
+    const std::string until =
+        begin + end < clip.slots ? fmt::format(" --until {}", begin + end) : "";
+    return begin + end > clip.slots ? ""
+                                    : fmt::format(
+                                          "stipple compare decoded.npy {}{} --margin {} "
+                                          "--max-value {}\n",
+                                          footage, until, begin, kBrightestLight);
+}
+
+std::string steps(const Space& space, const SpacePoint& point, const PointClip& clip) {
     const auto value = [&](std::string_view name) { return space.value(point, name); };
     std::string footage = operand(value("footage"));
-    std::string text;
+    std::string text, reading = options_of(clip.reading);
     if (is_scene(value("footage"))) {
         text = fmt::format("stipple synth {} -o scene.npy --frames {} --size {}x{}{}\n", footage,
-                           slots, space.scene.cols, space.scene.rows,
+                           clip.slots, space.scene.cols, space.scene.rows,
                            space.scene.planes == 1 ? " --luminance" : "");
         footage = "scene.npy";
+        reading.clear();
     }
     const std::string rig = space.rig(point);
     const std::string stream = rig.empty() ? "clip.stipple" : "clip";
+    if (!reading.empty()) reading += " --truth light.npy";
     if (rig.empty())
-        text += fmt::format("stipple emulate {} -o {} --sensor {} --schedule {} --seed {}{}{}\n",
-                            footage, stream, operand(value("sensor")), operand(value("schedule")),
-                            shell_quoted(value("seed")), settings(space, point, "sensor"),
-                            settings(space, point, "schedule"));
+        text += fmt::format("stipple emulate {} -o {}{} --sensor {} --schedule {} --seed {}{}{}\n",
+                            footage, stream, reading, operand(value("sensor")),
+                            operand(value("schedule")), shell_quoted(value("seed")),
+                            settings(space, point, "sensor"), settings(space, point, "schedule"));
     else
-        text += fmt::format("stipple emulate {} -o {} --rig {}{}\n", footage, stream, operand(rig),
-                            settings(space, point, "rig"));
+        text += fmt::format("stipple emulate {} -o {}{} --rig {}{}\n", footage, stream, reading,
+                            operand(rig), settings(space, point, "rig"));
     text += fmt::format("stipple decode {} -o decoded.npy --method {}{}\n", stream,
                         shell_quoted(value("method")), settings(space, point, "decoder"));
-    const QualityOptions quality = trial_quality(slots);
-    return text + fmt::format("stipple compare decoded.npy {} --margin {} --max-value {}\n",
-                              footage, quality.margin, *quality.max_value);
+    return text + compare_command(reading.empty() ? footage : "light.npy", clip);
 }
 
 }  // namespace
 
-std::string point_space(const Space& space, const SpacePoint& point, int slots) {
+std::string point_space(const Space& space, const SpacePoint& point, const PointClip& clip) {
     toml::table axes, set;
     for (std::size_t i = 0; i < point.size(); ++i) {
         const std::string& name = space.axes[i].name;
         if (name == "system" || point[i].empty()) continue;  // the point has all that it stands for
         (name.find('.') == std::string::npos ? axes : set).insert(name, only(point[i]));
     }
-    toml::table text{{"axes", axes},
-                     {"clip", toml::table{{"frames", slots},
-                                          {"rows", space.scene.rows},
-                                          {"cols", space.scene.cols},
-                                          {"planes", space.scene.planes}}}};
+    toml::table of_clip{{"frames", clip.slots},
+                        {"rows", space.scene.rows},
+                        {"cols", space.scene.cols},
+                        {"planes", space.scene.planes}};
+    const auto [begin, end] = clip.compared;
+    if (begin < end) of_clip.insert("compared", toml::array{begin, end});
+    toml::table text{{"axes", axes}, {"clip", of_clip}};
     if (!set.empty()) text.insert("set", set);
     toml::table readout;
     if (space.readout.rows > 0)
@@ -98,12 +116,14 @@ std::string point_space(const Space& space, const SpacePoint& point, int slots) 
     return stream.str() + "\n";
 }
 
-std::string point_commands(const Space& space, const SpacePoint& point, int slots, bool is_whole) {
+std::string point_commands(const Space& space, const SpacePoint& point, const PointClip& clip) {
+    const std::string reading =
+        is_scene(space.value(point, "footage")) ? "" : options_of(clip.reading);
     std::string text =
-        fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point\n",
-                    point_space(space, point, slots));
-    if (is_whole && has_steps(space, point))
-        text += "\n# the same step by step\n" + steps(space, point, slots);
+        fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point{}\n",
+                    point_space(space, point, clip), reading);
+    if (clip.is_whole && has_steps(space, point))
+        text += "\n# the same step by step\n" + steps(space, point, clip);
     return text;
 }
 

@@ -3,15 +3,26 @@
 #include <string>
 
 #include "explore/space.h"
+#include "io/footage_reader.h"
 
 namespace stipple {
 
-/// A point as a space of its own, TOML. `slots`: of the clip.
-[[nodiscard]] std::string point_space(const Space& space, const SpacePoint& point, int slots);
+/// The clip of a trial.
+struct PointClip {
+    int slots;
+    ComparedSlots compared;       ///< of these; empty: not known
+    bool is_whole;                ///< the footage has no more slots
+    FootageOptions reading = {};  ///< of the footage
+};
+
+/// A point as a space of its own, TOML.
+[[nodiscard]] std::string point_space(const Space& space, const SpacePoint& point,
+                                      const PointClip& clip);
 
 /// Lines of a shell that repeat a trial in an empty folder: `explore` with `point_space` and, where
-/// the footage is as long as the trial (`is_whole`), each step. Paths of files stay as they are.
-[[nodiscard]] std::string point_commands(const Space& space, const SpacePoint& point, int slots,
-                                         bool is_whole);
+/// the footage is as long as the trial and other commands can do it, each step. Paths of files stay
+/// as they are.
+[[nodiscard]] std::string point_commands(const Space& space, const SpacePoint& point,
+                                         const PointClip& clip);
 
 }  // namespace stipple

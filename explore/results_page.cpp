@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -82,10 +81,13 @@ ordered_json PageRows::row(std::uint64_t number) {
     ordered_json row{{"number", number + 1}, {"values", values}};
     row["figures"] = figures_json(point.figures.value_or(TrialFigures()));
     row["limited_by"] = point.figures ? point.figures->limited_by : "";
+    row["compared_slots"] = point.figures ? point.figures->compared_slots : "";
     row["rung"] = point.rung;
     row["slots"] = point.slots;
     row["problem"] = point.problem;
-    row["commands"] = point_commands(space, values, slots, exploration_.is_whole(number, slots));
+    const PointClip clip{slots, point.compared, exploration_.is_whole(number, slots),
+                         exploration_.reading()};
+    row["commands"] = point_commands(space, values, clip);
     row["file"] = point.figures ? "trials/" + point.address + ".png" : "";
     row["picture"] = picture(point);
     return row;
@@ -107,14 +109,13 @@ ordered_json PageRows::picture(const ExploredPoint& point) {
 
 }  // namespace
 
-std::string results_page(const Exploration& exploration, const std::string& space,
+std::string results_page(const Exploration& exploration, const std::string& title,
                          const std::string& command, const PageBounds& bounds) {
     const auto& points = exploration.points();
     const auto touched = static_cast<std::size_t>(
         std::ranges::count_if(points, [](const ExploredPoint& point) { return point.touched; }));
     PageRows rows(exploration, bounds.picture_bytes);
-    const std::string name = std::filesystem::path(space).filename().string();
-    ordered_json data{{"title", name},
+    ordered_json data{{"title", title},
                       {"program", fmt::format("stipple {}", version())},
                       {"command", command},
                       {"points", points.size()},
@@ -129,6 +130,13 @@ std::string results_page(const Exploration& exploration, const std::string& spac
     const auto note = [&](bool holds, const std::string& text) {
         if (holds) data["notes"].push_back(text);
     };
+    for (const ExploredPoint& point : points) {
+        if (!point.figures) continue;
+        note(true,
+             fmt::format("compared: slots {} of {}, the same for all points of a rung and a clip",
+                         point.figures->compared_slots, point.slots));
+        break;
+    }
     note(touched < points.size(),
          fmt::format("{} of {} points were reached; the same command goes on with the rest",
                      touched, points.size()));
@@ -139,7 +147,7 @@ std::string results_page(const Exploration& exploration, const std::string& spac
          fmt::format("the pictures of {} points lie beside the page only, in trials/, as those in "
                      "the page are bounded to {:.0f} MB",
                      rows.left_out(), 1e-6 * static_cast<double>(bounds.picture_bytes)));
-    return exploration_page(name,
+    return exploration_page(title,
                             data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 

@@ -14,8 +14,8 @@ struct PageBounds {
 };
 
 /// The page of an exploration (docs/explore.md): an HTML file that needs no other one. `command`
-/// made it; empty: not known. `space`: name of the space.
-[[nodiscard]] std::string results_page(const Exploration& exploration, const std::string& space,
+/// made it; empty: not known.
+[[nodiscard]] std::string results_page(const Exploration& exploration, const std::string& title,
                                        const std::string& command, const PageBounds& bounds = {});
 
 }  // namespace stipple

@@ -44,7 +44,8 @@ std::vector<TableCell> table_row(const Exploration& exploration, std::uint64_t n
         row.push_back(
             {std::string(column.name), std::isnan(value) ? TableValue() : TableValue(value)});
     }
-    row.push_back({"limited_by", figures.limited_by});
+    for (const TextColumn& column : kTextColumns)
+        row.push_back({std::string(column.name), figures.*column.value});
     row.push_back({"rung", point.figures ? TableValue(point.rung) : TableValue()});
     row.push_back({"slots", point.figures ? TableValue(point.slots) : TableValue()});
     row.push_back({"problem", point.problem});

@@ -23,18 +23,28 @@ constexpr int kMaxCount = 10'000;
 constexpr const char* kTwoSchedules =
     "stands beside a schedule, but the sensors of a rig have their own; leave out one";
 
-/// Axes of a name, slowest first; those with a default may be left out.
+/// Axes of a name, slowest first; those with a default may be left out. One whose default is empty
+/// is there only if a point has a value of it.
 struct NamedAxis {
     std::string_view name;
     const char* fallback;
     bool of_systems = false;  ///< set by them, if there are any
 };
-constexpr std::array<NamedAxis, 6> kNamedAxes{{{"footage", "pan"},
+constexpr std::array<NamedAxis, 9> kNamedAxes{{{"footage", "pan"},
                                                {"sensor", nullptr},
                                                {"schedule", "random", true},
                                                {"rig", "", true},
                                                {"method", "fast", true},
-                                               {"seed", "1"}}};
+                                               {"seed", "1"},
+                                               {"binning", "", true},
+                                               {"binning_mode", "", true},
+                                               {"window_rows", "", true}}};
+
+std::vector<std::string_view> axis_names() {
+    std::vector<std::string_view> names;
+    for (const NamedAxis& axis : kNamedAxes) names.push_back(axis.name);
+    return names;
+}
 
 /// Reads the tables of a space; messages name the file and the key.
 class SpaceReader {
@@ -54,6 +64,7 @@ class SpaceReader {
                                                  const toml::table& table) const;
     [[nodiscard]] int whole(const toml::table& table, const std::string& key, int fallback,
                             int max) const;
+    [[nodiscard]] ComparedSlots slot_range(const toml::node& node) const;
     void add_axes(Space& space, const toml::table& tables) const;
     void add_systems(Space& space, const toml::node* list) const;
     [[nodiscard]] SpaceSystem system(const toml::table& table, const std::string& key) const;
@@ -130,6 +141,20 @@ int SpaceReader::whole(const toml::table& table, const std::string& key, int fal
     return static_cast<int>(*number);
 }
 
+ComparedSlots SpaceReader::slot_range(const toml::node& node) const {
+    const auto* list = node.as_array();
+    const auto slot = [&](std::size_t i) {
+        const auto number = list != nullptr && list->size() == 2
+                                ? (*list)[i].value_exact<std::int64_t>()
+                                : std::nullopt;
+        return number && *number <= SceneOptions::kMaxSlots ? static_cast<int>(*number) : -1;
+    };
+    const ComparedSlots range{slot(0), slot(1)};
+    if (range.begin < 0 || range.begin >= range.end)
+        fail("clip.compared", "is not a list of the first slot and the one after the last");
+    return range;
+}
+
 void SpaceReader::check_keys(const toml::table& table, const std::string& section,
                              const std::vector<std::string_view>& known) const {
     for (const auto& [key, node] : table)
@@ -154,7 +179,9 @@ void SpaceReader::check_setting(const std::string& name) const {
 }
 
 SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key) const {
-    check_keys(table, key, {"name", "schedule", "rig", "method", "set"});
+    check_keys(
+        table, key,
+        {"name", "schedule", "rig", "method", "binning", "binning_mode", "window_rows", "set"});
     const bool has_rig = table.contains("rig");
     if (has_rig && table.contains("schedule")) fail(key + ".rig", kTwoSchedules);
     SpaceSystem system;
@@ -167,6 +194,9 @@ SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key
         else
             system.values.emplace_back(name, value);
     }
+    for (const char* name : {"binning", "binning_mode", "window_rows"})
+        if (const toml::node* node = table.get(name))
+            system.values.emplace_back(name, text(key + "." + name, *node));
     for (const auto& [setting, node] : section(table, "set")) {
         const std::string name(setting.str());
         check_setting(name);
@@ -203,7 +233,7 @@ void SpaceReader::add_systems(Space& space, const toml::node* list) const {
 
 void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
     const toml::table& axes = section(tables, "axes");
-    check_keys(axes, "axes", {"footage", "sensor", "schedule", "rig", "method", "seed"});
+    check_keys(axes, "axes", axis_names());
     const bool has_rig = axes.contains("rig");
     if (has_rig && axes.contains("schedule")) fail("axes.rig", kTwoSchedules);
     const toml::node* systems = tables.get("systems");
@@ -217,7 +247,7 @@ void SpaceReader::add_axes(Space& space, const toml::table& tables) const {
                  "is missing; name a sensor of \"stipple list sensors\", or several");
         if (node != nullptr)
             space.axes.push_back({std::string(name), values("axes." + std::string(name), *node)});
-        else if (name != "rig") {  // which is an axis only where a point has one
+        else if (fallback == nullptr || *fallback != '\0') {
             const bool is_set = of_systems || (has_rig && name == "schedule");
             space.axes.push_back({std::string(name), {is_set ? "" : fallback}});
         }
@@ -237,11 +267,12 @@ Space SpaceReader::read(const toml::table& tables) const {
     Space space;
     add_axes(space, tables);
     const toml::table& clip = section(tables, "clip");
-    check_keys(clip, "clip", {"frames", "rows", "cols", "planes"});
+    check_keys(clip, "clip", {"frames", "rows", "cols", "planes", "compared"});
     space.frames = whole(clip, "clip.frames", space.frames, SceneOptions::kMaxSlots);
     space.scene.rows = whole(clip, "clip.rows", space.scene.rows, SceneOptions::kMaxSide);
     space.scene.cols = whole(clip, "clip.cols", space.scene.cols, SceneOptions::kMaxSide);
     space.scene.planes = whole(clip, "clip.planes", space.scene.planes, 3);
+    if (const toml::node* compared = clip.get("compared")) space.compared = slot_range(*compared);
     const toml::table& readout = section(tables, "readout");
     check_keys(readout, "readout", {"rows", "cols", "sensor"});
     space.readout.rows = whole(readout, "readout.rows", 0, kMaxFrameSide);

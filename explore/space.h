@@ -13,8 +13,8 @@ namespace stipple {
 
 /// The values that one property of a trial takes.
 struct SpaceAxis {
-    std::string
-        name;  ///< "sensor", "schedule", "rig", "footage", "method", "seed", or a key of --set
+    std::string name;  ///< "sensor", "schedule", "rig", "footage", "method", "seed", "system",
+                       ///< "binning", "binning_mode", "window_rows", or a key of --set
     std::vector<std::string> values;
 };
 
@@ -27,16 +27,26 @@ struct SpaceSystem {
     std::vector<std::pair<std::string, std::string>> values;  ///< axis and value
 };
 
+/// Slots from `begin` on, before `end`.
+struct ComparedSlots {
+    int begin = 0;
+    int end = 0;
+
+    bool operator==(const ComparedSlots&) const = default;
+};
+
 /// All trials of `stipple explore`: each value of each axis with each of the others
 /// (docs/explore.md).
 struct Space {
     static constexpr std::uint64_t kMaxPoints = 100'000;
 
-    /// footage, sensor, schedule, rig (if a point has one), method, seed, system, the keys.
+    /// footage, sensor, schedule, rig (if a point has one), method, seed, binning and the like (if
+    /// a point has it), system, the keys.
     std::vector<SpaceAxis> axes;
     /// If any, they set schedule or rig, method and some of the keys.
     std::vector<SpaceSystem> systems;
-    int frames = 32;                                        ///< slots of each trial, at most
+    int frames = 32;              ///< slots of each trial, at most
+    ComparedSlots compared = {};  ///< slots that are compared; empty: as compared_slots finds
     FrameShape scene{.rows = 48, .cols = 64, .planes = 1};  ///< of embedded scenes
     /// The window whose readout is timed; 0: that of the clip.
     FrameShape readout{.rows = 0, .cols = 0, .planes = 1};

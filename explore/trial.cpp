@@ -18,6 +18,7 @@
 #include "core/version.h"
 #include "decoder/reconstruct.h"
 #include "explore/dictionary_file.h"
+#include "explore/enlarged_frame.h"
 #include "explore/point_rig.h"
 #include "explore/trial_picture.h"
 #include "io/footage_reader.h"
@@ -49,7 +50,7 @@ TrialLight render_scene(const Space& space, const std::string& name, const KeepG
 
 /// Stops between the brightest light that the shortest exposure of any sensor measures and the
 /// light that is as strong as the read noise of the longest one.
-double dynamic_range_stops(const std::vector<SensorSetup>& setups) {
+double sample_range_stops(const std::vector<SensorSetup>& setups) {
     double brightest = 0, darkest = std::numeric_limits<double>::infinity();
     for (const SensorSetup& setup : setups) {
         const ExposureSchedule& schedule = setup.schedule.schedule;
@@ -68,8 +69,10 @@ double dynamic_range_stops(const std::vector<SensorSetup>& setups) {
     return std::log2(brightest / darkest);
 }
 
-TimedWindow timed_window(const Space& space, SensorChoice choice, const SensorSetup& setup) {
+TimedWindow timed_window(const Space& space, const PointView& view, SensorChoice choice,
+                         const SensorSetup& setup) {
     TimedWindow window{setup.timing, setup.schedule, setup.shape};
+    FrameShape array = space.readout;
     if (!space.readout_sensor.empty()) {
         choice.sensor = space.readout_sensor;
         choice.settings.clear();
@@ -77,12 +80,23 @@ TimedWindow timed_window(const Space& space, SensorChoice choice, const SensorSe
         if (!sensor.timing) throw InputError("readout.sensor " + choice.sensor, no_timing_text());
         window.timing = sensor.timing;
         window.keys = sensor.origin->keys;
-        window.shape = {.rows = window.timing->rows, .cols = window.timing->cols, .planes = 1};
+        if (array.rows == 0)
+            array = {.rows = window.timing->rows, .cols = window.timing->cols, .planes = 1};
     }
-    if (space.readout.rows > 0) window.shape = space.readout;
+    if (array.rows > 0) window.shape = view.binned(view.window(array));
     if (window.timing)
         window.schedule = set_up_schedule(choice, window.shape, window.timing->addressing);
     return window;
+}
+
+/// Bits a slot of the code of all pixels: one each, unless all pixels of a row expose alike.
+double code_bits(const TimedWindow& window) {
+    const ExposureSchedule& schedule = window.schedule.schedule;
+    for (int row = 0; row < schedule.tile_rows(); ++row)
+        for (int col = 1; col < schedule.tile_cols(); ++col)
+            if (!std::ranges::equal(schedule.exposures(row, col), schedule.exposures(row, 0)))
+                return static_cast<double>(window.shape.pixels());
+    return 0;
 }
 
 /// Rate, bandwidth and energy of all sensors, by their timing if they have one. The slowest one
@@ -111,15 +125,18 @@ void add_readout(const Trial& trial, double bits_per_slot, TrialFigures& figures
         }
     }
     figures.megabits_per_second = 1e-6 * bits_per_slot * figures.slots_per_second;
+    figures.code_megabits_per_second = 0;
+    for (const TimedWindow& window : trial.windows)
+        figures.code_megabits_per_second += 1e-6 * code_bits(window) * figures.slots_per_second;
 }
 
-/// Samples of all sensors in a steady slot over the voxels of the decoded video.
-double samples_per_voxel(const std::vector<SensorSetup>& setups) {
+/// Samples of all sensors in a steady slot over the voxels of the whole clip.
+double samples_per_voxel(const std::vector<SensorSetup>& setups, FrameShape clip) {
     double samples = 0;
     for (const SensorSetup& setup : setups)
-        samples += setup.schedule.schedule.samples_per_pixel_slot() * setup.shape.planes /
-                   setup.footage.planes;
-    return samples;
+        samples += setup.schedule.schedule.samples_per_pixel_slot() *
+                   static_cast<double>(setup.shape.sites());
+    return samples / static_cast<double>(clip.sites());
 }
 
 /// The files of a trial's streams, in the order of its sensors; removed in the end.
@@ -142,8 +159,8 @@ class TrialStreams {
     std::vector<fs::path> files_;
 };
 
-/// The figures of the recorders; the streams are in place afterwards.
-void record(const Trial& trial, const FluxVideo& truth, const TrialStreams& streams,
+/// The figures of the recorders of `light`; the streams are in place afterwards.
+void record(const Trial& trial, const FluxVideo& light, const TrialStreams& streams,
             const KeepGoing& keep_going, TrialFigures& figures) {
     std::list<RigRecorder> recorders;
     for (std::size_t i = 0; i < trial.setups.size(); ++i)
@@ -151,7 +168,7 @@ void record(const Trial& trial, const FluxVideo& truth, const TrialStreams& stre
                                StreamRecorderOptions{.force = true});
     for (int slot = 0; slot < trial.slots; ++slot) {
         check(keep_going);
-        for (RigRecorder& recorder : recorders) recorder.expose(slot, truth.frame(slot));
+        for (RigRecorder& recorder : recorders) recorder.expose(slot, light.frame(slot));
     }
     RigTotals totals;
     for (RigRecorder& recorder : recorders) {
@@ -160,11 +177,11 @@ void record(const Trial& trial, const FluxVideo& truth, const TrialStreams& stre
     }
     add_readout(trial, totals.bits_per_slot, figures);
     figures.light_throughput = totals.light_collected;
-    figures.samples_per_voxel = samples_per_voxel(trial.setups);
-    figures.dynamic_range_stops = dynamic_range_stops(trial.setups);
+    figures.sample_range_stops = sample_range_stops(trial.setups);
 }
 
-/// Decodes with `options` and hands each frame to `take`, until that returns false.
+/// Decodes with `options` and hands each frame, in the size of the clip, to `take`, until that
+/// returns false.
 DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
                             const DecodeOptions& options, const FrameSink& take,
                             const KeepGoing& keep_going) {
@@ -177,7 +194,10 @@ DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
     const DecodeReport report = decode_rig(
         streams, options,
         [&](std::int64_t slot, std::span<const float> frame) {
-            return take(slot, frame) && keep_going();
+            if (trial.view.binning == 1) return take(slot, frame) && keep_going();
+            const auto [shape, binning] =
+                std::pair(trial.setups.front().footage, trial.view.binning);
+            return take(slot, enlarged_frame(frame, shape, binning)) && keep_going();
         },
         [&](double) { return keep_going(); });
     check(keep_going);
@@ -208,9 +228,17 @@ QualityOptions trial_quality(int slots) {
     return {.margin = usual_margin(slots), .max_value = kBrightestLight};
 }
 
-TrialLight read_light(const Space& space, const std::string& footage, const KeepGoing& keep_going) {
-    if (is_scene(footage)) return render_scene(space, footage, keep_going);
-    FootageReader reader(footage);
+TrialLight read_light(const Space& space, const std::string& footage, const FootageOptions& reading,
+                      const KeepGoing& keep_going) {
+    if (is_scene(footage)) {
+        if (reading.transfer || reading.luminance || reading.raw || reading.scale != 1 ||
+            reading.part != FootagePart())
+            throw InputError(footage,
+                             "is an embedded scene, which the options of footage do not change; "
+                             "write it by \"stipple synth\" and give that file");
+        return render_scene(space, footage, keep_going);
+    }
+    FootageReader reader(footage, reading);
     std::vector<std::vector<float>> frames;
     std::vector<float> frame(reader.shape().sites());
     bool more = reader.read(frame);
@@ -220,14 +248,15 @@ TrialLight read_light(const Space& space, const std::string& footage, const Keep
     }
     if (frames.empty()) throw InputError(footage, "has no frame");
     TrialLight light{FluxVideo(static_cast<int>(frames.size()), reader.shape()),
-                     origin_of(footage, {}, [&] { check(keep_going); }), !more};
+                     origin_of(footage, reading, [&] { check(keep_going); }), !more,
+                     reader.take_warnings()};
     for (std::size_t i = 0; i < frames.size(); ++i)
         std::ranges::copy(frames[i], light.video.frame(static_cast<int>(i)).begin());
     return light;
 }
 
-Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight& light,
-                   int slots) {
+Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight& light, int slots,
+                   ComparedSlots compared) {
     PointRig of_point = rig_of(space, point);
     const std::string& method = space.value(point, "method");
     std::string decoder_keys;
@@ -236,35 +265,55 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
     Trial trial{.rig = std::move(of_point.rig),
                 .setups = {},
                 .windows = {},
+                .view = view_of(space, point),
                 .decoding = std::move(decoding),
                 .slots = std::min(slots, light.video.slots()),
+                .compared = compared,
                 .identity = {}};
-    trial.setups = set_up_rig(trial.rig, shape);
+    const PointView& view = trial.view;
+    trial.setups = set_up_rig(trial.rig, view.binned(view.window(shape)));
     for (std::size_t i = 0; i < trial.setups.size(); ++i)
-        trial.windows.push_back(timed_window(space, trial.rig.sensors[i].choice, trial.setups[i]));
+        trial.windows.push_back(
+            timed_window(space, view, trial.rig.sensors[i].choice, trial.setups[i]));
     const FrameShape window = trial.windows.front().shape;
     trial.identity = fmt::format(
-        "version {}\nslots {} rows {} cols {} planes {}\nreadout {} x {} {}\n{}method {}\n{}",
-        version(), trial.slots, shape.rows, shape.cols, shape.planes, window.rows, window.cols,
-        trial.windows.front().keys, of_point.keys, method, decoder_keys);
+        "version {}\nslots {} compared {}:{} rows {} cols {} planes {}\nreadout {} x {} {}\n"
+        "window_rows {} binning {} {}\n{}method {}\n{}",
+        version(), trial.slots, compared.begin, compared.end, shape.rows, shape.cols, shape.planes,
+        window.rows, window.cols, trial.windows.front().keys, view.rows, view.binning,
+        name_in(kBinningModes, view.mode), of_point.keys, method, decoder_keys);
     for (const SensorSetup& setup : trial.setups)
         trial.identity += "\n" + provenance_of(setup, light.origin);
+    if (view.binning > 1)
+        for (SensorSetup& setup : trial.setups) {
+            setup.params = binned(setup.params, view.binning, view.mode);
+            setup.origin.reset();
+        }
     return trial;
 }
 
 TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,
                        const KeepGoing& keep_going) {
-    const FluxVideo& truth = light.video;
+    const PointView& view = trial.view;
+    const FluxVideo window = view.rows < 1 ? window_light(light.video, view) : FluxVideo();
+    const FluxVideo& truth = view.rows < 1 ? window : light.video;
     const TrialStreams streams(stream, trial.setups.size());
     TrialFigures figures;
     TrialPicture picture(truth.shape());
-    record(trial, truth, streams, keep_going, figures);
+    if (view.binning > 1)
+        record(trial, binned_light(truth, view), streams, keep_going, figures);
+    else
+        record(trial, truth, streams, keep_going, figures);
+    figures.samples_per_voxel = samples_per_voxel(trial.setups, light.video.shape());
+    figures.field_of_view = static_cast<double>(truth.shape().pixels()) /
+                            static_cast<double>(light.video.shape().pixels());
+    figures.compared_slots = fmt::format("{}:{}", trial.compared.begin, trial.compared.end);
     const int shown = trial.slots / 2;
     const bool is_naive = trial.decoding.method == DecodeMethod::kNaive;
-    QualityMeter meter(truth.shape(), trial_quality(trial.slots));
+    QualityMeter meter(truth.shape(), {.max_value = kBrightestLight});
     const auto take = [&](std::int64_t slot, std::span<const float> frame) {
         const auto reference = truth.frame(static_cast<int>(slot));
-        meter.add(frame, reference);
+        if (slot >= trial.compared.begin && slot < trial.compared.end) meter.add(frame, reference);
         if (slot == shown) {
             picture.put(TrialPicture::kTruth, reference);
             picture.put(TrialPicture::kDecoded, frame);

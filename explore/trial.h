@@ -8,6 +8,7 @@
 
 #include "core/flux_video.h"
 #include "decoder/decode_options.h"
+#include "explore/point_view.h"
 #include "explore/space.h"
 #include "explore/trial_figures.h"
 #include "io/png_file.h"
@@ -21,7 +22,7 @@ namespace stipple {
 /// Light is compared up to this one: full_scale_e / photons_per_unit of the default sensor.
 inline constexpr double kBrightestLight = 2;
 
-/// How the video of a trial is compared with the truth: without the first and last 4 of its frames
+/// How the video of the demo is compared with the truth: without the first and last 4 of its frames
 /// (fewer of short clips), light up to kBrightestLight.
 [[nodiscard]] QualityOptions trial_quality(int slots);
 
@@ -35,15 +36,17 @@ struct TrialStopped {};
 struct TrialLight {
     FluxVideo video;
     FootageOrigin origin;
-    bool is_whole = true;  ///< false: the footage has more slots
+    bool is_whole = true;                    ///< false: the footage has more slots
+    std::vector<std::string> warnings = {};  ///< of the reader
 };
 
 /// Whether `footage` names an embedded scene.
 [[nodiscard]] bool is_scene(const std::string& footage);
 
-/// The first slots of an embedded scene, or of a file. \throws InputError, TrialStopped.
+/// The first slots of an embedded scene, or of a file. \throws InputError, also for a scene with
+/// options of reading, TrialStopped.
 [[nodiscard]] TrialLight read_light(const Space& space, const std::string& footage,
-                                    const KeepGoing& keep_going);
+                                    const FootageOptions& reading, const KeepGoing& keep_going);
 
 /// A window and how it is read.
 struct TimedWindow {
@@ -58,15 +61,17 @@ struct Trial {
     Rig rig;                           ///< of one sensor, unless the point names a rig
     std::vector<SensorSetup> setups;   ///< of its sensors
     std::vector<TimedWindow> windows;  ///< whose rate, bandwidth and energy are computed
+    PointView view;                    ///< what the sensors read
     DecodeOptions decoding;
-    int slots;             ///< the first ones of the light are recorded
-    std::string identity;  ///< all that determines the result; equal for equal trials
+    int slots;               ///< the first ones of the light are recorded
+    ComparedSlots compared;  ///< of these
+    std::string identity;    ///< all that determines the result; equal for equal trials
 };
 
-/// Precondition: slots > 0; more than the light has are not recorded.
+/// Precondition: slots > 0, more than the light has are not recorded; `compared` is of these.
 /// \throws InputError naming file, line and key of a value that cannot be used.
 [[nodiscard]] Trial set_up_trial(const Space& space, const SpacePoint& point,
-                                 const TrialLight& light, int slots);
+                                 const TrialLight& light, int slots, ComparedSlots compared);
 
 struct TrialOutcome {
     TrialFigures figures;

@@ -16,15 +16,27 @@ struct TrialFigures {
     std::string limited_by;  ///< "slot", or the part of the readout that limits the rate
     double readout_slots_per_second = kNone;  ///< what the readout allows, with timing
     double megabits_per_second = kNone;
-    double energy_uj_per_slot = kNone;  ///< of sensors with timing
-    double light_throughput = kNone;    ///< of one aperture
-    double samples_per_voxel = kNone;   ///< of all sensors
+    double code_megabits_per_second = kNone;  ///< of coded sensors; others have 0
+    double energy_uj_per_slot = kNone;        ///< of sensors with timing
+    double light_throughput = kNone;          ///< of one aperture
+    double field_of_view = kNone;             ///< fraction of the pixels of the clip that is seen
+    double samples_per_voxel = kNone;         ///< of all sensors
     double psnr_db = kNone;
     double psnr_gamma_db = kNone;
     double pu21_psnr_db = kNone;
-    double dynamic_range_stops = kNone;
+    double sample_range_stops = kNone;
     double decode_seconds = kNone;
+    std::string compared_slots = {};  ///< "A:B", those before B
 };
+
+/// A column of text of the table.
+struct TextColumn {
+    std::string_view name;
+    std::string TrialFigures::*value;
+};
+
+inline constexpr std::array<TextColumn, 2> kTextColumns{
+    {{"limited_by", &TrialFigures::limited_by}, {"compared_slots", &TrialFigures::compared_slots}}};
 
 enum class Better : std::uint8_t { kMore, kLess };
 
@@ -36,20 +48,23 @@ struct FigureColumn {
     Better better;
 };
 
-inline constexpr std::array<FigureColumn, 11> kFigureColumns{
+inline constexpr std::array<FigureColumn, 13> kFigureColumns{
     {{"slots_per_second", "slot rate, 1/s", &TrialFigures::slots_per_second, Better::kMore},
      {"readout_slots_per_second", "slot rate of the readout, 1/s",
       &TrialFigures::readout_slots_per_second, Better::kMore},
      {"megabits_per_second", "data rate, Mbit/s", &TrialFigures::megabits_per_second,
       Better::kLess},
+     {"code_megabits_per_second", "exposure code, Mbit/s", &TrialFigures::code_megabits_per_second,
+      Better::kLess},
      {"energy_uj_per_slot", "energy per slot, uJ", &TrialFigures::energy_uj_per_slot,
       Better::kLess},
      {"light_throughput", "light throughput", &TrialFigures::light_throughput, Better::kMore},
+     {"field_of_view", "field of view", &TrialFigures::field_of_view, Better::kMore},
      {"samples_per_voxel", "samples per voxel", &TrialFigures::samples_per_voxel, Better::kLess},
      {"psnr_db", "PSNR, dB", &TrialFigures::psnr_db, Better::kMore},
      {"psnr_gamma_db", "PSNR after 1/2.2, dB", &TrialFigures::psnr_gamma_db, Better::kMore},
      {"pu21_psnr_db", "PU21-PSNR, dB", &TrialFigures::pu21_psnr_db, Better::kMore},
-     {"dynamic_range_stops", "dynamic range, stops", &TrialFigures::dynamic_range_stops,
+     {"sample_range_stops", "sample range, stops", &TrialFigures::sample_range_stops,
       Better::kMore},
      {"decode_seconds", "decode time, s", &TrialFigures::decode_seconds, Better::kLess}}};
 

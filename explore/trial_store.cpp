@@ -44,7 +44,9 @@ void write_text(const fs::path& file, std::string_view text) {
 }
 
 ordered_json json_of(const TrialFigures& figures) {
-    ordered_json json{{"limited_by", figures.limited_by}};
+    ordered_json json;
+    for (const TextColumn& column : kTextColumns)
+        json[std::string(column.name)] = figures.*column.value;
     for (const FigureColumn& column : kFigureColumns) {
         const double value = figures.*column.value;
         json[std::string(column.name)] =
@@ -56,9 +58,12 @@ ordered_json json_of(const TrialFigures& figures) {
 /// Nothing if a figure is of another type.
 std::optional<TrialFigures> figures_of(const ordered_json& json) {
     TrialFigures figures;
-    if (!json.is_object() || !json.contains("limited_by") || !json["limited_by"].is_string())
-        return std::nullopt;
-    figures.limited_by = json["limited_by"].get<std::string>();
+    if (!json.is_object()) return std::nullopt;
+    for (const TextColumn& column : kTextColumns) {
+        const auto found = json.find(column.name);
+        if (found == json.end() || !found->is_string()) return std::nullopt;
+        figures.*column.value = found->get<std::string>();
+    }
     for (const FigureColumn& column : kFigureColumns) {
         const auto found = json.find(column.name);
         if (found == json.end()) return std::nullopt;

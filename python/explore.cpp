@@ -17,6 +17,7 @@
 #include "explore/results_table.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/footage.h"
 
 namespace stipple::python {
 namespace {
@@ -29,7 +30,8 @@ py::dict dict_of_figures(const TrialFigures& figures) {
         dict[py::str(std::string(column.name))] =
             std::isnan(value) ? py::object(py::none()) : py::object(py::float_(value));
     }
-    dict["limited_by"] = figures.limited_by;
+    for (const TextColumn& column : kTextColumns)
+        dict[py::str(std::string(column.name))] = figures.*column.value;
     return dict;
 }
 
@@ -39,7 +41,8 @@ TrialFigures figures_of_dict(const py::dict& dict) {
         const py::object value = dict[py::str(std::string(column.name))];
         if (!value.is_none()) figures.*column.value = value.cast<double>();
     }
-    figures.limited_by = dict["limited_by"].cast<std::string>();
+    for (const TextColumn& column : kTextColumns)
+        figures.*column.value = dict[py::str(std::string(column.name))].cast<std::string>();
     return figures;
 }
 
@@ -68,7 +71,7 @@ class RunExploration {
   public:
     RunExploration(const std::filesystem::path& space, const std::filesystem::path& results,
                    ExploreOptions options, py::object tell)
-        : space_name_(space.string()), exploration_(space, results, std::move(options), [this] {
+        : space_(space), exploration_(space, results, std::move(options), [this] {
               return !progress_ || progress_->reach(done_);
           }) {
         progress_.emplace(std::move(tell), static_cast<std::int64_t>(exploration_.most_trials()));
@@ -79,6 +82,7 @@ class RunExploration {
     bool begin(std::uint64_t number) {
         const Trial* trial = nullptr;
         unlocked([&] { trial = exploration_.begin(number); });
+        for (const std::string& text : exploration_.take_warnings()) warn(text);
         if (trial == nullptr) advance();
         return trial != nullptr;
     }
@@ -107,7 +111,8 @@ class RunExploration {
     void write(bool report) const {
         exploration_.store().write("table.csv", csv_table(exploration_));
         if (report)
-            exploration_.store().write("report.html", results_page(exploration_, space_name_, ""));
+            exploration_.store().write("report.html",
+                                       results_page(exploration_, space_.filename().string(), ""));
     }
     [[nodiscard]] py::list rows() const;
     [[nodiscard]] const Exploration& exploration() const { return exploration_; }
@@ -133,7 +138,7 @@ class RunExploration {
         if (!go_on) progress_->finish();
     }
 
-    std::string space_name_;
+    std::filesystem::path space_;
     std::optional<CallProgress> progress_;
     double done_ = 0;  ///< trials
     Exploration exploration_;
@@ -165,16 +170,20 @@ ExploreOptions options_of(bool force, const std::string& budget, const std::stri
     return options;
 }
 
+/// Number of a point, slots of the clip, and begin and end of those that are compared.
+using PointOfClip = std::tuple<std::uint64_t, int, int, int>;
+
 /// A trial on a worker: its identity and its outcome.
-std::pair<std::string, PlainOutcome> run_point(const Space& space, std::uint64_t number, int slots,
+std::pair<std::string, PlainOutcome> run_point(const Space& space, const PointOfClip& point,
                                                const TrialLight& light,
                                                const std::filesystem::path& stream) {
+    const auto& [number, slots, begin, end] = point;
     CallProgress progress(py::none(), std::nullopt);
     std::optional<Trial> trial;
     std::optional<TrialOutcome> outcome;
     try {
         const py::gil_scoped_release released;
-        trial = set_up_trial(space, space.point(number), light, slots);
+        trial = set_up_trial(space, space.point(number), light, slots, {begin, end});
         outcome = run_trial(*trial, light, stream, [&] { return progress.reach(0); });
     } catch (const TrialStopped&) {
         progress.finish();
@@ -187,7 +196,7 @@ TrialLight light_of(const Space& space, const std::string& footage) {
     CallProgress progress(py::none(), std::nullopt);
     try {
         const py::gil_scoped_release released;
-        return read_light(space, footage, [&] { return progress.reach(0); });
+        return read_light(space, footage, {}, [&] { return progress.reach(0); });
     } catch (const TrialStopped&) {
         progress.finish();
         throw;
@@ -211,7 +220,12 @@ void bind_explore(py::module_& module) {
                             std::uint64_t number) { return run.exploration().identity(number); })
         .def("write", &RunExploration::write)
         .def("rows", &RunExploration::rows)
-        .def("slots", [](const RunExploration& run) { return run.exploration().slots(); })
+        .def("point_of_clip",
+             [](const RunExploration& run, std::uint64_t number) {
+                 const ComparedSlots compared = run.exploration().compared();
+                 return PointOfClip(number, run.exploration().slots(), compared.begin,
+                                    compared.end);
+             })
         .def("text", [](const RunExploration& run) { return run.exploration().space_text(); });
     py::class_<Space>(module, "Space")
         .def(py::init(&parse_space))

@@ -98,7 +98,7 @@ def explore_on(
                 if len(flying) == IN_FLIGHT:
                     land()
                 if exploration.begin(number):
-                    point = (exploration.text(), name, number, exploration.slots(), threads)
+                    point = (exploration.text(), name, exploration.point_of_clip(number), threads)
                     flying.append((number, client.submit(_run_point, caller, *point, pure=False)))
             while flying:
                 land()
@@ -112,18 +112,20 @@ def _scene_light(space: str, name: str, footage: str) -> _stipple.TrialLight:
     return _stipple.TrialLight(_stipple.Space(space, name), footage)
 
 
-def _run_point(caller: Fingerprint, text: str, name: str, number: int, slots: int, threads: int) -> Tuple[str, Any]:
+def _run_point(
+    caller: Fingerprint, text: str, name: str, point: Tuple[int, int, int, int], threads: int
+) -> Tuple[str, Any]:
     """Identity and outcome of a trial, on a worker; instead of the outcome the problem of a point that fails."""
     require_same(caller)
     space = _stipple.Space(text, name)
-    footage = space.footage(number)
+    footage = space.footage(point[0])
     with tempfile.TemporaryDirectory(prefix="stipple_") as folder, _stipple.Threads(threads):
         try:
             if _stipple.is_scene(footage):
                 light = _scene_light(text, name, footage)
             else:  # which may have changed
                 light = _stipple.TrialLight(space, footage)
-            return _stipple.run_point(space, number, slots, light, path.join(folder, "point.stipple"))
+            return _stipple.run_point(space, point, light, path.join(folder, "point.stipple"))
         except ValueError as problem:
             return "", str(problem)
 
@@ -132,7 +134,7 @@ def _rows(exploration: _stipple.Exploration) -> "list[dict[str, Any]]":
     rows = exploration.rows()
     for row in rows:
         for name, value in row.items():
-            if isinstance(value, str) and name not in ("limited_by", "problem"):
+            if isinstance(value, str) and name not in ("limited_by", "compared_slots", "problem"):
                 row[name] = _value(value)
     return rows
 

@@ -89,7 +89,7 @@ class ExplorePageTest(BrowserTest):
     def test_all_points_are_in_the_chart(self):
         self.open_page()
         self.need_charts()
-        for x in ("slots_per_second", "energy_uj_per_slot", "psnr_gamma_db", "dynamic_range_stops"):
+        for x in ("slots_per_second", "energy_uj_per_slot", "psnr_gamma_db", "sample_range_stops"):
             Select(self.element("x-column")).select_by_value(x)
             ends, values = self.script("""
                 const {chart} = charts.get('frontier-chart'), {x} = chart.scales;
@@ -134,7 +134,7 @@ class ExplorePageTest(BrowserTest):
                                            "return [row.number, document.getElementById('point-commands').textContent]", index)
             folder = self.folder / f"point_{number}"
             folder.mkdir()
-            commands += "stipple compare decoded.npy scene.npy --margin 4 --max-value 2 --json compared.json\n"
+            commands = commands.replace("--max-value 2\n", "--max-value 2 --json compared.json\n")
             done = subprocess.run(["sh", "-e"], input=commands, text=True, cwd=folder, env=environment, capture_output=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             row = self.rows[number - 1]

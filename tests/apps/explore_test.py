@@ -62,7 +62,7 @@ class ExploreTest(ProgramTest):
         # Paper: slots of 5 ms; 2000 e in one slot, against 10 e and steps of 2000 / 255 e in eight.
         self.assertEqual((float(rows[0]["slots_per_second"]), rows[0]["limited_by"]), (200, "slot"))
         noise_e = np.hypot(10, 2000 / 255 / np.sqrt(12))
-        self.assertAlmostEqual(float(rows[0]["dynamic_range_stops"]), np.log2(2000 / (noise_e / 8)), places=6)
+        self.assertAlmostEqual(float(rows[0]["sample_range_stops"]), np.log2(2000 / (noise_e / 8)), places=6)
         self.assertEqual(rows[0]["energy_uj_per_slot"], "")
         self.assertEqual((rows[3]["limited_by"], float(rows[3]["slots_per_second"])), ("slot", 2000))
 
@@ -109,7 +109,7 @@ class ExploreTest(ProgramTest):
         self.assertEqual([row["sensor.photons_per_unit"] for row in rows[0:9:3]], ["10", "100", "1000"])
         self.assertEqual([row["sensor.read_noise_e"] for row in rows[:3]], ["0.5", "1", "1.5"])
         # A length of exposure twice as long adds a stop.
-        stops = [float(row["dynamic_range_stops"]) for row in rows]
+        stops = [float(row["sample_range_stops"]) for row in rows]
         self.assertAlmostEqual(stops[9] - stops[0], 2, places=9)
 
     def test_a_point_that_fails_is_a_row(self):

@@ -51,7 +51,7 @@ class RivalsTest(ProgramTest):
         self.assertIsNone(impossible["psnr_db"])
         self.assertIn("charge_stores", impossible["problem"])
         # As bright as in 1 slot, as dark as in 8.
-        self.assertAlmostEqual(coded["dynamic_range_stops"] - frames["dynamic_range_stops"], 3, places=9)
+        self.assertAlmostEqual(coded["sample_range_stops"] - frames["sample_range_stops"], 3, places=9)
 
     def test_the_figures_are_those_of_explore(self):
         rows = self.rivals()
@@ -72,6 +72,35 @@ class RivalsTest(ProgramTest):
         self.fails(INPUT, ['system "film": is none of coded, frames, buckets'], "rivals", "pan", "-o", "r",
                    "--space", "space.toml", "--system", "film")
         self.fails(INPUT, ["is neither a file nor one of the spaces"], "rivals", "pan", "-o", "r", "--space", "nosuch")
+
+    def test_all_systems_compare_slots_of_whole_exposures(self):
+        self.succeed("synth", "still", "-o", "clip.npy", "--frames", 32, "--size", "32x32")
+        (self.folder / "space.toml").write_text(SPACE.replace("[clip]\nframes = 16", """[[systems]]
+name = "rig"
+rig = "multi_exposure_slow"
+method = "naive"
+[clip]
+frames = 36"""))
+        rows = self.rivals("clip.npy", "--luminance")
+        # Random exposures of up to 8 slots, then frames of 12 slots, of which the third is cut.
+        self.assertEqual([row["compared_slots"] for row in rows], ["7:24"] * 3 + ["", "7:24"])
+        row, = self.rivals("clip.npy", "--luminance", "--system", "frames")
+        self.assertEqual(row, rows[1])
+        self.assertIn("compared: slots 7:24 (first:end) of 32",
+                      self.succeed("rivals", "clip.npy", "-o", "results", "--space", "space.toml", "--luminance"))
+
+    def test_rows_of_a_space_without_systems_have_the_values_that_differ(self):
+        (self.folder / "space.toml").write_text('[axes]\nsensor = "paper"\nmethod = "naive"\nseed = [7, 8]\n'
+                                                'schedule = ["full1x", "full4x"]\n[clip]\nframes = 12\n')
+        lines = self.succeed("rivals", "pan", "-o", "results", "--space", "space.toml").splitlines()
+        self.assertEqual([line[:9] for line in lines if line.startswith("full")],
+                         ["full1x, 7", "full1x, 8", "full4x, 7", "full4x, 8"])
+
+    def test_spaces_have_names(self):
+        listed = {space["name"]: space["text"] for space in self.figures("list", "spaces")["spaces"]}
+        self.assertEqual(listed["rivals"], "Coded exposure and its rivals at an equal number of samples and aperture")
+        self.assertTrue(listed["exposure_lengths"].endswith("have?"), listed)
+        self.fails(INPUT, ["nosuch", "one of the spaces", "rivals"], "explore", "nosuch", "-o", "r")
 
     def test_footage_that_cannot_be_read_is_one_error(self):
         done = self.run_program("rivals", "nosuch", "-o", "r", "--space", "space.toml")
@@ -126,7 +155,7 @@ b = { schedule = "random", share = 0.25, offset_px = [0, 2], phase_slots = 1 }
         rows = self.figures("rivals", "pan", "-o", "results", "--system", "coded fast", "--system", "1x naive",
                             "--system", "4x naive", "--system", "beam splitter naive")["systems"]
         for row in rows:
-            self.assertEqual(row["problem"], "")
+            self.assertEqual((row["problem"], row["compared_slots"]), ("", rows[1]["compared_slots"]))
             self.assertAlmostEqual(row["megabits_per_second"], rows[1]["megabits_per_second"],
                                    delta=0.07 * rows[1]["megabits_per_second"])
 

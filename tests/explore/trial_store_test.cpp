@@ -22,7 +22,8 @@ TrialOutcome outcome() {
              .limited_by = "link",
              .megabits_per_second = 0.1 + 0.2,  // of all digits
              .psnr_db = std::numeric_limits<double>::infinity(),
-             .decode_seconds = 1e-300},
+             .decode_seconds = 1e-300,
+             .compared_slots = "4:28"},
             {.rows = 1, .cols = 4, .channels = 1, .bytes = {1, 2, 3, 4}}};
 }
 
@@ -44,6 +45,7 @@ TEST_F(TrialStoreTest, FiguresComeBackAsTheyWere) {
         EXPECT_TRUE(before == after || (std::isnan(before) && std::isnan(after))) << column.name;
     }
     EXPECT_EQ(found->limited_by, "link");
+    EXPECT_EQ(found->compared_slots, "4:28");
     EXPECT_FALSE(store_.find("b"));
 }
 

@@ -28,7 +28,7 @@ class TrialTest : public testing::Test {
     /// The first point of a space of sensor `paper`.
     [[nodiscard]] static Trial trial_of(const std::string& axes, const std::string& set = "") {
         const Space space = space_of(axes, set);
-        return set_up_trial(space, space.point(0), light(space), space.frames);
+        return set_up_trial(space, space.point(0), light(space), space.frames, {4, 12});
     }
     [[nodiscard]] TrialFigures figures_of(const std::string& axes,
                                           const std::string& set = "") const {
@@ -50,7 +50,7 @@ class TrialTest : public testing::Test {
                            "space.toml");
     }
     [[nodiscard]] static TrialLight light(const Space& space) {
-        return read_light(space, "pan", keep_going);
+        return read_light(space, "pan", {}, keep_going);
     }
 };
 
@@ -94,35 +94,119 @@ TEST_F(TrialTest, FiguresAreThoseOfTheWholeRig) {
     EXPECT_EQ(both.slots_per_second, 200);  // slots of 5 ms
     EXPECT_DOUBLE_EQ(both.megabits_per_second, a.megabits_per_second + b.megabits_per_second);
     // Brightest in 1 slot of the share 0.2, darkest in 4 slots of the share 0.8.
-    EXPECT_NEAR(both.dynamic_range_stops - a.dynamic_range_stops, 4,
+    EXPECT_NEAR(both.sample_range_stops - a.sample_range_stops, 4,
                 1e-12);  // log2(0.8 4 / (0.2 1))
     EXPECT_TRUE(std::isnan(both.energy_uj_per_slot));
     for (const char* stream : {"a.stipple", "a.2.stipple"})
         EXPECT_FALSE(std::filesystem::exists(folder_ / stream)) << stream;
 }
 
-TEST_F(TrialTest, RivalsShareOneApertureAndTheBandwidthOfFramesOf4Slots) {
+TEST_F(TrialTest, RivalsShareOneApertureAndTheSamplesOfFramesOf4Slots) {
     Space space = parse_space(read_text(project_path("config/spaces/rivals.toml")), "rivals.toml");
     write_text(folder_ / "d.npy", dictionary_bytes(4));
     space.replace({"decoder.dictionary", {(folder_ / "d.npy").string()}});
     space.readout_sensor.clear();  // whose schedules of a large array take long
     const TrialLight light{FluxVideo(space.frames, {.rows = 32, .cols = 32}), {}};
-    int rigs = 0;
+    int rigs = 0, bounds = 0;
     for (std::uint64_t number = 0; number < space.size(); ++number) {
         const SpacePoint point = space.point(number);
-        const Trial trial = set_up_trial(space, point, light, space.frames);
+        const Trial trial = set_up_trial(space, point, light, space.frames, {4, 12});
         double share = 0, samples = 0;
         for (std::size_t i = 0; i < trial.setups.size(); ++i) {
             share += trial.rig.sensors[i].share;
-            samples += trial.setups[i].schedule.schedule.samples_per_pixel_slot();
+            samples += trial.setups[i].schedule.schedule.samples_per_pixel_slot() *
+                       static_cast<double>(trial.setups[i].shape.pixels()) /
+                       static_cast<double>(light.video.shape().pixels());
         }
         const std::string& system = space.value(point, "system");
         EXPECT_NEAR(share, 1, 1e-3) << system;  // a splitter loses some light
         const bool is_rig = trial.setups.size() > 1;
         rigs += is_rig ? 1 : 0;
-        EXPECT_NEAR(samples, 0.25, is_rig ? 1e-12 : 0.125 * 0.25 + 1e-12) << system;
+        const bool is_bound = system.find("4 x samples") != std::string::npos;
+        bounds += is_bound ? 1 : 0;
+        EXPECT_NEAR(samples, is_bound ? 1 : 0.25, is_rig ? 1e-12 : 0.125 * 0.25 + 1e-12) << system;
     }
     EXPECT_EQ(rigs, 4);
+    EXPECT_EQ(bounds, 2);
+}
+
+/// Light 0.25, but 1.5 in the first and the last quarter of the rows.
+TrialLight framed_light() {
+    TrialLight light{FluxVideo(12, {16, 24, 1}), {}};
+    std::ranges::fill(light.video.data(), 0.25F);
+    for (int slot = 0; slot < 12; ++slot)
+        for (const int row : {0, 1, 2, 3, 12, 13, 14, 15})
+            std::ranges::fill(light.video.plane(slot, 0).row(row), 1.5F);
+    return light;
+}
+
+TEST_F(TrialTest, ABinnedSensorAndAWindowReadAQuarterOfTheSamples) {
+    const TrialLight light = framed_light();
+    const auto trial_of_view = [&](const std::string& axes) {
+        const Space space =
+            parse_space("[axes]\nsensor = 'ideal'\nschedule = 'full1x'\nmethod = 'naive'\n" + axes +
+                            "[set]\n'schedule.period_slots' = 1\n[readout]\nsensor = 'lux1310'\n",
+                        "space.toml");
+        return set_up_trial(space, space.point(0), light, 12, {4, 8});
+    };
+    const auto figures = [&](const std::string& axes) {
+        return run_trial(trial_of_view(axes), light, folder_ / "a.stipple", keep_going).figures;
+    };
+    const TrialFigures whole = figures("");
+    const TrialFigures binned = figures("binning = 2\n");
+    const TrialFigures window = figures("window_rows = 0.25\n");
+    EXPECT_EQ(whole.samples_per_voxel, 1);
+    for (const TrialFigures& part : {binned, window}) {
+        EXPECT_EQ(part.samples_per_voxel, 0.25);
+        EXPECT_EQ(part.light_throughput, 1);
+        EXPECT_NEAR(part.megabits_per_second, whole.megabits_per_second / 4, 1e-9);
+        EXPECT_GT(part.readout_slots_per_second, 3 * whole.readout_slots_per_second);
+    }
+    EXPECT_EQ(binned.field_of_view, 1);
+    EXPECT_EQ(window.field_of_view, 0.25);
+    // The window is flat. Of the binned frame the edges are not, by far less than they are high.
+    EXPECT_GT(window.psnr_db, 80);
+    EXPECT_GT(binned.psnr_db, 10);
+    EXPECT_LT(binned.psnr_db, 40);
+    EXPECT_EQ(window.compared_slots, "4:8");
+    const SensorParams params = trial_of_view("binning = 2\n").setups.front().params;
+    EXPECT_EQ(params.photons_per_unit, 4000);
+    EXPECT_NE(trial_of_view("binning = 2\n").identity, trial_of_view("").identity);
+    EXPECT_NE(trial_of_view("window_rows = 0.25\n").identity, trial_of_view("").identity);
+}
+
+TEST_F(TrialTest, OnlyTheComparedSlotsCount) {
+    TrialLight light = framed_light();
+    const Space space = parse_space(
+        "[axes]\nsensor = 'ideal'\nschedule = 'full4x'\nmethod = 'naive'\n", "space.toml");
+    // A flash in the last frame, which the decoder spreads over 4 slots.
+    std::ranges::fill(light.video.frame(9), 1.0F);
+    const auto psnr = [&](ComparedSlots compared) {
+        const Trial trial = set_up_trial(space, space.point(0), light, 12, compared);
+        return run_trial(trial, light, folder_ / "a.stipple", keep_going).figures.psnr_db;
+    };
+    EXPECT_GT(psnr({0, 8}), 80);
+    EXPECT_LT(psnr({0, 9}), 40);
+    EXPECT_LT(psnr({11, 12}), 20);
+}
+
+TEST_F(TrialTest, CodeHasABitForEachPixelUnlessRowsExposeAlike) {
+    const auto code = [&](const std::string& schedule) {
+        return figures_of("method = 'naive'\nschedule = '" + schedule + "'\n")
+            .code_megabits_per_second;
+    };
+    EXPECT_DOUBLE_EQ(code("random"), 1e-6 * 16 * 24 * 200);
+    for (const char* schedule : {"full1x", "rolling", "coded_rolling_shutter_exposure"})
+        EXPECT_EQ(code(schedule), 0) << schedule;
+}
+
+TEST_F(TrialTest, OptionsOfReadingAreOfFootageInFiles) {
+    const Space space = parse_space("[axes]\nsensor = 'paper'\n", "space.toml");
+    FootageOptions reading;
+    reading.part.bin = 2;
+    expect_parts(
+        message_of<InputError>([&] { (void)read_light(space, "pan", reading, keep_going); }),
+        {"pan: is an embedded scene", "stipple synth"});
 }
 
 TEST_F(TrialTest, TheSlowestReadoutOfARigLimitsItAndEnergiesAdd) {
@@ -134,8 +218,8 @@ TEST_F(TrialTest, TheSlowestReadoutOfARigLimitsItAndEnergiesAdd) {
                             "[clip]\nframes = 12\nrows = 32\ncols = 64\n"
                             "[readout]\nrows = 1024\ncols = 1280\n",
                         "space.toml");
-        const TrialLight light = read_light(space, "pan", keep_going);
-        const Trial trial = set_up_trial(space, space.point(0), light, space.frames);
+        const TrialLight light = read_light(space, "pan", {}, keep_going);
+        const Trial trial = set_up_trial(space, space.point(0), light, space.frames, {4, 8});
         return run_trial(trial, light, folder_ / "a.stipple", keep_going).figures;
     };
     const std::string rig =

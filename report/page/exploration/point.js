@@ -36,6 +36,7 @@ function showPoint() {
   element('point-place').textContent = nameOf(row);
   const figures = data.columns.map((column, i) => [column.title, shown(row.figures[i])]);
   if (row.limited_by) figures.push(['rate is limited by', row.limited_by]);
+  if (row.compared_slots) figures.push(['slots compared', row.compared_slots]);
   if (data.rungs.length > 1 && row.rung)
     figures.push(['last rung', `${row.rung} of ${data.rungs.length}, ${counted(row.slots, 'slot')}`]);
   const properties = data.axes.map((name, i) => [name, row.values[i]]).filter(([, value]) => value !== '');
