@@ -20,6 +20,7 @@ nlohmann::ordered_json figures_of(const Exploration& exploration, bool has_budge
     const auto [run, known, failed] = exploration.counts();
     nlohmann::ordered_json figures{
         {"points", exploration.space().size()}, {"run", run}, {"known", known}, {"failed", failed}};
+    if (exploration.seeds() > 1) figures["seeds"] = exploration.seeds();
     if (has_budget) {
         figures["rung_slots"] = exploration.rungs();
         figures["spent"] = exploration.spent();
@@ -98,6 +99,7 @@ void add_explore(Command& app, Action& action) {
         .input();
     add_results(command, arguments->results);
     add_reading(command, arguments->options.reading);
+    add_seeds(command, arguments->options.seeds);
     add_budget(command, arguments->options);
     command.add_flag("--no-report", arguments->no_report, "leave out report.html");
     add_threads(command, action.options);
@@ -109,8 +111,9 @@ void add_explore(Command& app, Action& action) {
         "A second run does only what is new. A point that cannot be run is a row with the reason;\n"
         "the exit code is 1 if no point could be run.");
     set_action(command, action, arguments, explore, [command, arguments] {
-        if (!arguments->options.budget)
-            command.refuse({"--rank"}, "is of --budget; add that or leave this out");
+        if (!arguments->options.budget && arguments->options.seeds == 1)
+            command.refuse({"--rank"},
+                           "is of --budget and --seeds; add one of them or leave this out");
     });
 }
 

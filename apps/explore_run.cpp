@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
@@ -28,11 +29,26 @@ bool keep_going() {
     return stop_signal() == 0;
 }
 
+/// The values of a trial that others have not, as "random, 8".
+std::string name_of(const Exploration& exploration, std::uint64_t number) {
+    const std::vector<SpaceAxis>& axes = exploration.space().axes;
+    const SpacePoint values = exploration.values_of(number);
+    std::string name;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const bool is_seed = axes[i].name == "seed";
+        const bool varies = axes[i].values.size() > 1 || (is_seed && exploration.seeds() > 1);
+        if (!varies || values[i].empty()) continue;
+        name += (name.empty() ? "" : ", ") + (is_seed ? "seed " + values[i] : values[i]);
+    }
+    return name;
+}
+
 /// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
-void run_point(Exploration& exploration, std::uint64_t number) {
+void run_point(Exploration& exploration, std::uint64_t number, Progress& progress) {
     const Trial* const trial = exploration.begin(number);
     for (const std::string& warning : exploration.take_warnings()) say_warning(warning);
-    if (trial == nullptr) return;
+    if (trial == nullptr) return progress.skip();
+    progress.note("now " + name_of(exploration, number));
     try {
         const auto stream = exploration.store().stream_of(trial->identity);
         exploration.put(number, run_trial(*trial, exploration.light(), stream, keep_going));
@@ -40,6 +56,7 @@ void run_point(Exploration& exploration, std::uint64_t number) {
         if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
         exploration.fail(number, e.what());
     }
+    progress.advance();
 }
 
 /// Until all is done, or a signal asks to stop.
@@ -48,8 +65,7 @@ void run_points(Exploration& exploration, Progress& progress) {
         while (exploration.next_rung())
             for (const std::uint64_t number : exploration.due()) {
                 if (!keep_going()) return;
-                run_point(exploration, number);
-                progress.advance();
+                run_point(exploration, number, progress);
             }
     } catch (const TrialStopped&) {
         // What is done stays done.
@@ -69,6 +85,17 @@ void add_results(Command& command, std::string& results) {
         .output();
 }
 
+void add_seeds(Command& command, int& seeds) {
+    constexpr int kMaxSeeds = 1000;
+    command
+        .add_option("--seeds", seeds,
+                    "trials of each point, with its seed of noise and schedule and those after it: "
+                    "means, intervals and tied ranks")
+        .type_name("N")
+        .check(whole_check(1, kMaxSeeds))
+        .shows_default();
+}
+
 void add_reading(Command& command, FootageOptions& reading) {
     add_footage_arguments(command, reading);
     add_part_arguments(command, reading);
@@ -81,10 +108,13 @@ Exploration explored(const ExploreRun& what, const RunOptions& run) {
     run.say(fmt::format("{}: {}", what.space, counted(exploration.space().size(), "point")));
     {
         Progress progress(run, "exploring", static_cast<std::int64_t>(exploration.most_trials()),
-                          "point");
+                          "trial");
         run_points(exploration, progress);
     }
+    exploration.rank_points();
     exploration.store().write("table.csv", csv_table(exploration));
+    if (const std::string table = footage_table(exploration); !table.empty())
+        exploration.store().write("footage.csv", table);
     if (!what.no_report) {
         exploration.store().write("report.html",
                                   results_page(exploration, page_title(what), own_command()));

@@ -18,6 +18,9 @@ struct ExploreRun {
 /// The option -o RESULTS.
 void add_results(Command& command, std::string& results);
 
+/// The option --seeds.
+void add_seeds(Command& command, int& seeds);
+
 /// How the footage of all points is read.
 void add_reading(Command& command, FootageOptions& reading);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -27,6 +28,7 @@ struct RivalsArguments {
     std::string space = "rivals";
     std::string sensor = {};  ///< empty: that of the space
     FootageOptions reading = {};
+    int seeds = 1;
     std::vector<std::string> systems = {};  ///< empty: all
     std::string dictionary = {};            ///< empty: that of the space
 };
@@ -64,6 +66,15 @@ std::string legend_of(const Exploration& exploration) {
     return {};
 }
 
+/// What seeds add to it.
+std::string legend_of_seeds(int seeds) {
+    if (seeds == 1) return {};
+    return fmt::format(
+        "\nmeans of {} seeds, +- half of the 95 % interval; rank: by PSNR, = where the paired\n"
+        "differences do not tell which is better",
+        seeds);
+}
+
 /// The system of each point; of a space without systems the values that differ.
 std::vector<std::string> names_of(const Space& space) {
     std::vector<std::string> names;
@@ -79,25 +90,46 @@ std::vector<std::string> names_of(const Space& space) {
     return names;
 }
 
+bool has_interval(const RivalColumn& column) {
+    return std::ranges::any_of(kFigureColumns, [&](const FigureColumn& known) {
+        return known.value == column.value && has_interval(known);
+    });
+}
+
+int width_of(const RivalColumn& column, const Exploration& exploration) {
+    return exploration.seeds() > 1 && has_interval(column) ? 12 : 8;
+}
+
+/// "30.42", of several seeds "30.42 +-0.69".
+std::string figure_text(const ExploredPoint& point, const RivalColumn& column) {
+    if (!point.figures) return "-";
+    const double value = point.figures.value().*column.value;
+    if (std::isnan(value)) return "-";
+    std::string text = fmt::format("{:.{}f}", column.scale * value, column.digits);
+    if (point.trials.size() == 1 || !has_interval(column)) return text;
+    const MeanInterval interval = mean_interval(samples_of(point.trials, column.value));
+    if (!std::isnan(interval.low))
+        text += fmt::format(" +-{:.{}f}", (interval.high - interval.low) / 2, column.digits);
+    return text;
+}
+
 std::string table_of(const Exploration& exploration) {
     const std::vector<std::string> names = names_of(exploration.space());
     const std::size_t width = column_width(names, [](const std::string& name) { return name; });
     std::string text(width, ' ');
-    for (const RivalColumn& column : kColumns) text += fmt::format("  {:>8}", column.heading);
+    if (exploration.seeds() > 1) text += "  rank";
+    for (const RivalColumn& column : kColumns)
+        text += fmt::format("  {:>{}}", column.heading, width_of(column, exploration));
     for (std::size_t number = 0; number < names.size(); ++number) {
         const ExploredPoint& point = exploration.points()[number];
         text += fmt::format("\n{:<{}}", names[number], width);
-        for (const RivalColumn& column : kColumns) {
-            const double value =
-                point.figures ? point.figures.value().*column.value : TrialFigures::kNone;
-            text += fmt::format("  {:>8}",
-                                std::isnan(value)
-                                    ? "-"
-                                    : fmt::format("{:.{}f}", column.scale * value, column.digits));
-        }
+        if (exploration.seeds() > 1) text += fmt::format("  {:>4}", text_of(point.rank));
+        for (const RivalColumn& column : kColumns)
+            text +=
+                fmt::format("  {:>{}}", figure_text(point, column), width_of(column, exploration));
         if (!point.problem.empty()) text += "  " + point.problem;
     }
-    return text + legend_of(exploration);
+    return text + legend_of(exploration) + legend_of_seeds(exploration.seeds());
 }
 
 nlohmann::ordered_json json_of(const TableValue& value) {
@@ -129,6 +161,7 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
         .title = "Rivals: " + std::filesystem::path(arguments.footage).filename().string(),
         .options = {}};
     what.options.reading = arguments.reading;
+    what.options.seeds = arguments.seeds;
     what.options.replaced = {{"footage", {arguments.footage}}};
     if (!arguments.sensor.empty()) what.options.replaced.push_back({"sensor", {arguments.sensor}});
     if (!arguments.systems.empty()) what.options.replaced.push_back({"system", arguments.systems});
@@ -153,6 +186,7 @@ void add_rivals(Command& app, Action& action) {
         .input();
     add_results(command, arguments->results);
     add_reading(command, arguments->reading);
+    add_seeds(command, arguments->seeds);
     command
         .add_option("--sensor", arguments->sensor,
                     "sensor of the systems, of \"stipple list sensors\"")

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "explore/budget.h"
+#include "explore/mean_interval.h"
 #include "explore/space.h"
+#include "explore/tied_ranks.h"
 #include "explore/trial.h"
 #include "explore/trial_store.h"
 
@@ -19,22 +21,41 @@ struct ExploreOptions {
     std::vector<SpaceAxis> replaced;  ///< axes with other values than in the space
     FootageOptions reading = {};      ///< of all footage
     bool force = false;               ///< run trials again that RESULTS has
+    int seeds = 1;                    ///< trials of a point: with its seed, the next one ...
     std::optional<Budget> budget;     ///< none: each point with the whole clip
     /// Name of the column by which points are ranked after a rung; empty: by dominance in rate, dB
     /// and energy.
     std::string rank;
 };
 
+/// What is known of a trial.
+struct SeedTrial {
+    int slots;
+    ComparedSlots compared;  ///< of these
+    TrialFigures figures;
+    std::string address;  ///< in the store
+};
+
 /// A row of the table.
 struct ExploredPoint {
-    bool touched = false;    ///< false: not reached yet
-    int rung = 0;            ///< the last one that it was tried in, from 1
-    int slots = 0;           ///< of the last trial
-    ComparedSlots compared;  ///< of these
-    std::optional<TrialFigures> figures;
-    std::string problem;  ///< why there are none, or none of a later rung
-    std::string address;  ///< of the trial of `figures` in the store
+    bool touched = false;                 ///< false: not reached yet
+    int rung = 0;                         ///< whose clip the figures are of, from 1
+    int slots = 0;                        ///< of the trials
+    ComparedSlots compared;               ///< of these
+    std::optional<TrialFigures> figures;  ///< means over the seeds
+    std::vector<SeedTrial> trials;        ///< of the seeds, in their order
+    Rank rank;                            ///< of rank_points()
+    std::string problem;                  ///< why there are no figures, or none of a later rung
 };
+
+/// A figure of each of the trials.
+[[nodiscard]] std::vector<double> samples_of(const std::vector<SeedTrial>& trials,
+                                             double TrialFigures::*figure);
+
+/// Whether intervals of this figure are told: it varies with the noise.
+[[nodiscard]] inline bool has_interval(const FigureColumn& column) {
+    return column.name.ends_with("_db");
+}
 
 /// Numbers of trials.
 struct ExploreCounts {
@@ -43,8 +64,9 @@ struct ExploreCounts {
     std::uint64_t failed = 0;  ///< points that have a problem
 };
 
-/// The points of a space, rung by rung, and what is known of them. Whoever runs the trials asks for
-/// them and hands the outcomes back:
+/// The points of a space, rung by rung, and what is known of them. A trial is a point with one of
+/// its seeds; with one seed a point, it has the number of its point. Whoever runs the trials asks
+/// for them and hands the outcomes back:
 ///
 ///     while (exploration.next_rung())
 ///         for (std::uint64_t number : exploration.due())
@@ -58,10 +80,10 @@ class Exploration {
 
     /// Begins the first rung, or the next one with the better points; false: there is none.
     bool next_rung();
-    /// The points of the rung.
+    /// The trials of the rung.
     [[nodiscard]] const std::vector<std::uint64_t>& due() const { return due_; }
-    /// The trial of a due point in this rung, valid until the next call; null if it need not run:
-    /// because RESULTS has it, it cannot be set up, or the budget is spent. \throws TrialStopped.
+    /// A due trial, valid until the next call; null if it need not run: because RESULTS has it, its
+    /// point cannot be set up, or the budget is spent. \throws TrialStopped.
     [[nodiscard]] const Trial* begin(std::uint64_t number);
     /// The trial of the last `begin` that did not return null, and its light.
     [[nodiscard]] const Trial& trial() const { return *trial_; }
@@ -72,15 +94,23 @@ class Exploration {
     [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     /// What determines a trial that was begun. Precondition: neither `put` nor `fail` was called.
     [[nodiscard]] const std::string& identity(std::uint64_t number) const {
-        return begun_.at(number);
+        return begun_.at(number).identity;
     }
     /// Stores the outcome of a trial that was begun. \throws DeviceError.
     void put(std::uint64_t number, const TrialOutcome& outcome);
     /// The trial could not be run.
     void fail(std::uint64_t number, const std::string& problem);
+    /// Ranks the points of the last rung that any has reached, those of each footage by themselves:
+    /// by psnr_db, or the column of the options. None with one seed a point.
+    void rank_points();
 
     [[nodiscard]] const Space& space() const { return space_; }
     [[nodiscard]] const FootageOptions& reading() const { return options_.reading; }
+    [[nodiscard]] int seeds() const { return options_.seeds; }
+    /// The values of the point of a trial, with its seed.
+    [[nodiscard]] SpacePoint values_of(std::uint64_t number) const;
+    /// The last rung that a point has figures of; 0: none.
+    [[nodiscard]] int last_rung() const;
     [[nodiscard]] const std::string& space_text() const { return text_; }
     [[nodiscard]] const TrialStore& store() const { return store_; }
     [[nodiscard]] const std::vector<ExploredPoint>& points() const { return points_; }
@@ -94,15 +124,34 @@ class Exploration {
     /// Trials of all rungs, at most.
     [[nodiscard]] std::uint64_t most_trials() const;
     /// Whether the footage of a point has no more slots than these.
-    [[nodiscard]] bool is_whole(std::uint64_t number, int slots) const;
+    [[nodiscard]] bool is_whole(std::uint64_t point, int slots) const;
     /// Numbers of the points with figures, best ones first.
     [[nodiscard]] std::vector<std::uint64_t> best_first() const;
 
   private:
-    void take(std::uint64_t number, const std::string& identity, const TrialFigures& figures);
+    using Figures = std::map<std::uint64_t, TrialFigures>;  ///< by the number of the point
+
+    struct Begun {
+        std::string identity;
+        int slots;
+        ComparedSlots compared;
+    };
+
+    void take(std::uint64_t number, SeedTrial trial);
+    void show(std::uint64_t number, int rung, std::vector<SeedTrial> trials);
+    void find_whole(std::uint64_t number);
+    [[nodiscard]] Trial trial_of(std::uint64_t number, int slots);
+    [[nodiscard]] ExploredPoint& point_of(std::uint64_t number) {
+        return points_[number / seed_count()];
+    }
+    [[nodiscard]] bool has_whole(const ExploredPoint& point) const {
+        return point.rung == static_cast<int>(rungs_.size());
+    }
+    [[nodiscard]] std::uint64_t seed_count() const {
+        return static_cast<std::uint64_t>(options_.seeds);
+    }
     [[nodiscard]] std::vector<std::uint64_t> better_half() const;
-    [[nodiscard]] std::vector<std::uint64_t> by_rank(
-        const std::vector<std::uint64_t>& numbers) const;
+    [[nodiscard]] std::vector<std::uint64_t> by_rank(const Figures& figures) const;
     void use_light(const std::string& footage);
 
     ExploreOptions options_;
@@ -113,6 +162,9 @@ class Exploration {
     std::vector<int> rungs_;
     std::size_t rung_ = 0;  ///< the present one, from 1
     std::vector<std::uint64_t> due_;
+    Figures tried_;  ///< the points that have all trials of this rung
+    /// The trials of this rung that are known, by point and seed.
+    std::map<std::uint64_t, std::map<std::uint64_t, SeedTrial>> known_trials_;
     std::vector<ExploredPoint> points_;
     double spent_ = 0;
     std::uint64_t run_ = 0;
@@ -123,7 +175,7 @@ class Exploration {
     std::map<int, ComparedSlots> compared_;  ///< of light_, by the number of its slots
     std::vector<std::string> warnings_;
     std::optional<Trial> trial_;
-    std::map<std::uint64_t, std::string> begun_;  ///< identities of trials that may be running
+    std::map<std::uint64_t, Begun> begun_;  ///< trials that may be running
 };
 
 }  // namespace stipple

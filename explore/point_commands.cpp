@@ -119,11 +119,14 @@ std::string point_space(const Space& space, const SpacePoint& point, const Point
 std::string point_commands(const Space& space, const SpacePoint& point, const PointClip& clip) {
     const std::string reading =
         is_scene(space.value(point, "footage")) ? "" : options_of(clip.reading);
+    const std::string seeds = clip.seeds > 1 ? fmt::format(" --seeds {}", clip.seeds) : "";
     std::string text =
-        fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point{}\n",
-                    point_space(space, point, clip), reading);
+        fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point{}{}\n",
+                    point_space(space, point, clip), reading, seeds);
     if (clip.is_whole && has_steps(space, point))
-        text += "\n# the same step by step\n" + steps(space, point, clip);
+        text += fmt::format("\n# {} step by step\n",
+                            seeds.empty() ? "the same" : "that of the first seed") +
+                steps(space, point, clip);
     return text;
 }
 

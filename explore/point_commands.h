@@ -13,6 +13,7 @@ struct PointClip {
     ComparedSlots compared;       ///< of these; empty: not known
     bool is_whole;                ///< the footage has no more slots
     FootageOptions reading = {};  ///< of the footage
+    int seeds = 1;                ///< trials of the point
 };
 
 /// A point as a space of its own, TOML.

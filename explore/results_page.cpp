@@ -45,6 +45,19 @@ ordered_json figures_json(const TrialFigures& figures) {
     return list;
 }
 
+/// Half the width of the interval of each figure; null if it has none.
+ordered_json half_widths_json(const ExploredPoint& point) {
+    ordered_json list = ordered_json::array();
+    for (const FigureColumn& column : kFigureColumns) {
+        list.push_back(nullptr);
+        if (!has_interval(column) || point.trials.size() < 2) continue;
+        const MeanInterval interval = mean_interval(samples_of(point.trials, column.value));
+        const double half = interval.high - interval.mean;
+        if (std::isfinite(half)) list.back() = half;
+    }
+    return list;
+}
+
 /// The points of the page: the best ones, then those without figures.
 std::vector<std::uint64_t> shown_points(const Exploration& exploration, std::size_t most) {
     std::vector<std::uint64_t> shown = exploration.best_first();
@@ -80,22 +93,25 @@ ordered_json PageRows::row(std::uint64_t number) {
     const int slots = point.figures ? point.slots : space.frames;
     ordered_json row{{"number", number + 1}, {"values", values}};
     row["figures"] = figures_json(point.figures.value_or(TrialFigures()));
+    row["half_widths"] = half_widths_json(point);
+    row["rank"] = text_of(point.rank);
     row["limited_by"] = point.figures ? point.figures->limited_by : "";
     row["compared_slots"] = point.figures ? point.figures->compared_slots : "";
     row["rung"] = point.rung;
     row["slots"] = point.slots;
     row["problem"] = point.problem;
     const PointClip clip{slots, point.compared, exploration_.is_whole(number, slots),
-                         exploration_.reading()};
+                         exploration_.reading(), exploration_.seeds()};
     row["commands"] = point_commands(space, values, clip);
-    row["file"] = point.figures ? "trials/" + point.address + ".png" : "";
+    row["file"] = point.figures ? "trials/" + point.trials.front().address + ".png" : "";
     row["picture"] = picture(point);
     return row;
 }
 
 ordered_json PageRows::picture(const ExploredPoint& point) {
     if (!point.figures) return nullptr;
-    const std::vector<std::uint8_t> png = exploration_.store().picture(point.address);
+    const std::vector<std::uint8_t> png =
+        exploration_.store().picture(point.trials.front().address);
     if (png.empty()) return nullptr;
     std::string text = base64(png);
     if (text.size() > room_) {
@@ -119,6 +135,7 @@ std::string results_page(const Exploration& exploration, const std::string& titl
                       {"program", fmt::format("stipple {}", version())},
                       {"command", command},
                       {"points", points.size()},
+                      {"seeds", exploration.seeds()},
                       {"rungs", exploration.rungs()},
                       {"columns", columns_json()}};
     data["axes"] = ordered_json::array();

@@ -18,9 +18,15 @@ struct TableCell {
 };
 
 /// Point `number` in the columns of docs/explore.md: the values of its axes, its figures,
-/// `limited_by`, `rung`, `slots` and `problem`. A figure that does not exist is nothing.
+/// `limited_by`, `rung`, `slots` and `problem`; with several seeds the ends of intervals and the
+/// rank too. A figure that does not exist is nothing.
 [[nodiscard]] std::vector<TableCell> table_row(const Exploration& exploration,
                                                std::uint64_t number);
+
+/// The means over all footage, where there is more than one: a row for each combination of the
+/// other axes that all footage has on the last rung, with intervals and ranks over the footage, as
+/// RFC 4180 has it. Empty: there is one footage, or no such combination.
+[[nodiscard]] std::string footage_table(const Exploration& exploration);
 
 /// The points that were reached as RFC 4180 has it, the names of the columns first.
 [[nodiscard]] std::string csv_table(const Exploration& exploration);

@@ -67,6 +67,12 @@ void Progress::reach(double frames, std::int64_t complete) {
     done_at_s_ = seconds();
 }
 
+void Progress::skip() {
+    ++skipped_;
+    done_ = static_cast<double>(done_) + 1;
+    ++complete_;
+}
+
 void Progress::note(std::string text) {
     const std::lock_guard lock(note_mutex_);
     note_ = std::move(text);
@@ -113,8 +119,9 @@ std::string Progress::bar(std::size_t width) const {
 
 std::string Progress::pace() const {
     const double done = done_;
-    if (done <= 0) return {};
-    const double rate = done / done_at_s_;
+    const double worked = done - static_cast<double>(skipped_);
+    if (worked <= 0) return {};
+    const double rate = worked / done_at_s_;
     std::string text = fmt::format(", {} {}s/s", rounded(rate), unit_);
     if (!total_) return text;
     const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();

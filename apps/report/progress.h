@@ -27,6 +27,8 @@ class Progress {
 
     /// One more frame is done.
     void advance() { reach(static_cast<double>(done_) + 1); }
+    /// One more frame is there without work: it tells nothing of the time that others take.
+    void skip();
     /// So much work is done, in frames; `complete` of them are, and would be kept if it ended now.
     void reach(double frames, std::int64_t complete);
     void reach(double frames) { reach(frames, static_cast<std::int64_t>(frames)); }
@@ -56,6 +58,7 @@ class Progress {
     Clock::time_point start_;
     std::atomic<double> done_ = 0;
     std::atomic<std::int64_t> complete_ = 0;
+    std::atomic<std::int64_t> skipped_ = 0;
     std::atomic<double> done_at_s_ = 0;  ///< when `done_` was last set
     mutable std::mutex note_mutex_;
     std::string note_;

@@ -262,6 +262,24 @@ class ExplorePageTest(BrowserTest):
         rung = self.script("return rows.map((row) => row.rung)")
         self.assertEqual(rung, sorted(rung, reverse=True))
         self.assertEqual(rung.count(2), 4)
+        for down in (True, False):
+            order = self.script("choose({sort: {name: 'psnr_db', down: arguments[0]}});"
+                                "return sortedRows().map((row) => row.rung)", down)
+            self.assertEqual(order, sorted(rung, reverse=True))
+        dropped = len(self.browser.find_elements(By.CSS_SELECTOR, "#points-table tr.dropped"))
+        self.assertEqual(dropped, rung.count(1))
+        best = self.script("return [...frontierOf(rows, columnOf(state.x), columnOf('psnr_db')), ...unbeatenOf(rows)]"
+                                ".map((row) => row.rung)")
+        self.assertEqual(set(best), {2})
+
+    def test_seeds_have_intervals_and_ranks(self):
+        self.open_page(SPACE + "\n", "--seeds", "3")  # a space of its own, so that it is run
+        ranks = self.script("return inOrder.map((row) => row.rank)")
+        self.assertEqual(ranks, [row["rank"] for row in self.rows])
+        text = self.script("return columnOf('psnr_db').text(inOrder[0])")
+        half = (float(self.rows[0]["psnr_db_high"]) - float(self.rows[0]["psnr_db_low"])) / 2
+        self.assertAlmostEqual(float(text.split(" ± ")[1]), half, delta=0.06 * half)
+        self.assertIn("--seeds 3", self.script("return inOrder[0].commands"))
 
 
 if __name__ == "__main__":

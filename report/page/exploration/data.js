@@ -19,7 +19,9 @@ function axisColumn(name, index) {
 
 function figureColumn({name, title, more_is_better: more}, index) {
   const value = (row) => row.figures[index];
-  return {name, title, better: more ? 1 : -1, names: null, value, text: (row) => shown(value(row))};
+  const around = (half) => (half === null ? '' : ` ± ${shown(half, 2)}`);
+  const text = (row) => shown(value(row)) + around(row.half_widths[index]);
+  return {name, title, better: more ? 1 : -1, names: null, value, text};
 }
 
 const allColumns = [...data.axes.map(axisColumn), ...data.columns.map(figureColumn)];
@@ -44,6 +46,12 @@ function columnOf(name) {
 }
 
 const withFigures = rows.filter((row) => row.figures.some((value) => value !== null));
+const lastRung = Math.max(...rows.map((row) => row.rung));
+
+/** Whether the figures of a row are of a shorter clip than those of others, so that they cannot be compared with them. */
+function isDropped(row) {
+  return row.rung > 0 && row.rung < lastRung;
+}
 
 /** The properties that differ and that the row has, as "schedule tiled, sensor.bit_depth 8". */
 function nameOf(row) {

@@ -14,7 +14,7 @@ function rampColours() {
   const [from, to] = [partsOf('series-1'), partsOf('series-2')];
   return (row) => {
     const value = column.value(row);
-    if (value === null) return styleColour('quiet');
+    if (value === null || isDropped(row)) return styleColour('line');
     const share = high > low ? (value - low) / (high - low) : 0;
     return `rgb(${from.map((part, i) => Math.round(part + share * (to[i] - part))).join(' ')})`;
   };
@@ -23,7 +23,7 @@ function rampColours() {
 /** Rows that no other row equals or beats in both columns, by their x; none where a column has no better end. */
 function frontierOf(some, x, y) {
   if (!x.better || !y.better) return [];
-  const known = some.filter((row) => x.value(row) !== null && y.value(row) !== null);
+  const known = some.filter((row) => !isDropped(row) && x.value(row) !== null && y.value(row) !== null);
   known.sort((a, b) => x.better * (x.value(b) - x.value(a)) || y.better * (y.value(b) - y.value(a)));
   const frontier = [];
   for (const row of known) {
@@ -36,7 +36,7 @@ function frontierOf(some, x, y) {
 /** Rows that no other row equals or beats in all of the chosen columns with a better end, but in being the same. */
 function unbeatenOf(some) {
   const ends = [...new Set([state.x, state.y, state.z])].map(columnOf).filter((column) => column.better);
-  const known = some.filter((row) => ends.length && ends.every((column) => column.value(row) !== null));
+  const known = some.filter((row) => !isDropped(row) && ends.length && ends.every((column) => column.value(row) !== null));
   const scores = known.map((row) => ends.map((column) => column.better * column.value(row)));
   const beats = (a, b) => a.every((score, i) => score >= b[i]) && a.some((score, i) => score > b[i]);
   return new Set(known.filter((_, i) => !scores.some((other) => beats(other, scores[i]))));
@@ -107,7 +107,8 @@ function showFrontier() {
   const line = best.length === 0 ? 'One of the axes has no better end, so there is no frontier.' :
     `The line joins the ${counted(best.length, 'point')} (${best.map((row) => row.number).sort((a, b) => a - b).join(', ')}) ` +
     `that no other one beats: ${end(x)}; ${end(y)}.`;
-  element('frontier-hint').textContent = `${line} Larger points are unbeaten with the colour too. A click chooses a point.`;
+  element('frontier-hint').textContent = `${line} Larger points are unbeaten with the colour too. A click chooses a point.` +
+    (rows.some(isDropped) ? ' Grey points were dropped on a shorter clip.' : '');
 }
 
 function setUpFrontier() {

@@ -10,9 +10,10 @@ function showHeader() {
   const failed = rows.filter((row) => row.problem).length;
   if (failed) facts.push(['With a problem', `${failed}`]);
   if (data.rungs.length > 1) facts.push(['Slots of the rungs', data.rungs.join(', ')]);
-  const best = columnOf('psnr_db');
-  const {low, high, count} = rangeOf(best);
-  if (count) facts.push(['PSNR', low < high ? `${low.toFixed(1)} to ${high.toFixed(1)} dB` : `${low.toFixed(1)} dB`]);
+  if (data.seeds > 1) facts.push(['Seeds of a point', `${data.seeds}`]);
+  const compared = withFigures.filter((row) => !isDropped(row)).map(columnOf('psnr_db').value).filter((value) => value !== null);
+  const [low, high] = [Math.min(...compared), Math.max(...compared)];
+  if (compared.length) facts.push(['PSNR', low < high ? `${low.toFixed(1)} to ${high.toFixed(1)} dB` : `${low.toFixed(1)} dB`]);
   element('facts').replaceWith(termList(facts, 'facts'));
   element('notes').hidden = data.notes.length === 0;
   element('notes').replaceChildren(...data.notes.map((note) => made('li', {}, note)));

@@ -34,7 +34,8 @@ function showPoint() {
   element('previous').disabled = at <= 0;
   element('next').disabled = at === order.length - 1;
   element('point-place').textContent = nameOf(row);
-  const figures = data.columns.map((column, i) => [column.title, shown(row.figures[i])]);
+  const figures = data.columns.map(({name, title}) => [title, columnOf(name).text(row)]);
+  if (row.rank) figures.push(['rank', row.rank]);
   if (row.limited_by) figures.push(['rate is limited by', row.limited_by]);
   if (row.compared_slots) figures.push(['slots compared', row.compared_slots]);
   if (data.rungs.length > 1 && row.rung)

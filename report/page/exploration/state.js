@@ -32,9 +32,14 @@ function chooseRange(name, range) {
   choose({ranges});
 }
 
-/** The chosen rows in the order of the table: best first, or by a column; rows without a value last. */
+/** The chosen rows in the order of the table: best first, or by a column; rows without a value last. Dropped
+ * points lie below the others. */
 function sortedRows() {
-  const chosen = chosenRows();
+  const sorted = sortedAlike(chosenRows());
+  return [...sorted.filter((row) => !isDropped(row)), ...sorted.filter(isDropped)];
+}
+
+function sortedAlike(chosen) {
   const column = columnOf(state.sort.name);
   if (!column && state.sort.name !== 'number') return chosen;
   const value = column ? column.value : (row) => row.number;

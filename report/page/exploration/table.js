@@ -8,6 +8,7 @@ const tableColumns = (() => {
   const text = (name, of) => ({name, better: 0, text: of, plain: true});
   const list = columns.map((column) => column);
   if (new Set(rows.map((row) => row.limited_by)).size > 1) list.push(text('limited_by', (row) => row.limited_by));
+  if (data.seeds > 1) list.unshift(text('rank', (row) => row.rank));
   if (data.rungs.length > 1) list.push({name: 'rung', better: 0, text: (row) => (row.rung ? `${row.rung}` : '–'), plain: true});
   if (rows.some((row) => row.problem)) list.push(text('problem', (row) => row.problem));
   return list;
@@ -29,7 +30,8 @@ function heading(column) {
 
 function tableRow(row) {
   const button = made('button', {type: 'button', 'aria-label': `show point ${row.number}`}, `${row.number}`);
-  const line = made('tr', row === state.point ? {class: 'chosen'} : {}, made('td', {}, button),
+  const marks = [row === state.point && 'chosen', isDropped(row) && 'dropped'].filter(Boolean).join(' ');
+  const line = made('tr', {class: marks}, made('td', {}, button),
                     ...tableColumns.map((column) => made('td', {class: column.name}, column.text(row))));
   line.dataset.number = row.number;
   line.addEventListener('click', () => choose({point: row}));
