@@ -147,11 +147,11 @@ class InfoTest(CameraFilesTest):
                     "tiled.mem")
 
     def test_spaces_of_explore(self):
-        figures = self.expect({"kind": "space", "points": 43, "frames": 36,
+        figures = self.expect({"kind": "space", "points": 46, "frames": 36,
                                "scene": {"width": 128, "height": 96, "planes": 1},
                                "readout": {"width": None, "height": None, "sensor": "lux1310"}}, "rivals")
         axes = {axis["name"]: axis["values"] for axis in figures["axes"]}
-        self.assertEqual((axes["sensor"], len(axes["system"])), (["paper_black"], 43))
+        self.assertEqual((axes["sensor"], len(axes["system"])), (["paper_black"], 46))
         self.assertNotIn("method", axes, "the systems set it")
         self.assertEqual(figures["systems"][0],
                          {"name": "coded best", "values": {"schedule": "random", "method": "best"}})
