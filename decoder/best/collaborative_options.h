@@ -59,7 +59,7 @@ struct CollaborativeOptions {
     float min_light = 0;      ///< minimum of the light, flux; at least -offset
     /// Residual feedback: r <- decay r + gain part (y - A x), with the part of residual_gain.h;
     /// y + r replaces the samples y.
-    float residual_gain = 0.46F;
+    float residual_gain = 0.25F;
     float residual_decay = 0.9F;
     float data_step = 1;    ///< step size of the data-consistency step / (sigma^2 (x + offset))
     float momentum = 0.6F;  ///< beta of x + beta (x - x_previous)
