@@ -91,16 +91,18 @@ void demo(const DemoOptions& options, const RunOptions& run) {
                 {"planes", truth.shape().planes},
                 {"seconds", elapsed.count()},
                 {"trials", trials_json(results)}});
-    run.say(
-        fmt::format("Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
-                    "In {}:\n"
-                    "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
-                    "  report.html             the middle of it as an interactive page\n"
-                    "  decoded.mp4             decoded video, tone-mapped\n"
-                    "  decoded/                the same as EXR, linear light\n"
-                    "  random.stipple          the sample stream of this video",
-                    options.scene, truth.slots(), truth.shape().cols, truth.shape().rows,
-                    elapsed.count(), trials_table(results), folder.string()));
+    run.say(fmt::format(
+        "Scene \"{}\": {} slots of 1/200 s, {} x {} RGB, {:.0f} s\n\n{}\n\n"
+        "Coded exposure pays where fine detail moves fast. Where a scene has little detail or\n"
+        "bright light, binned or short frames do as well (\"stipple rivals\").\n\n"
+        "In {}:\n"
+        "  side_by_side_1.png ...  as in the table, then the truth; tone-mapped\n"
+        "  report.html             the middle of it as an interactive page\n"
+        "  decoded.mp4             decoded video, tone-mapped\n"
+        "  decoded/                the same as EXR, linear light\n"
+        "  random.stipple          the sample stream of this video",
+        options.scene, truth.slots(), truth.shape().cols, truth.shape().rows, elapsed.count(),
+        trials_table(results), folder.string()));
 }
 
 }  // namespace

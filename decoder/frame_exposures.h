@@ -29,8 +29,8 @@ struct FrameExposure {
 /// True if all have the same number of slots and of open slots.
 [[nodiscard]] bool equally_long(std::span<const FrameExposure> exposures);
 
-/// The frames as `shared_exposures`, but nothing without samples, and if exposures are weighted or not
-/// equally long.
+/// The frames as `shared_exposures`, but nothing without samples, and if exposures are weighted or
+/// not equally long.
 [[nodiscard]] std::optional<std::vector<FrameExposure>> frame_exposures(
     const Measurements& measurements);
 

@@ -69,8 +69,8 @@ class FootageReader {
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,
     /// column and plane) if a frame is unreadable, truncated, of another size, or holds NaN,
-    /// infinite light, or negative light that the options do not take, or if the source ends before the
-    /// part does.
+    /// infinite light, or negative light that the options do not take, or if the source ends before
+    /// the part does.
     bool read(std::span<float> frame);
     /// Leaves out the next `frames` frames, unchecked; where the source cannot seek, they are read.
     /// \throws InputError as `read`.

@@ -1,5 +1,6 @@
 """Each check finds the faults of small made-up trees, and nothing in sound ones."""
 
+import re
 import shutil
 import tempfile
 import unittest
@@ -16,6 +17,7 @@ import listed
 import modules
 import packages
 import quoted_messages
+import rivals_prose
 import sizes
 import tested
 import words
@@ -226,6 +228,13 @@ class ChecksTest(unittest.TestCase):
         self.assertEqual(len(self.findings(packages.check, sound | {"core/a.cpp": ""})), 1)
         sound["CMakeLists.txt"] = "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n"
         self.assertEqual(len(self.findings(packages.check, sound)), 2)
+
+    def test_conclusions_on_rivals_have_the_figures_of_their_table(self):
+        page = (Path(__file__).parents[2] / rivals_prose.PAGE).read_text(encoding="utf-8")
+        self.assertEqual(self.findings(rivals_prose.check, {rivals_prose.PAGE: page}), [])
+        for begin in ("samples costs ", "on `mouse250_b` by ", "`hardware_tiled` at "):
+            changed = re.sub(begin + r"[\d.]+", begin + "99", page)
+            self.assertEqual(len(self.findings(rivals_prose.check, {rivals_prose.PAGE: changed})), 1, begin)
 
     def test_the_citation_has_its_keys_and_the_version_of_the_project(self):
         keys = "cff-version: 1.2.0\nmessage: m\ntitle: t\nauthors:\n  - name: a\nlicense: l\n"

@@ -12,11 +12,12 @@ namespace {
 /// A point as a space of its own has the same values.
 void check_point(const Space& space, std::uint64_t number) {
     const SpacePoint point = space.point(number);
-    const Space one = parse_space(point_space(space, point, space.frames), "point.toml");
+    const PointClip clip{.slots = space.frames, .compared = {}, .is_whole = true};
+    const Space one = parse_space(point_space(space, point, clip), "point.toml");
     require(one.size() == 1);
     for (const SpaceAxis& axis : space.axes)
         require(one.value(one.point(0), axis.name) == space.value(point, axis.name));
-    static_cast<void>(point_commands(space, point, space.frames, true));
+    static_cast<void>(point_commands(space, point, clip));
 }
 
 }  // namespace
