@@ -109,7 +109,7 @@ void FieldCollector::add(const SamplePacket& packet) {
                 if (sums == first) ++alike;
                 for (int plane = 0; plane < shape.planes; ++plane) take(*sums, plane, row, col);
             });
-        if (alike == shape.cols) add_row(row, {begin, dn}, *first);
+        if (first != nullptr && alike == shape.cols) add_row(row, {begin, dn}, *first);
     }
 }
 

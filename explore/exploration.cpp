@@ -64,6 +64,7 @@ TrialFigures means_of(const std::vector<SeedTrial>& trials) {
 
 std::vector<double> samples_of(const std::vector<SeedTrial>& trials, double TrialFigures::*figure) {
     std::vector<double> samples;
+    samples.reserve(trials.size());
     for (const SeedTrial& trial : trials) samples.push_back(trial.figures.*figure);
     return samples;
 }

@@ -58,6 +58,7 @@ std::vector<double> footage_samples(const Exploration& exploration,
                                     const std::vector<std::uint64_t>& numbers,
                                     double TrialFigures::*figure) {
     std::vector<double> samples;
+    samples.reserve(numbers.size());
     for (const std::uint64_t number : numbers)
         samples.push_back(exploration.points()[number].figures.value().*figure);
     return samples;

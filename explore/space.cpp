@@ -42,6 +42,7 @@ constexpr std::array<NamedAxis, 9> kNamedAxes{{{"footage", "pan"},
 
 std::vector<std::string_view> axis_names() {
     std::vector<std::string_view> names;
+    names.reserve(kNamedAxes.size());
     for (const NamedAxis& axis : kNamedAxes) names.push_back(axis.name);
     return names;
 }

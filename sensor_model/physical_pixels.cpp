@@ -78,7 +78,8 @@ float PhysicalPixels::dark_factor(std::uint32_t slot) const noexcept {
 float PhysicalPixels::storage_e(std::uint32_t pixel, std::uint32_t slot,
                                 std::uint32_t plane) const noexcept {
     const bool alive = pattern_.plane(plane)[pixel].responsivity_e > 0;
-    return alive ? storage_e_per_row_ * static_cast<float>(pixel / cols_) * dark_factor(slot) : 0;
+    const auto row = pixel / cols_;
+    return alive ? storage_e_per_row_ * static_cast<float>(row) * dark_factor(slot) : 0;
 }
 
 float PhysicalPixels::column_noise_e(std::uint32_t pixel, std::uint32_t slot,

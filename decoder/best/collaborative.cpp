@@ -156,8 +156,9 @@ class CollaborativeSolver {
                 if (saturated) residual = std::max(residual, 0.0F);
                 const float dark =
                     m.dark_variance.empty() ? noise_.variance(0) : m.dark_variance[i];
-                const float part =
-                    by_noise ? residual_part(samples_per_voxel_, dark, m.variance[i]) : 1;
+                const float part = by_noise ? residual_part(samples_per_voxel_, explained.data()[i],
+                                                            dark, m.variance[i])
+                                            : 1;
                 float& sum = m.sum[i];
                 sum = sampled + options_.residual_decay * (sum - sampled) + gain * part * residual;
             }

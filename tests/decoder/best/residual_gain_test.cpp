@@ -17,22 +17,31 @@
 namespace stipple {
 namespace {
 
+constexpr float kBright = 1e6F;  ///< much light for its noise
+
 TEST(ResidualGainTest, NothingIsFedBackWhereEachVoxelHasItsOwnSample) {
-    EXPECT_EQ(residual_part(1, 0, 1), 0);
-    EXPECT_EQ(residual_part(3, 0, 1), 0) << "several sensors";
+    EXPECT_EQ(residual_part(1, kBright, 0, 1), 0);
+    EXPECT_EQ(residual_part(3, kBright, 0, 1), 0) << "several sensors";
 }
 
 TEST(ResidualGainTest, ItFallsBeyondOneSampleForFourVoxels) {
-    EXPECT_EQ(residual_part(0.25F, 0, 1), 1);
-    EXPECT_FLOAT_EQ(residual_part(0.5F, 0, 1), 4.0F / 9);
-    EXPECT_FLOAT_EQ(residual_part(0.75F, 0, 1), 1.0F / 9);
+    EXPECT_EQ(residual_part(0.25F, kBright, 0, 1), 1);
+    EXPECT_FLOAT_EQ(residual_part(0.5F, kBright, 0, 1), 4.0F / 9);
+    EXPECT_FLOAT_EQ(residual_part(0.75F, kBright, 0, 1), 1.0F / 9);
 }
 
 TEST(ResidualGainTest, ReadNoiseAloneHalvesWhatShotNoiseAloneGets) {
-    EXPECT_EQ(residual_part(0, 0, 1), 1);
-    EXPECT_EQ(residual_part(0, 1, 1), 0.5F);
-    EXPECT_EQ(residual_part(0, 1, 0), 0.5F) << "voxels that end no exposure have no variance";
-    EXPECT_FLOAT_EQ(residual_part(0.25F, 0.25F, 1), 0.875F);
+    EXPECT_EQ(residual_part(0, kBright, 0, 1), 1);
+    EXPECT_FLOAT_EQ(residual_part(0, kBright, 1, 1), 0.5F);
+    EXPECT_FLOAT_EQ(residual_part(0, kBright, 1, 0), 0.5F) << "no exposure ends here";
+    EXPECT_FLOAT_EQ(residual_part(0.25F, kBright, 0.25F, 1), 0.875F);
+}
+
+TEST(ResidualGainTest, NoiseAboveTheLightKeepsAllOfIt) {
+    EXPECT_EQ(residual_part(0, 0, 1, 1), 1);
+    EXPECT_EQ(residual_part(0, 0, 1, 0), 1);
+    EXPECT_FLOAT_EQ(residual_part(0, 1, 1, 1), 5.0F / 6);
+    EXPECT_FLOAT_EQ(residual_part(0, -1, 1, 1), 5.0F / 6);
 }
 
 TEST(ResidualGainTest, CountsTheSamplesOfAllSensors) {
