@@ -61,7 +61,7 @@ ReadoutCost::Cut ReadoutCost::cut(std::int64_t delay) {
     const SlotTimes times = scans_.times(slots_, delay);
     const auto is_late = [&](const RowTimes& row) {
         return row.load.row >= 0 &&
-               row.end_if_last > scans_.deadline_slots(slots_, row.load) * budget_.clocks;
+               row.end_if_last > scans_.deadline_slots(slots_, row.load.row) * budget_.clocks;
     };
     const auto first_late = std::ranges::find_if(times.rows, is_late);
     Cut left{.delay = delay, .counts = {}, .end_row = first_late->load.row};

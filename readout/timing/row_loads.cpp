@@ -132,7 +132,6 @@ void RowLoads::list(std::int64_t slot, std::vector<RowLoad>& loads) {
         mark_block(slot, first_row);
         if (marked_.empty()) continue;
         RowLoad load = count_marked();
-        load.due_again_slots = due_again_slots(slot, first_row);
         const int end_row = std::min(first_row + block_rows_, shape_.rows);
         for (load.row = first_row; load.row < end_row; ++load.row) {
             load.due = due_[index(load.row - first_row)];

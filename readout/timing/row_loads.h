@@ -17,9 +17,6 @@ struct RowLoad {
     int columns = 0;          ///< transferred: due columns, or all columns of their groups
     int channel_columns = 0;  ///< of the busiest channel
     int conversions = 1;      ///< of the busiest ADC
-    /// Slots until the row, or another one of its groups, is due again, and the samples that its
-    /// pixels keep must be read. Dark rows: 0.
-    int due_again_slots = 0;
 
     bool operator==(const RowLoad&) const = default;
 };
@@ -43,7 +40,8 @@ class RowLoads {
 
     /// True if pixels of the row, or of others of its groups, are due at the end of `slot`.
     [[nodiscard]] bool is_due(std::int64_t slot, int row) const;
-    /// `RowLoad::due_again_slots` of a row. Precondition: is_due(slot, row).
+    /// Slots until such a row is due again, and the samples that its pixels keep must be read.
+    /// Precondition: is_due(slot, row).
     [[nodiscard]] int due_again_slots(std::int64_t slot, int row) const;
 
     /// The columns that each channel transfers of `row` at the end of `slot`; for waveforms.

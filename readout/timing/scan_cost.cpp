@@ -138,19 +138,18 @@ int ScanCosts::closed_slots_after(std::int64_t slot) const {
     return closed;
 }
 
-int ScanCosts::deadline_slots(std::int64_t slot, const RowLoad& row) const {
-    return timing_.exposes_while_reading ? row.due_again_slots : closed_slots_after(slot);
+int ScanCosts::deadline_slots(std::int64_t slot, int row) const {
+    return timing_.exposes_while_reading ? row_loads_.due_again_slots(slot, row)
+                                         : closed_slots_after(slot);
 }
 
 int ScanCosts::longest_deadline_slots() const {
     int longest = 0;
     for (std::int64_t slot = first_steady_slot_;
          slot < first_steady_slot_ + schedule_.period_slots(); ++slot)
-        for (int row = 0; row < std::min(schedule_.tile_rows(), shape_.rows); ++row)
+        for (int row = 0; row < shape_.rows; ++row)
             if (row_loads_.is_due(slot, row))
-                longest = std::max(longest, timing_.exposes_while_reading
-                                                ? row_loads_.due_again_slots(slot, row)
-                                                : closed_slots_after(slot));
+                longest = std::max(longest, deadline_slots(slot, row));
     return longest;
 }
 
@@ -177,7 +176,7 @@ ScanCost ScanCosts::compute(std::int64_t slot) {
     for (const RowTimes& row : times.rows) {
         count(row, cost.counts);
         if (row.load.row >= 0)
-            add_deadline({deadline_slots(slot, row.load), row.end_if_last}, cost.deadlines);
+            add_deadline({deadline_slots(slot, row.load.row), row.end_if_last}, cost.deadlines);
     }
     cost.settle_clocks = times.settle;
     cost.counts.readout_clocks = times.end;

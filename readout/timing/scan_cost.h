@@ -52,7 +52,7 @@ struct ScanCost {
 /// The scans of a schedule. Depend on the schedule, not on the light nor on the length of slots.
 ///
 /// **Deadline.** A sensor that exposes while it reads keeps each sample in its pixel until the row
-/// is due again: `RowLoad::due_again_slots`. A sensor that cannot must have read all rows before
+/// is due again: `RowLoads::due_again_slots`. A sensor that cannot must have read all rows before
 /// the next slot in which any pixel is open: 0 slots if that follows at once.
 class ScanCosts {
   public:
@@ -67,12 +67,12 @@ class ScanCosts {
     /// Times of its rows if it begins at clock `begin`.
     [[nodiscard]] SlotTimes times(std::int64_t slot, std::int64_t begin);
     /// Slots that row `row` may wait after the end of `slot`, in which it is due.
-    [[nodiscard]] int deadline_slots(std::int64_t slot, const RowLoad& row) const;
+    [[nodiscard]] int deadline_slots(std::int64_t slot, int row) const;
     /// The longest time that a row may wait, in slots; 0 if nothing is read.
     [[nodiscard]] int longest_deadline_slots() const;
     /// Adds one row to the counts.
     void count(const RowTimes& row, ReadoutCounts& counts) const;
-    /// True if some pixel is open in `slot`.
+    /// True if some pixel is open in `slot`. Precondition: the sensor cannot expose while it reads.
     [[nodiscard]] bool exposes(std::int64_t slot) const {
         return exposes_[static_cast<std::size_t>(slot % schedule_.period_slots())];
     }

@@ -57,8 +57,8 @@ TEST(RowLoadsTest, AreThoseOfTheDefinition) {
                      .columns = static_cast<int>(columns.size()),
                      .channel_columns = most_alike(columns, timing.addressing.channels),
                      .conversions = timing.adc_skip ? most_alike(columns, timing.adcs())
-                                                    : timing.columns_per_adc,
-                     .due_again_slots = again});
+                                                    : timing.columns_per_adc});
+                EXPECT_EQ(row_loads.due_again_slots(slot, row), again);
                 const auto by_channel = row_loads.channel_columns(slot, row);
                 EXPECT_EQ(std::accumulate(by_channel.begin(), by_channel.end(), 0),
                           expected.back().columns);
