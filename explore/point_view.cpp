@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "core/error.h"
@@ -39,8 +38,7 @@ FrameShape PointView::binned(FrameShape window) const {
 
 bool has_view(const Space& space, const SpacePoint& point) {
     return std::ranges::any_of(
-        std::array{"binning", "binning_mode", "window_rows"},
-        [&](const char* name) { return !value_of(space, point, name).empty(); });
+        kViewAxes, [&](const char* name) { return !value_of(space, point, name).empty(); });
 }
 
 PointView view_of(const Space& space, const SpacePoint& point) {

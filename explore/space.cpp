@@ -195,7 +195,7 @@ SpaceSystem SpaceReader::system(const toml::table& table, const std::string& key
         else
             system.values.emplace_back(name, value);
     }
-    for (const char* name : {"binning", "binning_mode", "window_rows"})
+    for (const char* name : kViewAxes)
         if (const toml::node* node = table.get(name))
             system.values.emplace_back(name, text(key + "." + name, *node));
     for (const auto& [setting, node] : section(table, "set")) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,6 +11,9 @@
 #include "core/geometry.h"
 
 namespace stipple {
+
+/// Axes of what a sensor reads of its array (point_view.h); each is there only if a point has it.
+inline constexpr std::array kViewAxes{"binning", "binning_mode", "window_rows"};
 
 /// The values that one property of a trial takes.
 struct SpaceAxis {

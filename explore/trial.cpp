@@ -195,9 +195,8 @@ DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
         streams, options,
         [&](std::int64_t slot, std::span<const float> frame) {
             if (trial.view.binning == 1) return take(slot, frame) && keep_going();
-            const auto [shape, binning] =
-                std::pair(trial.setups.front().footage, trial.view.binning);
-            return take(slot, enlarged_frame(frame, shape, binning)) && keep_going();
+            const FrameShape shape = trial.setups.front().footage;
+            return take(slot, enlarged_frame(frame, shape, trial.view.binning)) && keep_going();
         },
         [&](double) { return keep_going(); });
     check(keep_going);

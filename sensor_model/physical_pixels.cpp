@@ -75,11 +75,15 @@ float PhysicalPixels::dark_factor(std::uint32_t slot) const noexcept {
     return static_cast<float>(power_of_two(std::clamp(doublings_per_slot_ * slot, -900.0, 30.0)));
 }
 
-float PhysicalPixels::storage_e(std::uint32_t pixel, std::uint32_t slot,
-                                std::uint32_t plane) const noexcept {
+float PhysicalPixels::waiting_e(std::uint32_t pixel, std::uint32_t plane) const noexcept {
     const bool alive = pattern_.plane(plane)[pixel].responsivity_e > 0;
     const auto row = pixel / cols_;
-    return alive ? storage_e_per_row_ * static_cast<float>(row) * dark_factor(slot) : 0;
+    return alive ? storage_e_per_row_ * static_cast<float>(row) : 0;
+}
+
+float PhysicalPixels::storage_e(std::uint32_t pixel, std::uint32_t slot,
+                                std::uint32_t plane) const noexcept {
+    return waiting_e(pixel, plane) * dark_factor(slot);
 }
 
 float PhysicalPixels::column_noise_e(std::uint32_t pixel, std::uint32_t slot,
@@ -151,7 +155,7 @@ void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, st
             mean[i] = mean_of(sites[pixel[i]], exposed.light[begin + i],
                               static_cast<float>(exposed.open_slots[begin + i]) * dark);
         if (storage_e_per_row_ > 0)
-            for (std::size_t i = 0; i < n; ++i) mean[i] += storage_e(pixel[i], slot, plane);
+            for (std::size_t i = 0; i < n; ++i) mean[i] += waiting_e(pixel[i], plane) * dark;
         sample_words(pixel, address, std::span(shot).first(n), std::span(read).first(n));
         normal(std::span(read).first(n), std::span(noise).first(n));
         fill_row_noise(pixel, slot, plane, std::span(shared).first(n));

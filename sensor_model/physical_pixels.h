@@ -80,6 +80,8 @@ class PhysicalPixels {
     [[nodiscard]] const FixedPattern& pattern() const { return pattern_; }
 
   private:
+    /// `storage_e` before the drift of the temperature.
+    [[nodiscard]] float waiting_e(std::uint32_t pixel, std::uint32_t plane) const noexcept;
     [[nodiscard]] Charge charge(float count, const SiteTraits& site, float noise,
                                 float shared_noise_e) const noexcept;
     void fill_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
