@@ -83,12 +83,6 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
     }
 };
 
-FluxVideo flat(int slots, FrameShape shape, float light) {
-    FluxVideo video(slots, shape);
-    std::ranges::fill(video.data(), light);
-    return video;
-}
-
 ExposureSchedule paper(FrameShape shape) {
     return random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1);
 }
@@ -132,7 +126,7 @@ TEST_P(BadStreamsTest, WithoutSamplesFramesAreBlack) {
 // Full scale is 2.0 of light in a sample: the light is known to be that or more, in exposures of
 // one slot at least.
 TEST_P(BadStreamsTest, SaturatedFramesAreBright) {
-    const Recorded recorded = record(flat(20, kShape, 50), paper(kShape));
+    const Recorded recorded = record(flat_video(20, kShape, 50), paper(kShape));
     const Outcome outcome = decoded(recorded);
     expect_light(outcome, recorded);
     double sum = 0;
@@ -143,7 +137,7 @@ TEST_P(BadStreamsTest, SaturatedFramesAreBright) {
 }
 
 TEST_P(BadStreamsTest, DarkFramesStayDark) {
-    const Recorded recorded = record(flat(20, kShape, 0), paper(kShape));
+    const Recorded recorded = record(flat_video(20, kShape, 0), paper(kShape));
     expect_decoded(recorded, 0.04F);  // four standard deviations of the read noise
 }
 

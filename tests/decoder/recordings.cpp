@@ -77,6 +77,22 @@ double dot(std::span<const float> a, std::span<const float> b) {
     return sum;
 }
 
+SensorParams rounding_sensor() {
+    SensorParams params;
+    params.shot_noise = false;
+    params.read_noise_e = 0;
+    params.photons_per_unit = 5e5;
+    params.full_scale_e = params.full_well_e = 2.5e6;
+    params.bit_depth = 16;
+    return params;
+}
+
+FluxVideo flat_video(int slots, FrameShape shape, float light) {
+    FluxVideo video(slots, shape);
+    std::ranges::fill(video.data(), light);
+    return video;
+}
+
 double mean_square(std::span<const float> a, std::span<const float> b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {

@@ -17,6 +17,13 @@ class SampleNoise;
 struct Measurements;
 struct VideoWindow;
 
+/// A sensor without noise but rounding to 16 bits: 5e5 electrons at light 1, full at light 5 of one
+/// slot.
+[[nodiscard]] SensorParams rounding_sensor();
+
+/// Light that is everywhere the same.
+[[nodiscard]] FluxVideo flat_video(int slots, FrameShape shape, float light);
+
 /// The noise of the sensor `paper`.
 [[nodiscard]] const SampleNoise& paper_noise();
 

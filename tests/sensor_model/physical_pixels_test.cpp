@@ -129,14 +129,20 @@ struct Moments {
     double variance = 0;
 };
 
-/// Of a flat field over the first plane.
-Moments flat_field(const SensorParams& params, float light, std::uint16_t open_slots) {
-    const PhysicalPixels pixels(params, kShape, kSeed);
+/// Of the whole array.
+Exposures flat_exposures(float light, std::uint16_t open_slots) {
     Exposures flat;
     flat.pixels.resize(kShape.pixels());
     std::iota(flat.pixels.begin(), flat.pixels.end(), 0U);
     flat.light.assign(kShape.pixels(), light);
     flat.open_slots.assign(kShape.pixels(), open_slots);
+    return flat;
+}
+
+/// Of a flat field over the first plane.
+Moments flat_field(const SensorParams& params, float light, std::uint16_t open_slots) {
+    const PhysicalPixels pixels(params, kShape, kSeed);
+    const Exposures flat = flat_exposures(light, open_slots);
     const auto n = static_cast<double>(kShape.pixels());
     Moments moments;
     const auto electrons = expose(pixels, flat, 3, 0);
@@ -169,11 +175,7 @@ TEST(PhysicalPixelsTest, TheResetNoiseOfEachExposureIsItsOwn) {
     // The same pixels in two slots: if they shared the draw, the difference would lack it.
     const SensorParams params = physical({.reset_noise_e = 20});
     const PhysicalPixels pixels(params, kShape, kSeed);
-    Exposures dark;
-    dark.pixels.resize(kShape.pixels());
-    std::iota(dark.pixels.begin(), dark.pixels.end(), 0U);
-    dark.light.assign(kShape.pixels(), 0);
-    dark.open_slots.assign(kShape.pixels(), 1);
+    const Exposures dark = flat_exposures(0, 1);
     const auto first = expose(pixels, dark, 3, 0);
     const auto second = expose(pixels, dark, 4, 0);
     double variance = 0;
@@ -211,11 +213,7 @@ TEST(PhysicalPixelsTest, SharesRowNoiseWithinARowAndTap) {
     params.read_noise_e = 0;
     params.shot_noise = false;
     const PhysicalPixels pixels(params, kShape, kSeed);
-    Exposures dark;
-    dark.pixels.resize(kShape.pixels());
-    std::iota(dark.pixels.begin(), dark.pixels.end(), 0U);
-    dark.light.assign(kShape.pixels(), 0);
-    dark.open_slots.assign(kShape.pixels(), 1);
+    const Exposures dark = flat_exposures(0, 1);
     const auto electrons = expose(pixels, dark, 3, 0);
     double sum2[2] = {0, 0};
     for (std::size_t row = 0; row < 512; ++row)

@@ -26,23 +26,6 @@ namespace {
 
 constexpr FrameShape kShape{.rows = 24, .cols = 32, .planes = 1};
 
-/// Without noise but rounding to 16 bits.
-SensorParams exact_sensor() {
-    SensorParams params;
-    params.shot_noise = false;
-    params.read_noise_e = 0;
-    params.photons_per_unit = 5e5;
-    params.full_scale_e = params.full_well_e = 2.5e6;  // 5 of light
-    params.bit_depth = 16;
-    return params;
-}
-
-FluxVideo flat(int slots, FrameShape shape, float light) {
-    FluxVideo video(slots, shape);
-    std::ranges::fill(video.data(), light);
-    return video;
-}
-
 class FrameMethodsTest : public testing::TestWithParam<DecodeMethod> {
   protected:
     static FluxVideo decoded(const Recorded& recorded, const FluxVideo& video) {
@@ -80,7 +63,7 @@ TEST_P(FrameMethodsTest, WithoutNoiseAStaticSceneIsReturned) {
         for (int i = 0; i < 24; ++i) std::ranges::copy(slot.frame(0), video.frame(i).begin());
         for (const ExposureSchedule& schedule :
              {full_schedule(1, 1), full_schedule(1, 4), full_schedule(4, 4), full_schedule(3, 5)}) {
-            const FluxVideo x = decoded(video, schedule, exact_sensor());
+            const FluxVideo x = decoded(video, schedule, rounding_sensor());
             // One DN is 5 / 65535 of light; shot noise, which there is none of, would be 0.0014.
             for (std::size_t i = 0; i < x.voxels(); ++i)
                 ASSERT_NEAR(x.data()[i], video.data()[i], 6e-4) << i;
@@ -90,7 +73,7 @@ TEST_P(FrameMethodsTest, WithoutNoiseAStaticSceneIsReturned) {
 
 TEST_P(FrameMethodsTest, FlaggedAsWithoutNoiseFramesAreReturnedExactly) {
     const FluxVideo video = random_video(12, kShape, 1);
-    Recorded recorded = record(video, full_schedule(1, 1), exact_sensor());
+    Recorded recorded = record(video, full_schedule(1, 1), rounding_sensor());
     recorded.header.calibration.noise_free = true;
     const FluxVideo x = decoded(recorded, video);
     for (std::size_t i = 0; i < x.voxels(); ++i)
@@ -101,23 +84,23 @@ TEST_P(FrameMethodsTest, FewFramesAndSmallOnesAreDecoded) {
     for (const FrameShape shape :
          {FrameShape{1, 1, 1}, FrameShape{1, 40, 3}, FrameShape{7, 9, 1}, FrameShape{17, 16, 1}})
         for (const int slots : {1, 2, 4, 9}) {
-            const FluxVideo video = flat(slots, shape, 0.5F);
+            const FluxVideo video = flat_video(slots, shape, 0.5F);
             for (const int period : {1, 4}) {
-                const FluxVideo x = decoded(video, full_schedule(1, period), exact_sensor());
+                const FluxVideo x = decoded(video, full_schedule(1, period), rounding_sensor());
                 for (const float light : x.data()) ASSERT_NEAR(light, 0.5, 1e-3);
             }
         }
 }
 
 TEST_P(FrameMethodsTest, AClipShorterThanItsExposureIsBlack) {
-    const FluxVideo video = flat(3, kShape, 0.5F);
+    const FluxVideo video = flat_video(3, kShape, 0.5F);
     const FluxVideo x = decoded(video, full_schedule(4, 4));
     for (const float light : x.data()) ASSERT_EQ(light, 0);
 }
 
 // Full scale of the paper's sensor is light 2.0 in a slot.
 TEST_P(FrameMethodsTest, SaturatedPixelsAreAsBrightAsTheirBound) {
-    FluxVideo video = flat(24, kShape, 0.3F);
+    FluxVideo video = flat_video(24, kShape, 0.3F);
     for (int slot = 0; slot < 24; ++slot)
         for (int row = 8; row < 16; ++row)
             for (int col = 8; col < 16; ++col) video.plane(slot, 0)(row, col) = 9;
@@ -131,8 +114,8 @@ TEST_P(FrameMethodsTest, SaturatedPixelsAreAsBrightAsTheirBound) {
 }
 
 TEST_P(FrameMethodsTest, LostFramesAndRowsAreFilled) {
-    const FluxVideo video = flat(40, kShape, 0.5F);
-    Recorded recorded = record(video, full_schedule(1, 4), exact_sensor());
+    const FluxVideo video = flat_video(40, kShape, 0.5F);
+    Recorded recorded = record(video, full_schedule(1, 4), rounding_sensor());
     recorded.packets.erase(recorded.packets.begin() + 16);  // the frame of slot 16
     SamplePacket& packet = recorded.packets[27];  // the frame of slot 28, by its upper third
     ASSERT_EQ(packet.slot, 28);
@@ -153,7 +136,7 @@ TEST_P(FrameMethodsTest, AMosaicHasItsColours) {
                 for (int col = 0; col < 32; ++col)
                     video.plane(slot, plane)(row, col) = 0.2F + 0.2F * static_cast<float>(plane);
     const Recorded recorded =
-        record_mosaic(video, ColourFilter::kRggb, full_schedule(1, 4), exact_sensor());
+        record_mosaic(video, ColourFilter::kRggb, full_schedule(1, 4), rounding_sensor());
     const FluxVideo x = decoded(recorded, video);
     for (std::size_t i = 0; i < x.voxels(); ++i)
         ASSERT_NEAR(x.data()[i], video.data()[i], 2e-3) << i;
@@ -164,8 +147,8 @@ TEST_P(FrameMethodsTest, WeightedExposuresGiveLightPerSlot) {
     ExposureSchedule schedule(1, 2, 4, {0, 1, 2}, {{0, 3}, {0, 3}});
     schedule.set_weights({0.25F, 0.125F, 0.75F, 0.375F, 0, 0, 0, 0});
     ASSERT_TRUE(conventional(schedule));
-    const FluxVideo video = flat(24, kShape, 0.5F);
-    const FluxVideo x = decoded(video, schedule, exact_sensor());
+    const FluxVideo video = flat_video(24, kShape, 0.5F);
+    const FluxVideo x = decoded(video, schedule, rounding_sensor());
     for (const float light : x.data()) ASSERT_NEAR(light, 0.5, 2e-3);
 }
 

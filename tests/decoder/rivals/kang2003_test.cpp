@@ -34,23 +34,6 @@ ExposureSchedule dol() {
     return {1, 1, 8, {0, 2}, {{0, 0b1111111}, {7, 1}}};
 }
 
-/// Without noise but rounding to 16 bits; an exposure of 4 slots saturates at light 1.25.
-SensorParams exact_sensor() {
-    SensorParams params;
-    params.shot_noise = false;
-    params.read_noise_e = 0;
-    params.photons_per_unit = 5e5;
-    params.full_scale_e = params.full_well_e = 2.5e6;
-    params.bit_depth = 16;
-    return params;
-}
-
-FluxVideo flat(int slots, FrameShape shape, float light) {
-    FluxVideo video(slots, shape);
-    std::ranges::fill(video.data(), light);
-    return video;
-}
-
 FluxVideo decoded(const Recorded& recorded, const FluxVideo& video,
                   DecodeMethod method = DecodeMethod::kKang2003) {
     return *decode_block(collect_measurements(recorded.header, recorded.packets, whole(video)),
@@ -74,7 +57,7 @@ double short_error(const FluxVideo& x, const FluxVideo& truth) {
 
 // 5 frames of 32 x 48 pixels: 2 standard deviations are 3.2 % of the variance.
 TEST(Kang2003Test, BeyondTheLongExposureTheNoiseIsThatOfTheShortOne) {
-    const FluxVideo video = flat(56, kShape, 1.2F);  // 4 slots saturate at 0.5
+    const FluxVideo video = flat_video(56, kShape, 1.2F);  // 4 slots saturate at 0.5
     const FluxVideo x = decoded(record(video, alternating()), video);
     EXPECT_NEAR(short_error(x, video) / variance(1.2, 1), 1, 0.05);
     // Between them it is less: a mean of two frames, or of pixels along motion that is noise.
@@ -116,7 +99,7 @@ TEST(Kang2003Test, ATranslatingSceneIsRecoveredBeyondTheLongExposure) {
 }
 
 TEST(Kang2003Test, WhatIsSaturatedInAllFramesIsAsBrightAsTheShortOneTells) {
-    FluxVideo video = flat(40, kShape, 0.3F);
+    FluxVideo video = flat_video(40, kShape, 0.3F);
     for (int slot = 0; slot < video.slots(); ++slot)
         for (int row = 8; row < 24; ++row)
             for (int col = 8; col < 24; ++col) video.plane(slot, 0)(row, col) = 9;
@@ -140,7 +123,7 @@ TEST(Kang2003Test, WithoutNoiseAStaticSceneIsReturned) {
                                    [](float light) { return 3 * light; });
         const ExposureSchedule three(1, 1, 8, {0, 3}, {{0, 0b1111}, {4, 0b11}, {7, 1}});
         for (const ExposureSchedule& schedule : {alternating(), dol(), three}) {
-            const FluxVideo x = decoded(record(video, schedule, exact_sensor()), video);
+            const FluxVideo x = decoded(record(video, schedule, rounding_sensor()), video);
             // One DN of one slot is 5 / 65535 of light; the noise that weights expect is 0.0024.
             for (std::size_t i = 0; i < x.voxels(); ++i)
                 ASSERT_NEAR(x.data()[i], video.data()[i], 1e-3) << i;
@@ -156,22 +139,22 @@ TEST(Kang2003Test, AMosaicHasItsColours) {
                 for (float& light : video.plane(slot, plane).row(row))
                     light = 0.6F + 0.6F * static_cast<float>(plane);
     const FluxVideo x =
-        decoded(record_mosaic(video, ColourFilter::kRggb, alternating(), exact_sensor()), video);
+        decoded(record_mosaic(video, ColourFilter::kRggb, alternating(), rounding_sensor()), video);
     for (std::size_t i = 0; i < x.voxels(); ++i)
         ASSERT_NEAR(x.data()[i], video.data()[i], 2e-3) << i;
 }
 
 TEST(Kang2003Test, LostFramesAndShortClipsAreDecoded) {
-    const FluxVideo video = flat(40, kShape, 0.5F);
-    Recorded recorded = record(video, alternating(), exact_sensor());
+    const FluxVideo video = flat_video(40, kShape, 0.5F);
+    Recorded recorded = record(video, alternating(), rounding_sensor());
     std::erase_if(recorded.packets, [](const SamplePacket& packet) {
         return packet.slot == 19 || packet.slot == 29;  // a long one, a short one
     });
     const FluxVideo filled = decoded(recorded, video);
     for (const float light : filled.data()) ASSERT_NEAR(light, 0.5, 1e-3);
     for (const int slots : {1, 3, 4, 6}) {
-        const FluxVideo clip = flat(slots, kShape, 0.5F);
-        const FluxVideo x = decoded(record(clip, alternating(), exact_sensor()), clip);
+        const FluxVideo clip = flat_video(slots, kShape, 0.5F);
+        const FluxVideo x = decoded(record(clip, alternating(), rounding_sensor()), clip);
         const float expected = slots < 4 ? 0.0F : 0.5F;  // black without a complete exposure
         for (const float light : x.data()) ASSERT_NEAR(light, expected, 1e-3) << slots;
     }

@@ -41,18 +41,8 @@ FluxVideo bands(int slots) {
     return video;
 }
 
-SensorParams exact_sensor() {
-    SensorParams params;
-    params.shot_noise = false;
-    params.read_noise_e = 0;
-    params.photons_per_unit = 5e5;
-    params.full_scale_e = params.full_well_e = 2.5e6;
-    params.bit_depth = 16;
-    return params;
-}
-
 FluxVideo decoded(const FluxVideo& video, const ExposureSchedule& schedule, DecodeMethod method) {
-    const Recorded recorded = record(video, schedule, exact_sensor());
+    const Recorded recorded = record(video, schedule, rounding_sensor());
     return *decode_block(collect_measurements(recorded.header, recorded.packets, whole(video)),
                          recorded.header.calibration, {.method = method});
 }
