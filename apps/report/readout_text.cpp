@@ -25,6 +25,12 @@ std::string hypothetical_text(const ReadoutRate& rate, const ReadoutCost& cost) 
     return text + '\n';
 }
 
+/// What the slowest readout must not hold up.
+std::string deadline_text(const ReadoutRate& rate) {
+    if (rate.deadline_slots == 0) return ", while no pixel exposes";
+    return " and must end within " + counted(rate.deadline_slots, "slot");
+}
+
 /// The upper bound, which holds for schedules that read every row in every slot.
 std::string balanced_text(const ReadoutRate& rate) {
     if (rate.balanced_speedup < rate.speedup) return {};
@@ -51,7 +57,7 @@ std::string readout_text(const ReadoutCost& cost) {
         1e-6 * code_bits_per_second(cost, slots_hz));
     if (cost.overruns() > 0)
         text += fmt::format(
-            "\noverruns     in {} of {} clocks rows were due again before they were read: {}",
+            "\noverruns     in {} of {} clocks rows were not read in time: {}",
             counted(cost.overruns(), "slot"), cost.budget().clocks,
             cost.budget().policy == OverrunPolicy::kDrop
                 ? fmt::format("{} samples dropped", totals.dropped_samples)
@@ -72,8 +78,7 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
     return fmt::format(
         "{}window       {} x {} (width x height)\n"
         "full         {:.5g} readouts/s: {} clocks, {} a row\n"
-        "coded        {:.5g} slots/s of {:.6g} clocks; the slowest readout takes {} clocks and "
-        "must end within {}\n"
+        "coded        {:.5g} slots/s of {:.6g} clocks; the slowest readout takes {} clocks{}\n"
         "speed-up     {:.3f}, limited by {}{}\n"
         "in use       rows {:.1f} %, ADCs {:.1f} %, link {:.1f} %\n"
         "energy       {:.4g} uJ a full readout, {:.4g} pJ a sample; {:.4g} uJ a slot, {:.4g} pJ a "
@@ -83,14 +88,14 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
         "slot         {} clocks: {}",
         hypothetical_text(rate, cost), cost.shape().cols, cost.shape().rows, rate.full_hz,
         rate.full.total, rate.full.row, rate.coded_hz, rate.min_slot_clocks,
-        rate.slowest.counts.readout_clocks, counted(rate.deadline_slots, "slot"), rate.speedup,
+        rate.slowest.counts.readout_clocks, deadline_text(rate), rate.speedup,
         name_of(rate.slowest.limit), balanced_text(rate), 100 * use.rows, 100 * use.adc,
         100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
         rate.period.energy_pj / period * 1e-6, coded_sample_pj(rate),
         schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_second(cost, rate.coded_hz),
         cost.timing().code_load_clocks, cost.budget().clocks,
-        fits_slot(rate, cost) ? "each row is read before it is due again"
-                              : "too short, rows are due again before they are read");
+        fits_slot(rate, cost) ? "each row is read in time"
+                              : "too short, rows are not read in time");
 }
 
 }  // namespace stipple

@@ -99,6 +99,17 @@ class TimingTest(ProgramTest):
         self.fails(1, ["must end within 1 slot of 333.333 us", "934.922 us"], "schedule", "check", "tiled", "--size",
                    "1280x1024", *slot)
 
+    def test_a_chip_that_cannot_expose_while_it_reads_takes_the_sum_of_both(self):
+        arguments = ("timing", "--sensor", "lux1310", "--set", "sensor.timing.exposes_while_reading=false")
+        frames = self.figures(*arguments, "--schedule", "full1x")
+        self.assertEqual(frames["min_slot_clocks"], (45000 + 84143) / 4)
+        coded = self.figures(*arguments)
+        self.assertEqual(coded["min_slot_clocks"], 45000 + coded["slowest_readout_clocks"])
+        self.assertIn(f"takes {coded['slowest_readout_clocks']} clocks, while no pixel exposes", self.succeed(*arguments))
+        self.write_flat("light.npy", slots=16, rows=8, cols=16)
+        self.fails(INPUT, ["cannot expose while it reads", "stretch"], "emulate", "light.npy", "-o", "a.stipple",
+                   "--overrun", "drop", *arguments[1:])
+
     def test_the_list_of_sensors_says_what_coding_gains(self):
         for sensor in SENSORS:
             line = next(line for line in self.succeed("list", "sensors").splitlines() if line.startswith(sensor))
