@@ -75,14 +75,14 @@ class FootageWarningsTest(ProgramTest):
 
     def test_missing_numbers_of_a_folder(self):
         for number in (0, 1, 2, 4, 5):
-            self.write_png(f"gap/f{number:03}.png", np.zeros((8, 8)))
+            self.write_png(f"gap/f{number:03}.png", np.full((8, 8), 99))
         self.assertEqual(self.said("gap"), "stipple: gap/f003.png is missing: the frames after it move "
                          "one slot forward\n")
         self.fails(INPUT, ["gap/f003.png: is missing"], "emulate", "gap/f%03d.png", "-o", "x.stipple")
 
     def test_images_that_a_pattern_leaves_out(self):
         for number in range(7, 13):
-            self.write_png(f"num/f{number}.png", np.zeros((8, 8)))
+            self.write_png(f"num/f{number}.png", np.full((8, 8), 99))
         self.assertIn("num/f%02d.png: takes f10.png to f12.png; left out are 3 images",
                       self.said("num/f%02d.png"))
         self.assertEqual(self.said("num/f%d.png"), "")

@@ -210,9 +210,9 @@ class VideoTest(ProgramTest):
                                 (["--transfer", "srgb"], False)):
             _, said = self.emulate("video.mp4", *options)
             self.assertEqual(HINT in said, hinted, options)
-        grey = np.zeros((1, 8, 8), "<u2")
+        grey = np.full((1, 8, 8), 99 * 257, "<u2")
         self.assertEqual(self.emulate(self.write_raw("deep.mkv", grey, "gray16le"))[1], "")
-        declared = self.write_raw("video.mkv", grey.astype(np.uint8), "gray", "-color_trc", "linear")
+        declared = self.write_raw("video.mkv", (grey // 257).astype(np.uint8), "gray", "-color_trc", "linear")
         self.assertEqual(self.emulate(declared)[1], "")
         _, said = self.emulate(self.write_raw("hdr.mkv", grey, "gray16le", "-color_trc", "smpte2084"))
         self.assertIn("hdr.mkv: is HDR video in the curve smpte2084", said)
