@@ -1,15 +1,11 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/explore_run.h"
+#include "apps/explore_table.h"
 #include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 
@@ -28,29 +24,6 @@ nlohmann::ordered_json figures_of(const Exploration& exploration, bool has_budge
     return figures;
 }
 
-/// How many points have failed for each of the first reasons; empty if none has.
-std::string problems_text(const Exploration& exploration) {
-    constexpr std::size_t kShown = 8;
-    std::vector<std::pair<std::string, int>> problems;
-    for (const ExploredPoint& point : exploration.points()) {
-        if (point.problem.empty()) continue;
-        const auto known =
-            std::ranges::find(problems, point.problem, &std::pair<std::string, int>::first);
-        if (known == problems.end())
-            problems.emplace_back(point.problem, 1);
-        else
-            ++known->second;
-    }
-    std::string text;
-    for (std::size_t i = 0; i < std::min(problems.size(), kShown); ++i)
-        text +=
-            fmt::format("{} failed: {}\n", counted(problems[i].second, "point"), problems[i].first);
-    if (problems.size() > kShown)
-        text += fmt::format("{} more in the column \"problem\" of table.csv\n",
-                            counted(problems.size() - kShown, "reason"));
-    return text;
-}
-
 void explore(const ExploreRun& named, const RunOptions& run) {
     ExploreRun what = named;
     what.space = find_config(ConfigKind::kSpaces, named.space).string();
@@ -58,7 +31,10 @@ void explore(const ExploreRun& named, const RunOptions& run) {
     const Exploration exploration = explored(what, run);
     json.write(figures_of(exploration, what.options.budget.has_value()));
     require_figures(what, exploration);
-    run.say(problems_text(exploration) + counts_text(what, exploration));
+    constexpr std::size_t kMostLines = 50;  // of a screen or two
+    const bool few = exploration.points().size() <= kMostLines;
+    run.say((few ? table_text(exploration) + "\n\n" : "") + problems_text(exploration) +
+            counts_text(what, exploration));
 }
 
 void add_budget(Command& command, ExploreOptions& options) {

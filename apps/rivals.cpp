@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,11 +8,10 @@
 #include <vector>
 
 #include "apps/explore_run.h"
-#include "apps/report/column_width.h"
+#include "apps/explore_table.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
-#include "core/joined.h"
 #include "explore/results_table.h"
 
 namespace stipple {
@@ -32,105 +27,6 @@ struct RivalsArguments {
     std::vector<std::string> systems = {};  ///< empty: all
     std::string dictionary = {};            ///< empty: that of the space
 };
-
-/// A column of the table for people.
-struct RivalColumn {
-    const char* heading;
-    double TrialFigures::*value;
-    double scale;
-    int digits;
-};
-constexpr RivalColumn kColumns[] = {{"field %", &TrialFigures::field_of_view, 100, 0},
-                                    {"samples", &TrialFigures::samples_per_voxel, 1, 3},
-                                    {"light %", &TrialFigures::light_throughput, 100, 0},
-                                    {"stops", &TrialFigures::sample_range_stops, 1, 1},
-                                    {"PSNR dB", &TrialFigures::psnr_db, 1, 2},
-                                    {"gamma dB", &TrialFigures::psnr_gamma_db, 1, 2},
-                                    {"PU21 dB", &TrialFigures::pu21_psnr_db, 1, 2},
-                                    {"slots/s", &TrialFigures::readout_slots_per_second, 1, 0},
-                                    {"Mbit/s", &TrialFigures::megabits_per_second, 1, 0},
-                                    {"code", &TrialFigures::code_megabits_per_second, 1, 0},
-                                    {"uJ/slot", &TrialFigures::energy_uj_per_slot, 1, 0},
-                                    {"decode s", &TrialFigures::decode_seconds, 1, 1}};
-
-/// What is compared, and what the headings leave open.
-std::string legend_of(const Exploration& exploration) {
-    for (const ExploredPoint& point : exploration.points())
-        if (point.figures)
-            return fmt::format(
-                "\n\ncompared: slots {} (first:end) of {}, light up to {}\n"
-                "samples: per voxel of the clip; stops: range of the samples; slots/s: the most "
-                "of the readout;\nMbit/s of samples and of exposure code: at the slot rate of the "
-                "sensor, or this one if it is less",
-                point.figures->compared_slots, point.slots, kBrightestLight);
-    return {};
-}
-
-/// What seeds add to it.
-std::string legend_of_seeds(int seeds) {
-    if (seeds == 1) return {};
-    return fmt::format(
-        "\nmeans of {} seeds, +- half of the 95 % interval; rank: by PSNR, = where the paired\n"
-        "differences do not tell which is better",
-        seeds);
-}
-
-/// The system of each point; of a space without systems the values that differ.
-std::vector<std::string> names_of(const Space& space) {
-    std::vector<std::string> names;
-    for (std::uint64_t number = 0; number < space.size(); ++number) {
-        const SpacePoint point = space.point(number);
-        std::vector<std::string> values;
-        for (std::size_t i = 0; i < point.size(); ++i)
-            if (space.systems.empty() ? space.axes[i].values.size() > 1
-                                      : space.axes[i].name == "system")
-                values.push_back(point[i]);
-        names.push_back(joined(values));
-    }
-    return names;
-}
-
-bool has_interval(const RivalColumn& column) {
-    return std::ranges::any_of(kFigureColumns, [&](const FigureColumn& known) {
-        return known.value == column.value && has_interval(known);
-    });
-}
-
-int width_of(const RivalColumn& column, const Exploration& exploration) {
-    return exploration.seeds() > 1 && has_interval(column) ? 12 : 8;
-}
-
-/// "30.42", of several seeds "30.42 +-0.69".
-std::string figure_text(const ExploredPoint& point, const RivalColumn& column) {
-    if (!point.figures) return "-";
-    const double value = point.figures.value().*column.value;
-    if (std::isnan(value)) return "-";
-    std::string text = fmt::format("{:.{}f}", column.scale * value, column.digits);
-    if (point.trials.size() == 1 || !has_interval(column)) return text;
-    const MeanInterval interval = mean_interval(samples_of(point.trials, column.value));
-    if (!std::isnan(interval.low))
-        text += fmt::format(" +-{:.{}f}", (interval.high - interval.low) / 2, column.digits);
-    return text;
-}
-
-std::string table_of(const Exploration& exploration) {
-    const std::vector<std::string> names = names_of(exploration.space());
-    const std::size_t width = column_width(names, [](const std::string& name) { return name; });
-    std::string text(width, ' ');
-    if (exploration.seeds() > 1) text += "  rank";
-    for (const RivalColumn& column : kColumns)
-        text += fmt::format("  {:>{}}", column.heading, width_of(column, exploration));
-    for (std::size_t number = 0; number < names.size(); ++number) {
-        const ExploredPoint& point = exploration.points()[number];
-        text += fmt::format("\n{:<{}}", names[number], width);
-        if (exploration.seeds() > 1) text += fmt::format("  {:>4}", text_of(point.rank));
-        for (const RivalColumn& column : kColumns)
-            text +=
-                fmt::format("  {:>{}}", figure_text(point, column), width_of(column, exploration));
-        if (!point.problem.empty()) text += "  " + point.problem;
-    }
-    return text + legend_of(exploration) + legend_of_seeds(exploration.seeds());
-}
 
 nlohmann::ordered_json json_of(const TableValue& value) {
     return std::visit(
@@ -171,7 +67,8 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
     const Exploration exploration = explored(what, run);
     json.write(json_of(exploration));
     require_figures(what, exploration);
-    run.say(table_of(exploration) + "\n" + counts_text(what, exploration));
+    run.say(table_text(exploration) + "\n\n" + problems_text(exploration) +
+            counts_text(what, exploration));
 }
 
 }  // namespace
@@ -215,8 +112,7 @@ void add_rivals(Command& app, Action& action) {
         "  stipple rivals pan -o results\n"
         "  stipple rivals clip.mp4 -o results --transfer srgb --luminance --crop 320x240\n"
         "Each system records the footage through the same aperture with about as many samples a\n"
-        "second, unless its name says otherwise, and decodes it. A system that cannot do it is a\n"
-        "row with the reason (docs/rivals.md).");
+        "second, unless its name says otherwise, and decodes it (docs/rivals.md).");
     set_action(command, action, arguments, compare_rivals);
 }
 
