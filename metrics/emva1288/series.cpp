@@ -40,8 +40,8 @@ class Parser {
     }
 
     [[nodiscard]] Series finished() {
-        if (!version_) fail("the file has no line \"v 4.0\"");
-        if (series_.bits == 0) fail("the file has no line \"n bits width height\"");
+        if (series_.bits == 0)
+            fail("the file has no line \"n bits width height\", which all images need");
         end_group();
         if (series_.groups.empty()) fail("the file names no images");
         return std::move(series_);
@@ -55,6 +55,7 @@ class Parser {
     double number(std::istringstream& words, std::string_view what, double min, double max) {
         std::string word;
         if (!(words >> word)) fail(fmt::format("{} is missing", what));
+        std::ranges::replace(word, ',', '.');  // as the reference software
         const auto value = parsed_number<double>(word);
         if (!value) fail(fmt::format("{} \"{}\" is not a number", what, word));
         if (!(*value >= min && *value <= max))
@@ -71,9 +72,10 @@ class Parser {
     void read_version(std::istringstream& words) {
         std::string version;
         words >> version;
-        if (version != "4.0")
-            fail(fmt::format("version \"{}\" of the descriptor; this program reads 4.0", version));
-        version_ = true;
+        const double number = parsed_number<double>(version).value_or(0);
+        if (!(number >= 3 && number < 5))
+            fail(fmt::format("version \"{}\" of the descriptor; this program reads 3.0 to 4.1",
+                             version));
     }
 
     void read_format(std::istringstream& words) {
@@ -84,7 +86,6 @@ class Parser {
     }
 
     void begin_group(std::istringstream& words, bool dark) {
-        if (!version_ || series_.bits == 0) fail("the lines v and n come before the images");
         end_group();
         if (series_.groups.size() == kMaxGroups) fail("too many groups of images");
         ImageGroup group{.dark = dark, .files = {}};
@@ -112,7 +113,6 @@ class Parser {
     std::string where_;
     int line_ = 0;
     std::size_t images_ = 0;
-    bool version_ = false;
     Series series_;
 };
 

@@ -23,9 +23,10 @@ struct Series {
     std::vector<ImageGroup> groups;
 };
 
-/// Reads a descriptor (release 4.0 of its format): `v 4.0`, `n bits width height`, then groups that
-/// begin with `b exposure_ns photons` or `d exposure_ns` and list their images, `i file`. Empty
-/// lines and lines that begin with # are ignored; backslashes in file names are read as slashes.
+/// Reads a descriptor: `n bits width height`, and groups that begin with `b exposure_ns photons` or
+/// `d exposure_ns` and list their images, `i file`. A version, `v 3.0` to `v 4.1`, may be given;
+/// these mean the same. Empty lines and lines that begin with # are ignored; backslashes in file
+/// names are read as slashes, commas in numbers as points.
 /// \throws InputError naming `where` and line for all other text, for numbers outside their limits
 /// and for a group without two images.
 [[nodiscard]] Series parse_series(std::string_view text, std::string_view where);

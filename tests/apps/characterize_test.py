@@ -67,6 +67,16 @@ class CharacterizeTest(ProgramTest):
         self.succeed("characterize", "--evaluate", "series/emva1288_data.txt", "-o", "charts")
         self.expect_charts("charts")
 
+    def test_a_descriptor_of_each_version_has_the_same_figures(self):
+        """The reference data sets have version 3.0, or no line of it."""
+        measured = self.series_of_t6()["measured"]
+        text = (self.folder / "series/emva1288_data.txt").read_text()
+        for name, head in ("v3", "v 3.0\n"), ("v41", "v 4.1\n"), ("nov", ""):
+            (self.folder / f"series/{name}.txt").write_text(text.replace("v 4.0\n", head))
+            self.assertEqual(self.figures("characterize", "--evaluate", f"series/{name}.txt")["measured"], measured)
+        (self.folder / "series/non.txt").write_text(text.replace("n 12 320 240\n", ""))
+        self.fails(INPUT, ["non.txt", 'no line "n bits width height"'], "characterize", "--evaluate", "series/non.txt")
+
     def expect_charts(self, folder):
         """Of each point of the series a mark."""
         drawn = ElementTree.parse(self.folder / folder / "photon_transfer.svg").getroot()

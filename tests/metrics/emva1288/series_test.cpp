@@ -43,14 +43,31 @@ TEST(SeriesTest, ReadsWhatItWrites) {
     EXPECT_EQ(text.substr(0, 29), "v 4.0\nn 12 320 240\nd 1000000\n");
 }
 
+TEST(SeriesTest, ReadsEachVersionAndAnyOrderOfTheHeader) {
+    const std::string whole = kWhole;
+    const std::string expected = series_text(parse_series(whole, "a.txt"));
+    const std::string body = whole.substr(std::string_view("v 4.0\n").size());
+    const auto same = [&](const std::string& text) {
+        EXPECT_EQ(series_text(parse_series(text, "a.txt")), expected) << text;
+    };
+    for (const char* version : {"v 3.0\n", "v 3.1\r\n", "v 4.0\n", "v 4.1\n", ""})
+        same(version + body);
+    const std::string format = "n 12 320 240\n";
+    const std::string groups = body.substr(body.find('d'));
+    same(groups + "\n" + format);
+    same(format + groups + "\nv 3.0\n");
+    std::string commas = whole;
+    same(commas.replace(commas.find("2.5e3"), 5, "2500,0"));
+}
+
 TEST(SeriesTest, NamesTheLineThatIsWrong) {
     const auto refuse = [](const std::string& text, const std::vector<std::string>& parts) {
         expect_parts(message_of<InputError>([&] { return parse_series(text, "a.txt"); }), parts);
     };
     const std::string start = "v 4.0\nn 12 320 240\n";
-    refuse("", {"a.txt:0", "v 4.0"});
-    refuse("v 3.0\n", {"a.txt:1", "version \"3.0\"", "4.0"});
-    refuse("n 12 320 240\n", {"no line \"v 4.0\""});
+    refuse("", {"a.txt:0", "no line \"n bits"});
+    for (const std::string version : {"", "2.9", "5.0", "nan", "4.x"})
+        refuse("v " + version + "\n", {"a.txt:1", "version \"" + version + "\"", "3.0 to 4.1"});
     refuse("v 4.0\n", {"no line \"n bits width height\""});
     refuse("v 4.0\nn 17 320 240\n", {"a.txt:2", "bits 17 is outside 1..16"});
     refuse("v 4.0\nn 12 320\n", {"a.txt:2", "height is missing"});
@@ -58,7 +75,7 @@ TEST(SeriesTest, NamesTheLineThatIsWrong) {
     refuse("v 4.0\nn 12 320 240 1\n", {"a.txt:2", "more than the line needs"});
     refuse(start + "n 8 2 2\n", {"a.txt:3", "a second line n"});
     refuse(start, {"names no images"});
-    refuse("v 4.0\nb 1 1\n", {"a.txt:2", "come before the images"});
+    refuse("v 4.0\nb 1 1\ni a.png\ni b.png\n", {"a.txt:4", "no line \"n bits width height\""});
     refuse(start + "i a.png\n", {"a.txt:3", "before the first line"});
     refuse(start + "b 10\n", {"a.txt:3", "photons is missing"});
     refuse(start + "b 10 x\n", {"photons \"x\" is not a number"});
