@@ -9,6 +9,7 @@
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
+#include "core/index.h"
 #include "io/output_names.h"
 #include "readout/measured_stream.h"
 
@@ -23,7 +24,19 @@ struct ImportOptions {
     double electrons = 1000;
     bool noise_free = false;
     double saturation = 0;
+    int slots = 0;  ///< of a measurement; 0: as many as there are masks
 };
+
+/// The first masks only, if fewer than all belong to a measurement. \throws InputError if the file
+/// has fewer.
+void keep_masks(NpyVolume& masks, int slots, const std::string& file) {
+    if (slots == 0) return;
+    if (slots > masks.layers)
+        throw InputError(file, fmt::format("has {}, fewer than --slots {}",
+                                           counted(masks.layers, "mask"), slots));
+    masks.values.resize(masks.values.size() / index(masks.layers) * index(slots));
+    masks.layers = slots;
+}
 
 /// The arrays of the files. \throws InputError as their readers.
 MeasuredArrays read_arrays(const ImportOptions& options) {
@@ -38,6 +51,7 @@ MeasuredArrays read_arrays(const ImportOptions& options) {
     };
     arrays.measurements = read(arrays.measurement_file, options.variable, NpyImages::kOneLayer);
     arrays.masks = read(arrays.mask_file, options.mask_variable, NpyImages::kRefused);
+    keep_masks(arrays.masks, options.slots, arrays.mask_file);
     if (!options.noise_free) arrays.electrons = options.electrons;
     if (options.saturation > 0) arrays.saturation = options.saturation;
     return arrays;
@@ -122,6 +136,11 @@ void add_import(Command& app, Action& action) {
         .default_text("MEASUREMENTS, if that is a .mat")
         .type_name("FILE")
         .input();
+    command
+        .add_option("--slots", options->slots, "slots of a measurement: the first N of the masks")
+        .default_text("as many as there are masks")
+        .check(whole_check(1, kMaxPeriodSlots))
+        .type_name("N");
     command.add_option("-o,--output", options->output, "sample stream")
         .type_name("FILE")
         .required()
@@ -149,6 +168,7 @@ void add_import(Command& app, Action& action) {
     command.footer(
         "Examples:\n"
         "  stipple import meas.npy --masks masks.npy -o clip.stipple --electrons 5000\n"
+        "  stipple import meas_cr_10.mat --masks real_mask.mat --slots 10 -o clip.stipple\n"
         "  stipple import kobe32_cacti.mat -o kobe.stipple --noise-free\n"
         "  stipple decode clip.stipple -o decoded");
     set_action(command, action, options, import, [command, options] {

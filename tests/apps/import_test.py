@@ -71,6 +71,19 @@ class ImportTest(ProgramTest):
         calibration = self.figures("info", "clip.stipple")["calibration"]
         self.assertEqual((calibration["electrons_per_unit"], calibration["read_noise_e"]), (5000, 3))
 
+    def test_the_first_masks_of_a_file_can_be_taken(self):
+        """As of data sets with 50 masks, of which a measurement of 10 slots uses the first 10."""
+        self.write()
+        all_masks = self.imported("--noise-free")
+        first = self.decoded()
+        more = np.concatenate([self.masks, np.full((3, 12, 10), 200.0)])  # white: as of the first only
+        self.write(masks=more)
+        self.assertEqual(self.imported("--noise-free", "--slots", "4"), all_masks)
+        np.testing.assert_array_equal(self.decoded(), first)
+        self.assertEqual(self.imported("--slots", "7")["slots"], 21)
+        self.refuse(["masks.npy", "has 7 masks, fewer than --slots 8"], masks=more, options=("--slots", "8"))
+        self.fails(USAGE, ["--slots"], "import", "meas.npy", "--masks", "masks.npy", "-o", "x.stipple", "--slots", "0")
+
     def test_negative_measurements_have_a_black_level(self):
         self.measurements[:, 3, 4] = -0.2
         self.write()
