@@ -46,15 +46,30 @@ PixelFormat format_named(std::string_view name, std::string_view where) {
                                  name));
 }
 
+std::uint64_t frame_bytes(const RawFormat& raw) {
+    return raw.format.row_bytes(static_cast<int>(raw.cols)) * raw.rows;
+}
+
 void set_key(RawFormat& raw, std::string_view key, std::string_view value) {
     const std::string_view where = raw.text;
     const double full_scale = (1 << raw.format.significant_bits) - 1;
+    const auto whole = [&](std::uint64_t min, std::string_view what) {
+        const auto number = parsed_number<std::uint64_t>(value);
+        if (number && *number >= min) return *number;
+        throw InputError(where, fmt::format("{}={}: give a number of {}", key, value, what));
+    };
     if (key == "offset") {
-        if (const auto offset = parsed_number<std::uint64_t>(value)) {
-            raw.offset = *offset;
-            return;
-        }
-        throw InputError(where, fmt::format("offset={}: give a number of bytes", value));
+        raw.offset = whole(0, "bytes");
+        return;
+    }
+    if (key == "stride") {
+        const std::uint64_t frame = frame_bytes(raw);
+        raw.stride = whole(frame, fmt::format("bytes, at least the {} of a frame", frame));
+        return;
+    }
+    if (key == "frames") {
+        raw.frames = whole(1, "frames");
+        return;
     }
     const double number = parsed_number<double>(value).value_or(NAN);
     if (key == "black") {
@@ -68,10 +83,50 @@ void set_key(RawFormat& raw, std::string_view key, std::string_view value) {
         raw.frames_hz = number;
     } else {
         throw InputError(where,
-                         fmt::format("\"{}\" is no key; there are offset=BYTES, black=DN and "
-                                     "hz=RATE",
+                         fmt::format("\"{}\" is no key; there are offset=BYTES, stride=BYTES, "
+                                     "frames=N, black=DN and hz=RATE",
                                      key));
     }
+}
+
+/// Keys by which the `bytes` of a file are `fitting` frames and a rest, or frames with gaps.
+std::string remedies(const RawFormat& raw, std::uint64_t bytes, std::uint64_t stride,
+                     std::uint64_t fitting) {
+    if (fitting == 0) return {};
+    const std::uint64_t used = (fitting - 1) * stride + frame_bytes(raw);
+    std::string text =
+        fmt::format(", or add frames={}, which leaves {} bytes at the end", fitting, bytes - used);
+    constexpr std::uint64_t kMaxTrials = 1U << 20U;
+    const std::uint64_t least = fitting - std::min(fitting - 1, kMaxTrials);
+    for (std::uint64_t frames = fitting; frames > least && !raw.stride; --frames)
+        if (bytes % frames == 0)
+            return text +
+                   fmt::format(", or stride={}, which makes {} frames", bytes / frames, frames);
+    return text;
+}
+
+/// Number of frames in a file of `size` bytes. \throws InputError as open_raw_file.
+std::uint64_t count_frames(const RawFormat& raw, std::uint64_t size, const std::string& name) {
+    const std::uint64_t frame = frame_bytes(raw), stride = raw.stride.value_or(frame);
+    const std::uint64_t bytes = size - std::min(raw.offset, size);
+    const std::uint64_t fitting = bytes < frame ? 0 : (bytes - frame) / stride + 1;
+    const std::string from =
+        raw.offset > 0 ? fmt::format(", {} from byte {} on", bytes, raw.offset) : "";
+    if (raw.frames.value_or(0) > fitting)
+        throw InputError(name, fmt::format("has {} bytes{}, which is room for {} of frames={} ({} "
+                                           "bytes each)",
+                                           size, from, fitting, *raw.frames, frame));
+    if (raw.frames) return *raw.frames;
+    const std::uint64_t rest = bytes % stride;
+    if (fitting > 0 && (rest == 0 || rest == frame)) return fitting;
+    throw InputError(
+        name,
+        fmt::format("has {} bytes{}, which are {:.6g} frames of {} x {} {} ({} bytes each{}); "
+                    "check size, pixel format and offset of --raw{}",
+                    size, from, static_cast<double>(bytes) / static_cast<double>(stride), raw.cols,
+                    raw.rows, raw.format.name, frame,
+                    raw.stride ? fmt::format(", stride {}", stride) : "",
+                    remedies(raw, bytes, stride, fitting)));
 }
 
 }  // namespace
@@ -106,6 +161,7 @@ RawVideo open_raw_file(const std::filesystem::path& file, const RawFormat& raw) 
         .shape = checked_shape(raw.rows, raw.cols, static_cast<std::uint64_t>(raw.format.planes),
                                file.string()),
         .first_offset = raw.offset,
+        .stride = raw.stride.value_or(0),
         .light_of_dn = light_table(raw.format, raw.black_dn, full_scale),
         .traits = {.filter = raw.format.filter,
                    .frames_hz = raw.frames_hz,
@@ -114,17 +170,7 @@ RawVideo open_raw_file(const std::filesystem::path& file, const RawFormat& raw) 
                    .black_dn = raw.black_dn,
                    .white_dn = full_scale}};
     const FileBytes bytes(file);
-    const std::uint64_t rest = bytes.size() - std::min(raw.offset, bytes.size());
-    video.slots = rest / video.frame_bytes();
-    if (video.slots == 0 || rest % video.frame_bytes() != 0)
-        throw InputError(
-            bytes.name(),
-            fmt::format("has {} bytes{}, which are {:.6g} frames of {} x {} {} ({} bytes each); "
-                        "check size, pixel format and offset of --raw",
-                        bytes.size(),
-                        raw.offset > 0 ? fmt::format(", {} from byte {} on", rest, raw.offset) : "",
-                        static_cast<double>(rest) / static_cast<double>(video.frame_bytes()),
-                        raw.cols, raw.rows, raw.format.name, video.frame_bytes()));
+    video.slots = count_frames(raw, bytes.size(), bytes.name());
     return video;
 }
 

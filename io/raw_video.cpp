@@ -19,7 +19,9 @@ RawVideoReader::RawVideoReader(RawVideo video) : video_(std::move(video)), file_
     if (video_.slots > std::numeric_limits<int>::max())
         throw InputError(file_.name(), fmt::format("announces {} frames", video_.slots));
     const std::uint64_t bytes = video_.frame_bytes();
-    if (video_.offsets.empty() && !fits(video_.first_offset, video_.slots * bytes))
+    if (video_.offsets.empty() && video_.slots > 0 &&
+        (!fits(video_.first_offset, bytes) ||
+         video_.slots - 1 > (file_.size() - video_.first_offset - bytes) / step()))
         throw InputError(
             file_.name(),
             fmt::format("has {} bytes, but {} frames of {} bytes from byte {} on are announced; it "
@@ -41,7 +43,7 @@ std::string RawVideoReader::where() const {
 }
 
 std::uint64_t RawVideoReader::offset_of(std::uint64_t slot) {
-    if (video_.offsets.empty()) return video_.first_offset + slot * bytes_.size();
+    if (video_.offsets.empty()) return video_.first_offset + slot * step();
     const std::uint64_t offset = video_.offsets[slot];
     if (!video_.annotated) return offset;
     const auto number_at = [this](std::uint64_t at) {

@@ -20,8 +20,9 @@ struct RawVideo {
     PixelFormat format;
     FrameShape shape;
     std::uint64_t slots = 0;
-    std::uint64_t first_offset = 0;           ///< bytes before the first of frames without gaps
-    std::vector<std::uint64_t> offsets = {};  ///< of each frame, if they may have gaps
+    std::uint64_t first_offset = 0;           ///< bytes before the first of frames in equal steps
+    std::uint64_t stride = 0;                 ///< bytes of a step, at least a frame; 0: a frame
+    std::vector<std::uint64_t> offsets = {};  ///< of each frame, if they have no equal steps
     bool annotated = false;  ///< before each frame is a block that begins with its length (cine)
     bool bottom_up = false;  ///< the last row comes first
     std::vector<float> light_of_dn;
@@ -52,6 +53,10 @@ class RawVideoReader {
     }
 
   private:
+    /// Bytes from frame to frame, if they have equal steps.
+    [[nodiscard]] std::uint64_t step() const {
+        return video_.stride > 0 ? video_.stride : video_.frame_bytes();
+    }
     [[nodiscard]] std::uint64_t offset_of(std::uint64_t slot);
 
     RawVideo video_;

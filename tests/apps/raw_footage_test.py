@@ -66,6 +66,8 @@ class RawTest(CameraFilesTest):
                            ("0x6:mono8", "outside 1..65535"), ("70000x1:mono8", "outside 1..65535"),
                            ("8x6:mono8:black=255", "black=255"), ("8x6:mono8:black=nan", "black=nan"),
                            ("8x6:mono8:hz=0", "hz=0"), ("8x6:mono8:offset=-1", "offset=-1"),
+                           ("8x6:mono8:stride=47", "stride=47: give a number of bytes, at least the 48 of a frame"),
+                           ("8x6:mono8:frames=0", "frames=0"),
                            ("8x6:mono8:fps=3", "\"fps\" is no key")):
             with self.subTest(text=text):
                 said = self.fails(USAGE, [f"--raw: {text}: ", part], "emulate", name, "-o", "x.stipple", "--raw", text)
@@ -80,6 +82,33 @@ class RawTest(CameraFilesTest):
         self.refuse(["No such file"], "none.raw", "--raw", "8x6:mono8")
         (self.folder / "frames").mkdir()
         self.refuse(["directory"], "frames", "--raw", "8x6:mono8")
+
+    def test_frames_with_gaps_and_bytes_behind_them(self):
+        """As SER (times behind the frames) and Norpix .seq (frames at multiples of a block)."""
+        frames = [frame.astype("<u2").tobytes() for frame in MOSAIC]
+        count, size = len(frames), len(frames[0])
+        ser = self.write("clip.ser", bytes(178) + b"".join(frames) + b"\xff" * 8 * count)
+        self.assert_light(MOSAIC / 4095, ser, "--raw", f"8x6:mono12:offset=178:frames={count}")
+        seq = self.write("clip.seq", bytes(1024) + b"".join(frame.ljust(160, b"\xff") for frame in frames))
+        self.assert_light(MOSAIC / 4095, seq, "--raw", "8x6:mono12:offset=1024:stride=160")
+        self.assert_light(MOSAIC[:2] / 4095, seq, "--raw", "8x6:mono12:offset=1024:frames=2:stride=160")
+        cut = self.write("cut.seq", (self.folder / seq).read_bytes()[:size - 160])
+        self.assert_light(MOSAIC / 4095, cut, "--raw", "8x6:mono12:offset=1024:stride=160")
+        self.assert_light(MOSAIC[1:2] / 4095, cut, "--raw", "8x6:mono12:offset=1024:stride=160", "--frames", "1:2")
+
+    def test_a_length_that_does_not_fit_names_values_that_do(self):
+        size = 48
+        raw = "8x6:mono8:offset=10"
+        name = self.write("clip.raw", bytes(10 + 5 * size + 40))
+        self.refuse(["add frames=5, which leaves 40 bytes at the end", "stride=56, which makes 5 frames"], name, "--raw", raw)
+        for more in (":frames=5", ":stride=56", ":stride=56:frames=4"):
+            self.light(name, "--raw", raw + more)
+        self.refuse(["which are 5.09091 frames of 8 x 6 Mono8 (48 bytes each, stride 55)",
+                     "frames=5, which leaves 12 bytes"], name, "--raw", raw + ":stride=55")
+        self.refuse(["has 290 bytes, 280 from byte 10 on, which is room for 5 of frames=6"], name, "--raw", raw + ":frames=6")
+        for huge in (2**63, 2**64 - 1):
+            self.refuse(["room for 5 of", f"frames={huge}"], name, "--raw", f"{raw}:frames={huge}")
+            self.refuse(["room for 1 of frames=2"], name, "--raw", f"{raw}:frames=2:stride={huge}")
 
     def test_without_raw_the_option_is_named(self):
         self.refuse(["a file without a header needs --raw"], self.write("clip.raw", bytes(96)))
