@@ -282,7 +282,7 @@ void add_report(Command& app, Action& action) {
         "The page needs no network and no other file.");
     set_action(command, action, options, make_report, [command, options] {
         if (options->truth.empty())
-            command.refuse({"--transfer", "--raw", "--luminance"},
+            command.refuse({"--transfer", "--raw", "--min-value", "--luminance"},
                            "is of --truth; add that or leave this out");
     });
 }

@@ -89,10 +89,11 @@ void check_light(std::span<const float> light, FrameShape shape, std::string_vie
     const char* problem = std::isnan(light[site])   ? "light is not a number"
                           : std::isinf(light[site]) ? "light is infinite"
                                                     : "light is negative";
+    const char* remedy =
+        std::isfinite(light[site]) ? "clip it with --min-value 0" : "repair the footage first";
     throw InputError(
-        where,
-        fmt::format("row {}, column {}, plane {}: {} ({}); repair or clip the footage first",
-                    pixel / width, pixel % width, site / shape.pixels(), problem, light[site]));
+        where, fmt::format("row {}, column {}, plane {}: {} ({}); {}", pixel / width, pixel % width,
+                           site / shape.pixels(), problem, light[site], remedy));
 }
 
 void scale_light(std::span<float> light, double factor, std::string_view where) {

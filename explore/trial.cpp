@@ -231,7 +231,7 @@ TrialLight read_light(const Space& space, const std::string& footage, const Foot
                       const KeepGoing& keep_going) {
     if (is_scene(footage)) {
         if (reading.transfer || reading.luminance || reading.raw || reading.scale != 1 ||
-            reading.part != FootagePart())
+            reading.min_value || reading.part != FootagePart())
             throw InputError(footage,
                              "is an embedded scene, which the options of footage do not change; "
                              "write it by \"stipple synth\" and give that file");

@@ -183,6 +183,9 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         throw InputError(name,
                          "is the mosaic of a colour filter array, of which there is "
                          "no --luminance");
+    if (options.min_value && options.max_value && *options.min_value > *options.max_value)
+        throw InputError(name, fmt::format("--min-value {} is above --max-value {}",
+                                           *options.min_value, *options.max_value));
     transfer = transfer_of(options, traits, std::holds_alternative<VideoReader>(source), name);
     for (std::string& text : reading_warnings(traits, options, name)) warn(std::move(text));
     check_frames();
@@ -270,7 +273,8 @@ bool FootageReader::Impl::read_whole(std::span<float> frame) {
     const auto read = [&](auto& frames) {
         if (!frames.read(light)) return false;
         make_linear(light);
-        check_light(light, source_shape, frames.where(), options.negative);
+        check_light(light, source_shape, frames.where(),
+                    options.negative || options.min_value.has_value());
         if (options.scale != 1) scale_light(light, options.scale, frames.where());
         if (!std::exchange(looked_at_brightness, true) && !options.max_value && options.scale == 1)
             warn(brightness_warning(light, frames.where()));
@@ -319,6 +323,10 @@ bool FootageReader::read(std::span<float> frame) {
         return false;
     }
     if (impl.reduction) (*impl.reduction)(whole, frame);
+    if (impl.options.min_value) {
+        const auto min_light = static_cast<float>(*impl.options.min_value);
+        for (float& value : frame) value = std::max(value, min_light);
+    }
     if (impl.options.max_value) {
         const auto max_light = static_cast<float>(*impl.options.max_value);
         for (float& value : frame) value = std::min(value, max_light);

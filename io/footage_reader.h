@@ -24,6 +24,7 @@ struct FootageOptions {
     std::optional<Transfer> transfer = {};  ///< none: linear, with a warning where it looks wrong
     bool luminance = false;                ///< reduce RGB to Rec. 709 luminance (.2126 .7152 .0722)
     std::optional<double> max_value;       ///< clip light to this value
+    std::optional<double> min_value = {};  ///< clip light below this, as negative light, to it
     std::optional<RawFormat> raw = {};     ///< read a file without a header so, whatever its name
     double scale = 1;                      ///< factor on the light, before it is clipped; above 0
     std::optional<double> frames_hz = {};  ///< frame rate, instead of that of the source
@@ -34,8 +35,8 @@ struct FootageOptions {
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.
 /// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
-/// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W) or (T,H,W,3)
-/// with dtype u1, u2, f2, f4 or f8, or a file of frames without a header. ReadAhead
+/// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W), (T,H,W,3)
+/// or (H,W) with dtype u1, u2, f2, f4 or f8, or a file of frames without a header. ReadAhead
 /// (capture/recording/read_ahead.h) reads recordings of cameras too, and in the background.
 class FootageReader {
   public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "core/error.h"
 #include "core/light.h"
@@ -114,7 +115,7 @@ std::span<const float> ArrayFrames::next() {
         linearise(own(light), transfer);
         light = frame_;
     }
-    check_light(light, source_, where, options_.negative);
+    check_light(light, source_, where, options_.negative || options_.min_value.has_value());
     if (options_.scale != 1) {
         scale_light(own(light), options_.scale, where);
         light = frame_;
@@ -125,10 +126,11 @@ std::span<const float> ArrayFrames::next() {
         reduce_to_luminance(light, luminance_);
         light = luminance_;
     }
-    if (options_.max_value) {
-        const auto clip = [max = static_cast<float>(*options_.max_value)](float& value) {
-            value = std::min(value, max);
-        };
+    if (options_.min_value || options_.max_value) {
+        constexpr float kMax = std::numeric_limits<float>::max();
+        const auto min = static_cast<float>(options_.min_value.value_or(-kMax));
+        const auto max = static_cast<float>(options_.max_value.value_or(kMax));
+        const auto clip = [=](float& value) { value = std::min(std::max(value, min), max); };
         const std::span<float> clipped = luminance_.empty() ? own(light) : std::span(luminance_);
         std::ranges::for_each(clipped, clip);
         light = clipped;

@@ -42,6 +42,7 @@ std::string in_python(const std::string& message) {
         {"--transfer (linear|gamma22|srgb|bt709|pq|hlg|auto)", "transfer=\"$1\""},
         {"--resample (hold|blend|flow)", "resample=\"$1\""},
         {"--(transfer|resample|scale|raw|luminance)", "$1"},
+        {"--(min|max)-value ([0-9.e+-]+)", "$1_value=$2"},
         {"--frames-hz", "frames_hz"},
         {"--overrun drop", "overrun=\"drop\""},
         {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$1\")"},

@@ -56,6 +56,14 @@ void set_scale(Reading& reading, double scale) {
     reading.options.scale = scale;
 }
 
+void set_min_value(Reading& reading, std::optional<double> light) {
+    if (light && !(*light >= 0 && std::isfinite(static_cast<float>(*light))))
+        throw InputError("min_value", fmt::format("{} is not 0 or above", *light));
+    if (light && *light > reading.options.max_value.value_or(*light))
+        throw InputError("min_value", fmt::format("{} is above max_value", *light));
+    reading.options.min_value = light;
+}
+
 void set_rate(Reading& reading, std::optional<double> hz) {
     if (hz && !(*hz >= kMinFramesHz && *hz <= kMaxFramesHz))
         throw InputError("frames_hz",
@@ -204,6 +212,7 @@ void bind_footage(py::module_& module) {
         .def(py::init(&reading_of))
         .def("set_scale", &set_scale)
         .def("set_raw", &set_raw)
+        .def("set_min_value", &set_min_value)
         .def("set_rate", &set_rate)
         .def("take_negative", [](Reading& reading) { reading.options.negative = true; })
         .def("set_resampling", &set_resampling);

@@ -66,6 +66,7 @@ toml::table footage_table(const FootageOrigin& footage) {
     if (!footage.recording.empty()) table.insert("recording", footage.recording);
     if (footage.reading.raw) table.insert("raw", footage.reading.raw->text);
     if (!footage.pixel_format.empty()) table.insert("pixel_format", footage.pixel_format);
+    if (footage.reading.min_value) table.insert("min_value", *footage.reading.min_value);
     if (footage.reading.max_value) table.insert("max_value", *footage.reading.max_value);
     const FootagePart& part = footage.reading.part;
     if (part.frames != FrameRange()) table.insert("frames", text_of(part.frames));
@@ -123,6 +124,8 @@ std::string footage_options(const toml::node_view<const toml::node>& footage) {
     if (const auto it = text_of(footage["resample"]); !it.empty()) add("--resample", it);
     if (const auto hz = footage["frames_hz"].value<double>())
         add("--frames-hz", fmt::format("{}", *hz));
+    if (const auto min_value = footage["min_value"].value<double>())
+        add("--min-value", fmt::format("{}", *min_value));
     if (const auto max_value = footage["max_value"].value<double>())
         add("--max-value", fmt::format("{}", *max_value));
     return text;

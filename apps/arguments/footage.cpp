@@ -18,6 +18,11 @@ void add_footage_arguments(Command& command, FootageOptions& options, const std:
     add_raw_argument(command, options.raw, footage);
     command.add_flag("--luminance", options.luminance,
                      "reduce colour footage to Rec. 709 luminance");
+    command
+        .add_option("--min-value", options.min_value, "clip light of " + footage + " below V to V")
+        .default_text("negative light is refused")
+        .check(number_check(0, 1e9))
+        .type_name("V");
 }
 
 void add_raw_argument(Command& command, std::optional<RawFormat>& raw, const std::string& footage) {

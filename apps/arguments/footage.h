@@ -11,7 +11,7 @@ namespace stipple {
 
 struct SceneOptions;
 
-/// `--transfer` and `--raw`, of the footage that its help names, and `--luminance`.
+/// `--transfer`, `--raw` and `--min-value`, of the footage that its help names, and `--luminance`.
 void add_footage_arguments(Command& command, FootageOptions& options,
                            const std::string& footage = "the footage");
 

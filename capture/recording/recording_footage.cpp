@@ -19,12 +19,13 @@ FrameShape shape_of(const FrameLayout& layout) {
 void check_recording_options(const std::filesystem::path& recording,
                              const FootageOptions& options) {
     if (options.transfer.value_or(Transfer::kLinear) != Transfer::kLinear || options.luminance ||
-        options.max_value || options.raw || options.scale != 1 || options.part != FootagePart())
-        throw InputError(
-            recording.string(),
-            "is a recording of a camera, whose numbers are linear: the options for "
-            "transfer, raw format, luminance, scale, maximum, frames and part of the frame are "
-            "for other footage");
+        options.min_value || options.max_value || options.raw || options.scale != 1 ||
+        options.part != FootagePart())
+        throw InputError(recording.string(),
+                         "is a recording of a camera, whose numbers are linear: the options for "
+                         "transfer, raw format, luminance, scale, minimum, maximum, frames and "
+                         "part of the frame are "
+                         "for other footage");
 }
 
 RecordingFootage::RecordingFootage(const std::filesystem::path& file,

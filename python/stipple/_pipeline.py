@@ -92,6 +92,7 @@ def load(
     transfer: Optional[str] = None,
     luminance: bool = False,
     max_value: Optional[float] = None,
+    min_value: Optional[float] = None,
     raw: Optional[str] = None,
     scale: float = 1.0,
     progress: Tell = None,
@@ -99,10 +100,11 @@ def load(
     """Footage as an array of linear light: what "stipple emulate" would emulate (its option --truth). The array
     is as that of `decode`.
 
-    video, transfer, luminance, max_value, raw, scale, progress: as for `emulate`.
+    video, transfer, luminance, max_value, min_value, raw, scale, progress: as for `emulate`.
     """
     reading = _stipple.Reading(transfer, luminance, max_value)
     reading.set_raw(raw)
+    reading.set_min_value(min_value)
     reading.set_scale(scale)
     return _stipple.load(_stipple.Footage(video, reading), progress)
 
@@ -119,6 +121,7 @@ def emulate(
     transfer: Optional[str] = None,
     luminance: bool = False,
     max_value: Optional[float] = None,
+    min_value: Optional[float] = None,
     raw: Optional[str] = None,
     scale: float = 1.0,
     resample: Optional[str] = None,
@@ -142,6 +145,7 @@ def emulate(
         "auto": as the file declares.
     luminance: reduce colour to Rec. 709 luminance.
     max_value: clip light to this value first.
+    min_value: clip light below this value to it; 0 makes negative light 0, which is refused otherwise.
     raw: read a file as frames without a header, "640x480:mono12p" (docs/footage.md).
     scale: multiply light by this, before it is clipped.
     resample: make slots of frames of another rate, "hold", "blend" or "flow"; None: each frame is a slot.
@@ -156,6 +160,7 @@ def emulate(
     """
     reading = _stipple.Reading(transfer, luminance, max_value)
     reading.set_raw(raw)
+    reading.set_min_value(min_value)
     reading.set_scale(scale)
     reading.set_resampling(resample)
     reading.set_rate(frames_hz)
@@ -207,6 +212,7 @@ def compare(
     *,
     margin: int = 0,
     max_value: Optional[float] = None,
+    min_value: Optional[float] = None,
     peak: float = 1.0,
     cd_per_unit: float = 100.0,
     until: Optional[int] = None,
@@ -221,8 +227,9 @@ def compare(
     """Quality of a video against its reference, as "stipple compare" does; `frames` of the result has that
     of each frame. Of videos of unequal length the frames that both have are compared, with a warning.
 
-    result, reference: videos as for `emulate`, of the same shape. `transfer`, `raw` and `max_value` are those
-        of "stipple compare": transfer and raw are of the reference. The light of the result may be negative.
+    result, reference: videos as for `emulate`, of the same shape. `transfer`, `raw`, `min_value` and `max_value` are
+        those of "stipple compare": transfer, raw and min_value are of the reference. The light of the result may
+        be negative.
     margin: frames left out at each end.
     max_value: clip the light of both to it first.
     peak: light of which PSNR and PU21-PSNR are.
@@ -237,6 +244,7 @@ def compare(
     a = _stipple.Footage(result, reading)
     reading = _stipple.Reading(transfer, luminance, None)
     reading.set_raw(raw)
+    reading.set_min_value(min_value)
     b = _stipple.Footage(reference, reading)
     comparison = _stipple.Comparison(
         margin, max_value, peak, cd_per_unit, until, pu21_ssim, pixels_per_degree

@@ -78,7 +78,7 @@ class BadSettingsTest(ProgramTest):
         self.refuse(["nobody", "full4x", "random", "tiled"], "--schedule", "nobody")
 
     def test_numbers_of_the_command_line(self):
-        for option, value in (("--max-value", "nan"), ("--max-value", "0"), ("--max-value", "inf"),
+        for option, value in (("--max-value", "nan"), ("--max-value", "0"), ("--max-value", "inf"), ("--min-value", "-0.1"),
                               ("--seed", "-1"), ("--seed", "1.5"), ("--threads", "-1"),
                               ("--seed", str(2**64)), ("--transfer", "log")):
             message = self.fails(USAGE, [option], "emulate", "light.npy", "-o", "clip.stipple",

@@ -39,7 +39,7 @@ class ProvenanceTest(ProgramTest):
         light = np.random.default_rng(1).random((9, 16, 32, 3))
         np.save(self.folder / "a scene's.npy", light)
         provenance, command = self.made_again(
-            "a scene's.npy", "--transfer", "srgb", "--max-value", 0.51234567890123, "--luminance",
+            "a scene's.npy", "--transfer", "srgb", "--max-value", 0.51234567890123, "--luminance", "--min-value", 0.01,
             "--sensor", "lux1310", "--set", "sensor.slot_us=3.5", "--set", "sensor.timing.channels=8",
             "--set", "sensor.timing.code_load_clocks=0",
             "--set", "sensor.full_scale_e=1e4", "--schedule", "tiled", "--set", "schedule.tile_rows=8",

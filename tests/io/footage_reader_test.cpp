@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -120,6 +121,23 @@ TEST(FootageReaderTest, ClipsAtTheLargestValueAfterTheReductionToLuminance) {
     EXPECT_EQ(read_npy(folder, mono, {.max_value = 2.0}), (Floats{1.5F, 2, 2}));
     const auto blue = npy_file("<f4", "(1, 1, 1, 3)", bytes_of(Floats{0, 0, 10}));
     EXPECT_NEAR(read_npy(folder, blue, {.luminance = true, .max_value = 2.0})[0], 0.722, 1e-6);
+}
+
+TEST(FootageReaderTest, ClipsNegativeLightAfterTheReductionToAPart) {
+    const TemporaryFolder folder;
+    const auto mono = npy_file("<f4", "(1, 2, 2)", bytes_of(Floats{-0.5F, 1.5F, -6e-8F, -0.25F}));
+    const auto read = [&](double min, FootagePart part = {}) {
+        return read_npy(folder, mono, {.max_value = 1.0, .min_value = min, .part = part});
+    };
+    EXPECT_EQ(read(0), (Floats{0, 1, 0, 0}));
+    EXPECT_EQ(read(0.25), (Floats{0.25F, 1, 0.25F, 0.25F}));
+    EXPECT_NEAR(read(0, {.bin = 2})[0], 0.75 / 4, 1e-7);
+    EXPECT_THROW(read(1.5), InputError);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity})
+        EXPECT_THROW(read_npy(folder, npy_file("<f4", "(1, 1, 1)", bytes_of(Floats{bad})),
+                              {.max_value = {}, .min_value = 0.0}),
+                     InputError);
 }
 
 TEST(FootageReaderTest, KeepsReturningFalseAtTheEnd) {

@@ -50,10 +50,24 @@ class FootageTest(ProgramTest):
             for slot in range(of_file.slots()):
                 np.testing.assert_array_equal(of_array.samples(slot), of_file.samples(slot))
 
+    def test_negative_light_can_be_clipped(self):
+        light = (self.dn / 4095).astype(np.float32) - 0.25
+        self.write_array("light.npy", light)
+        for video in (light, light.astype(float), self.path("light.npy")):
+            np.testing.assert_allclose(stipple.load(video, min_value=0), np.maximum(light, 0), rtol=1e-6)
+            np.testing.assert_allclose(stipple.load(video, min_value=0.25, max_value=0.5),
+                                       np.clip(light, 0.25, 0.5), rtol=1e-6)
+            with self.assertRaisesRegex(ValueError, "light is negative .*clip it with min_value=0"):
+                stipple.load(video)
+        self.assertTrue(np.any(light < 0))  # arrays of the caller stay as they are
+        self.assertGreater(stipple.compare(np.maximum(light, 0), light, min_value=0).psnr_db, 120)
+
     def test_bad_options(self):
         light = np.zeros((4, 16, 16), np.float32)
         for options, message in (({"scale": 0}, "scale: 0"), ({"scale": np.nan}, "scale"),
                                  ({"scale": 1e39}, "scale: 1e\\+39"), ({"scale": 1e38}, "infinite by scale"),
+                                 ({"min_value": -0.1}, "min_value: -0.1"),
+                                 ({"min_value": 2, "max_value": 1}, "min_value: 2 is above max_value"),
                                  ({"resample": "flow"}, "resample needs frames_hz"), ({"resample": "flo"}, "resample.*hold"),
                                  ({"resample": "hold", "frames_hz": -5}, "frames_hz: -5"), ({"raw": "4x4:mono8"}, "array"),
                                  ({"resample": "blend", "frames_hz": 1e6}, "shorter than a slot")):
