@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -12,6 +13,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/joined.h"
 #include "core/light.h"
 #include "core/parsed_number.h"
 #include "io/footage_files.h"
@@ -37,12 +39,14 @@ std::string value_of(std::string_view card) {
     return std::string(trimmed(text.substr(0, text.find('/'))));
 }
 
-/// The header, which is read block by block.
+/// The header of the primary array or of an extension, which is read block by block.
 class Header {
   public:
-    explicit Header(FileBytes& file);
+    Header(FileBytes& file, std::uint64_t begin);
 
-    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    /// Offset of the array.
+    [[nodiscard]] std::uint64_t end() const { return end_; }
+    [[nodiscard]] bool is_primary() const { return is_primary_; }
     [[nodiscard]] std::string text(std::string_view key) const {
         const auto found = values_.find(key);
         return found == values_.end() ? "" : found->second;
@@ -54,23 +58,28 @@ class Header {
     /// \throws InputError unless it is a whole number from `min` to `max`.
     [[nodiscard]] std::int64_t count(std::string_view key, std::int64_t min,
                                      std::int64_t max) const;
+    [[nodiscard]] std::int64_t axes() const { return count("NAXIS", 0, 999); }
+    /// Of the array; nothing if these are more than `max`. \throws InputError as `count`.
+    [[nodiscard]] std::optional<std::uint64_t> data_bytes(std::uint64_t max) const;
 
   private:
     const std::string& name_;
-    std::uint64_t bytes_ = 0;
+    std::uint64_t end_;
+    bool is_primary_;
     std::map<std::string, std::string, std::less<>> values_;
 };
 
-Header::Header(FileBytes& file) : name_(file.name()) {
+Header::Header(FileBytes& file, std::uint64_t begin)
+    : name_(file.name()), end_(begin), is_primary_(begin == 0) {
     constexpr std::uint64_t kMaxBlocks = 1000;
     std::vector<std::uint8_t> block(kBlockBytes);
     while (true) {
-        if (bytes_ == kMaxBlocks * kBlockBytes)
+        if (end_ - begin == kMaxBlocks * kBlockBytes)
             throw InputError(name_, "has a header without an end");
-        file.read(bytes_, block);
-        bytes_ += kBlockBytes;
+        file.read(end_, block);
+        end_ += kBlockBytes;
         const std::string_view cards(reinterpret_cast<const char*>(block.data()), block.size());
-        if (bytes_ == kBlockBytes && !cards.starts_with("SIMPLE  ="))
+        if (end_ == kBlockBytes && !cards.starts_with("SIMPLE  ="))
             throw InputError(name_, "is no FITS file: it does not begin with SIMPLE");
         for (std::size_t at = 0; at < cards.size(); at += kCardBytes) {
             const std::string_view card = cards.substr(at, kCardBytes);
@@ -111,6 +120,69 @@ std::int64_t Header::count(std::string_view key, std::int64_t min, std::int64_t 
         value == std::floor(value))
         return static_cast<std::int64_t>(value);
     throw InputError(name_, fmt::format("{} is \"{}\", not {} to {}", key, text(key), min, max));
+}
+
+std::optional<std::uint64_t> Header::data_bytes(std::uint64_t max) const {
+    constexpr std::int64_t kMax = std::numeric_limits<int>::max();
+    const auto count_or = [&](const char* key, std::int64_t absent) {
+        return static_cast<std::uint64_t>(text(key).empty() ? absent : count(key, 0, kMax));
+    };
+    const std::int64_t axes = this->axes();
+    std::uint64_t bytes = axes == 0 ? 0 : 1;
+    const auto multiply = [&](std::uint64_t factor) {
+        if (factor > 0 && bytes > max / factor) return false;
+        bytes *= factor;
+        return true;
+    };
+    for (std::int64_t axis = 1; axis <= axes; ++axis)
+        if (!multiply(static_cast<std::uint64_t>(count(fmt::format("NAXIS{}", axis), 0, kMax))))
+            return {};
+    bytes += count_or("PCOUNT", 0);
+    const auto number_bytes = static_cast<std::uint64_t>(std::abs(count("BITPIX", -64, 64)) / 8);
+    return multiply(count_or("GCOUNT", 1)) && multiply(number_bytes) ? std::optional(bytes)
+                                                                     : std::nullopt;
+}
+
+bool begins_extension(FileBytes& file, std::uint64_t at) {
+    constexpr std::string_view kStart = "XTENSION";
+    std::array<std::uint8_t, kStart.size()> start{};
+    if (at > file.size() || file.size() - at < kBlockBytes) return false;
+    file.read(at, start);
+    return std::ranges::equal(start, kStart);
+}
+
+/// The header of the primary array; where that is empty, of the image extension of 2 axes or more.
+/// \throws InputError if there are several of these, or only a compressed one.
+Header image_header(FileBytes& file, const Header& primary) {
+    if (primary.axes() > 0) return primary;
+    std::optional<Header> image;
+    std::vector<std::string> names;
+    bool compressed = false;
+    std::uint64_t at = primary.end();
+    for (int extension = 1; begins_extension(file, at); ++extension) {
+        const Header header(file, at);
+        const std::string kind = header.text("XTENSION");
+        const auto bytes = header.data_bytes(file.size());
+        compressed |= kind == "BINTABLE" && header.text("ZIMAGE") == "T";
+        if (kind == "IMAGE" && header.axes() > 1 && bytes != 0) {
+            if (!image) image.emplace(header);
+            names.push_back(fmt::format("{} \"{}\"", extension, header.text("EXTNAME")));
+        }
+        if (!bytes) break;
+        at = header.end() + (*bytes + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
+    }
+    if (names.size() > 1) {
+        constexpr std::size_t kMaxNames = 8;
+        const char* more = names.size() > kMaxNames ? ", ..." : "";
+        names.resize(std::min(names.size(), kMaxNames));
+        throw InputError(file.name(),
+                         fmt::format("holds images in its extensions {}{}; write one to a file of "
+                                     "its own, as with \"fitscopy '{}[N]' one.fits\"",
+                                     joined(names), more, file.name()));
+    }
+    if (!image && compressed)
+        throw InputError(file.name(), "holds a compressed image; unpack it with funpack");
+    return image ? *image : primary;
 }
 
 /// The number of big-endian bytes.
@@ -163,24 +235,30 @@ bool is_fits_name(const std::filesystem::path& file) {
 
 FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     constexpr std::int64_t kMax = std::numeric_limits<int>::max();
-    const Header header(file_);
+    const Header primary(file_, 0), header = image_header(file_, primary);
+    const auto inherited = [&](const char* key) {
+        const std::string value = header.text(key);
+        return value.empty() ? primary.text(key) : value;
+    };
     bits_ = static_cast<int>(header.count("BITPIX", -64, 64));
     if (number_of_kind(bits_) == nullptr)
         throw InputError(file_.name(), fmt::format("BITPIX is {}, which there is not", bits_));
-    const std::int64_t axes = header.count("NAXIS", 0, 999);
+    const std::int64_t axes = header.axes();
     if (axes != 2 && axes != 3)
-        throw InputError(file_.name(), fmt::format("its primary array has {} axes; one of 2 or 3 "
-                                                   "is read, no extensions",
-                                                   axes));
+        throw InputError(
+            file_.name(),
+            fmt::format("its {} has {} axes; one of 2 or 3 is read{}",
+                        header.is_primary() ? "primary array" : "image extension", axes,
+                        axes == 0 ? ", or an image extension, of which it has none" : ""));
     shape_ =
         checked_shape(static_cast<std::uint64_t>(header.count("NAXIS2", 1, kMax)),
                       static_cast<std::uint64_t>(header.count("NAXIS1", 1, kMax)), 1, file_.name());
     slots_ = axes == 2 ? 1 : static_cast<int>(header.count("NAXIS3", 1, kMax));
-    if (!header.text("BAYERPAT").empty())
+    if (!inherited("BAYERPAT").empty())
         throw InputError(file_.name(),
                          "is a mosaic (BAYERPAT), whose first row FITS does not fix; "
                          "convert it to DNG");
-    data_offset_ = header.bytes();
+    data_offset_ = header.end();
     const std::uint64_t frame_bytes =
         shape_.pixels() * static_cast<std::uint64_t>(std::abs(bits_) / 8);
     if (static_cast<std::uint64_t>(slots_) * frame_bytes > file_.size() - data_offset_)
@@ -195,8 +273,9 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     const double one = full_scale(bits_, zero_, scale_);
     zero_ /= one;
     scale_ /= one;
-    top_down_ = header.text("ROWORDER") == "TOP-DOWN";
+    top_down_ = inherited("ROWORDER") == "TOP-DOWN";
     traits_.exposure_us = header.exposure_us();
+    if (!traits_.exposure_us) traits_.exposure_us = primary.exposure_us();
     traits_.floating = bits_ < 0;
     traits_.sample_format = fmt::format("BITPIX {}", bits_);
     traits_.bits = std::max(bits_, 0);

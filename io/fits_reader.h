@@ -16,10 +16,11 @@ namespace stipple {
 /// True if the extension is .fits, .fit or .fts.
 [[nodiscard]] bool is_fits_name(const std::filesystem::path& file);
 
-/// Reads the primary array of a FITS file (FITS Standard 4.0), of 2 axes as one frame or of 3 as a
-/// cube of frames. Numbers of 8 and 16 bits are light 1.0 at their highest value (255; 65535 with
-/// BZERO = 32768, else 32767); scaled, longer and floating-point ones are light as they are. The
-/// first row of the array is the last of the frame, unless ROWORDER = 'TOP-DOWN'.
+/// Reads the primary array of a FITS file (FITS Standard 4.0), or if that is empty, its one image
+/// extension, of 2 axes as one frame or of 3 as a cube of frames. Numbers of 8 and 16 bits are
+/// light 1.0 at their highest value (255; 65535 with BZERO = 32768, else 32767); scaled, longer and
+/// floating-point ones are light as they are. The first row of the array is the last of the frame,
+/// unless ROWORDER = 'TOP-DOWN'.
 class FitsReader {
   public:
     /// \throws InputError if the file is damaged or too short, or its array is of a kind that is

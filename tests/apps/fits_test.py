@@ -9,15 +9,30 @@ from camera_files import MOSAIC, CameraFilesTest
 from program import INPUT
 
 
-def fits(values, bitpix, *cards):
-    """A FITS file of the stored numbers (slot, row, col), or (row, col)."""
+def padded(content, by):
+    return content + by * (-len(content) % 2880)
+
+
+def header_data_unit(first, values, bitpix, cards):
+    """A header that begins with this card, and its array of the stored numbers; () has none."""
     kind = {8: "u1", 16: ">i2", 32: ">i4", 64: ">i8", -32: ">f4", -64: ">f8"}[bitpix]
     axes = [f"NAXIS{i + 1:<3}= {size:>20}" for i, size in enumerate(reversed(values.shape))]
-    header = [f"SIMPLE  = {'T':>20} / standard", f"BITPIX  = {bitpix:>20}", f"NAXIS   = {len(axes):>20}", *axes,
-              "COMMENT = no value", *cards, "END"]
+    header = [first, f"BITPIX  = {bitpix:>20}", f"NAXIS   = {len(axes):>20}", *axes, "COMMENT = no value", *cards,
+              "END"]
     text = "".join(f"{card:<80}" for card in header).encode()
-    data = values.astype(kind).tobytes()
-    return text + b" " * (-len(text) % 2880) + data + bytes(-len(data) % 2880)
+    data = values.astype(kind).tobytes() if axes else b""
+    return padded(text, b" ") + padded(data, b"\0")
+
+
+def extension(kind, values, bitpix, *cards):
+    quoted = f"'{kind}'"
+    return header_data_unit(f"XTENSION= {quoted:<20}", values, bitpix, ("PCOUNT  = 0", "GCOUNT  = 1", *cards))
+
+
+def fits(values, bitpix, *cards):
+    """A FITS file of the stored numbers (slot, row, col), or (row, col)."""
+    return header_data_unit(f"SIMPLE  = {'T':>20} / standard", values, bitpix, cards)
+
 
 
 class FitsTest(CameraFilesTest):
@@ -89,8 +104,59 @@ class FitsTest(CameraFilesTest):
                               ("header without an end", b"SIMPLE  = T" + b" " * (2880 * 1001))):
             with self.subTest(part=part):
                 self.refuse([part], self.write("clip.fits", content))
-        self.fails(INPUT, ["light is negative"], "emulate", self.fits(MOSAIC - 1, 16), "-o", "x.stipple")
+        self.fails(INPUT, ["light is negative", "--min-value 0"], "emulate", self.fits(MOSAIC - 1, 16), "-o",
+                   "x.stipple")
         self.fails(INPUT, ["light is not a number"], "emulate", self.fits(MOSAIC * np.nan, -32), "-o", "x.stipple")
+
+    def test_the_image_may_be_in_an_extension(self):
+        """As Hubble and astropy write them: the primary array is empty; its cards hold for the extension."""
+        empty = fits(np.zeros(()), 8)
+        table = extension("BINTABLE", np.zeros((3, 20)), 8).replace(b"PCOUNT  = 0", b"PCOUNT  = 9", 1)
+        image = extension("IMAGE", MOSAIC[:, ::-1] * 16 - 32768, 16, "BZERO   = 32768.0")
+        spectrum = extension("IMAGE", np.ones(5), 8)
+        for parts in ((image,), (table, image), (spectrum, image, table), (image, b"\1" * 5760)):
+            self.assert_light(MOSAIC * 16 / 65535, self.write("clip.fits", b"".join((empty, *parts))))
+            self.assertEqual(self.said, "")
+        for primary, own in ((("EXPTIME = 0.006",), ()), (("EXPTIME = 1.",), ("EXPTIME = 0.006",))):
+            content = fits(np.zeros(()), 8, *primary) + extension("IMAGE", MOSAIC, 16, *own)
+            self.assertAlmostEqual(self.figures("info", self.write("clip.fits", content))["exposure_us"], 6000)
+        content = fits(np.zeros(()), 8, "ROWORDER= 'TOP-DOWN'") + extension("IMAGE", MOSAIC, 16)
+        self.assert_light(MOSAIC / 32767, self.write("clip.fits", content))
+        # A primary array that is an image is the footage.
+        self.assert_light(MOSAIC / 32767, self.write("clip.fits", fits(MOSAIC[:, ::-1], 16) + image))
+
+    def test_extensions_that_are_not_read(self):
+        empty = fits(np.zeros(()), 8)
+        image = [extension("IMAGE", MOSAIC, 16, f"EXTNAME = '{name}'") for name in ("SCI", "ERR")]
+        self.refuse(['its extensions 1 "SCI", 2 "ERR"', "one to a file of its own", "fitscopy"],
+                    self.write("clip.fits", empty + b"".join(image)))
+        many = self.write("clip.fits", empty + image[0] * 20)
+        self.refuse(['8 "SCI", ...; write'], many)
+        compressed = extension("BINTABLE", np.zeros((3, 20)), 8, "ZIMAGE  = T")
+        self.refuse(["compressed image", "funpack"], self.write("clip.fits", empty + compressed))
+        self.refuse(["primary array has 0 axes", "image extension, of which it has none"],
+                    self.write("clip.fits", empty + extension("TABLE", np.zeros((3, 20)), 8)))
+        self.refuse(["image extension has 4 axes"],
+                    self.write("clip.fits", empty + extension("IMAGE", MOSAIC[None], 16)))
+        self.refuse(["is a mosaic (BAYERPAT)"],
+                    self.write("clip.fits", fits(np.zeros(()), 8, "BAYERPAT= 'RGGB'") + image[0]))
+        self.refuse(["damaged or cut short"], self.write("clip.fits", (empty + image[0])[:-2880]))
+        for name, value in (("PCOUNT", "-1"), ("GCOUNT", "1.5"), ("NAXIS1", "x"), ("NAXIS1", "3e9")):
+            cards = (f"{name:<8}= {value}", "NAXIS1  = 1")  # the first one of a name holds
+            broken = header_data_unit("XTENSION= 'BINTABLE'", np.zeros(()), 8, cards).replace(
+                b"NAXIS   =                    0", b"NAXIS   =                    1", 1)
+            self.refuse([name], self.write("clip.fits", empty + broken))
+        for sizes in ((2**31 - 1,) * 5, (0, 2**31 - 1)):
+            axes = [f"NAXIS{i + 1}  = {size}" for i, size in enumerate(sizes)]
+            broken = header_data_unit("XTENSION= 'BINTABLE'", np.zeros(()), 8, axes).replace(
+                b"NAXIS   =                    0", f"NAXIS   = {len(sizes):>20}".encode(), 1)
+            self.refuse(["it has none"], self.write("clip.fits", empty + broken))
+
+    def test_negative_light_can_be_clipped(self):
+        """As after the subtraction of a dark image."""
+        dark = MOSAIC[:, ::-1] / 4096 - 0.01
+        self.assert_light(np.maximum(MOSAIC / 4096 - 0.01, 0), self.fits(dark, -32), "--min-value", 0)
+        self.assertIn("--min-value 0", self.succeed("info", "clip.stipple"))
 
     def test_damage(self):
         whole = fits(MOSAIC, 16)
