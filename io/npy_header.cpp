@@ -32,14 +32,14 @@ NpyType type_of(std::string_view name, std::string_view where) {
                                         name));
 }
 
-void take_shape(const std::vector<std::uint64_t>& shape, std::string_view where,
-                NpyHeader& header) {
+void take_shape(std::vector<std::uint64_t> shape, std::string_view where, NpyHeader& header) {
+    if (shape.size() == 2) shape.insert(shape.begin(), 1);
     if (shape.size() != 3 && !(shape.size() == 4 && shape[3] == 3)) {
         std::vector<std::string> sizes(shape.size());
         std::transform(shape.begin(), shape.end(), sizes.begin(),
                        [](std::uint64_t size) { return std::to_string(size); });
-        throw InputError(where,
-                         fmt::format("shape ({}) is not (T,H,W) or (T,H,W,3)", joined(sizes)));
+        throw InputError(
+            where, fmt::format("shape ({}) is not (T,H,W), (T,H,W,3) or (H,W)", joined(sizes)));
     }
     if (shape[0] == 0) throw InputError(where, "holds no frames");
     if (shape[0] > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
@@ -101,9 +101,11 @@ NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_
         static_cast<std::uint64_t>(header.slots) * std::uint64_t{header.frame_bytes()};
     if (file_bytes - header.data_offset != data_bytes)
         throw InputError(where,
-                         fmt::format("{} frames need {} bytes, but the file holds {}; it is "
-                                     "truncated or damaged",
-                                     header.slots, data_bytes, file_bytes - header.data_offset));
+                         fmt::format("{} frames need {} bytes, but the file holds {}; it is {}",
+                                     header.slots, data_bytes, file_bytes - header.data_offset,
+                                     file_bytes - header.data_offset < data_bytes
+                                         ? "truncated or damaged"
+                                         : "damaged, or several arrays were saved into it"));
     return header;
 }
 

@@ -15,7 +15,8 @@ enum class NpyType { kUint8, kUint16, kHalf, kFloat, kDouble };
 /// Bytes of one value.
 [[nodiscard]] std::size_t npy_type_bytes(NpyType type);
 
-/// Content of the header of a .npy video: an array (T,H,W) or (T,H,W,3) in C order.
+/// Content of the header of a .npy video: an array (T,H,W), (T,H,W,3) or, of one frame,
+/// (H,W) in C order.
 struct NpyHeader {
     NpyType type = NpyType::kFloat;
     int slots = 0;

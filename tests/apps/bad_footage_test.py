@@ -59,7 +59,7 @@ class BadFootageTest(ProgramTest):
         self.refuse("frames", "f2.png")
 
     def test_wrong_shape(self):
-        self.refuse(self.write_array("flat.npy", np.zeros((4, 5))), "(4, 5)")
+        self.refuse(self.write_array("flat.npy", np.zeros(5)), "(5)")
         self.refuse(self.write_array("two.npy", np.zeros((4, 5, 5, 2))), "(4, 5, 5, 2)")
 
     def test_no_frames_or_no_pixels(self):

@@ -106,7 +106,8 @@ TEST(NpyHeaderTest, RefusesTypesThatItWouldMisread) {
 }
 
 TEST(NpyHeaderTest, RefusesWrongAndOverflowingShapes) {
-    expect_parts(problem_of_shape("(4, 5)"), {"shape (4, 5) is not (T,H,W) or (T,H,W,3)"});
+    expect_parts(problem_of_shape("(5,)"), {"shape (5) is not (T,H,W), (T,H,W,3) or (H,W)"});
+    expect_parts(problem_of_shape("(0, 5)"), {"a frame of 0 rows and 5 columns is outside"});
     expect_parts(problem_of_shape("()"), {"shape () is not"});
     expect_parts(problem_of_shape("(1, 2, 3, 4)"), {"shape (1, 2, 3, 4) is not"});
     expect_parts(problem_of_shape("(1, 2, 3, 3, 3)"), {"is not (T,H,W)"});
@@ -117,6 +118,18 @@ TEST(NpyHeaderTest, RefusesWrongAndOverflowingShapes) {
     expect_parts(problem_of_shape("(4294967296, 4294967296, 4294967296)"), {"too many"});
     expect_parts(problem_of_shape("(1, 18446744073709551615, 2)"), {"outside"});
     expect_parts(problem_of_shape("(1, 18446744073709551616, 2)"), {"malformed"});
+}
+
+TEST(NpyHeaderTest, AnImageIsOneFrame) {
+    const auto file = npy_file("<u2", "(2, 3)", std::string(12, '\0'));
+    const NpyHeader header = parse_npy_header(std::as_bytes(std::span(file)), file.size(), "a");
+    EXPECT_EQ(header.slots, 1);
+    EXPECT_EQ(header.shape, (FrameShape{2, 3, 1}));
+}
+
+TEST(NpyHeaderTest, SeveralArraysInAFileAreNoVideo) {
+    const auto image = npy_file("|u1", "(2, 3)", std::string(6, '\0'));
+    expect_parts(problem_of(image + image), {"need 6 bytes", "several arrays were saved into it"});
 }
 
 TEST(NpyHeaderTest, RefusesALengthThatDoesNotMatch) {
