@@ -24,8 +24,7 @@ void check_recording_options(const std::filesystem::path& recording,
         throw InputError(recording.string(),
                          "is a recording of a camera, whose numbers are linear: the options for "
                          "transfer, raw format, luminance, scale, minimum, maximum, frames and "
-                         "part of the frame are "
-                         "for other footage");
+                         "part of the frame are for other footage");
 }
 
 RecordingFootage::RecordingFootage(const std::filesystem::path& file,

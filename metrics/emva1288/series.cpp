@@ -74,7 +74,7 @@ class Parser {
         words >> version;
         const double number = parsed_number<double>(version).value_or(0);
         if (!(number >= 3 && number < 5))
-            fail(fmt::format("version \"{}\" of the descriptor; this program reads 3.0 to 4.1",
+            fail(fmt::format("version \"{}\" of the descriptor; this program reads 3.x and 4.x",
                              version));
     }
 

@@ -24,8 +24,8 @@ struct Series {
 };
 
 /// Reads a descriptor: `n bits width height`, and groups that begin with `b exposure_ns photons` or
-/// `d exposure_ns` and list their images, `i file`. A version, `v 3.0` to `v 4.1`, may be given;
-/// these mean the same. Empty lines and lines that begin with # are ignored; backslashes in file
+/// `d exposure_ns` and list their images, `i file`. A version, as `v 4.0`, may be given; 3.x
+/// and 4.x mean the same. Empty lines and lines that begin with # are ignored; backslashes in file
 /// names are read as slashes, commas in numbers as points.
 /// \throws InputError naming `where` and line for all other text, for numbers outside their limits
 /// and for a group without two images.

@@ -67,7 +67,7 @@ TEST(SeriesTest, NamesTheLineThatIsWrong) {
     const std::string start = "v 4.0\nn 12 320 240\n";
     refuse("", {"a.txt:0", "no line \"n bits"});
     for (const std::string version : {"", "2.9", "5.0", "nan", "4.x"})
-        refuse("v " + version + "\n", {"a.txt:1", "version \"" + version + "\"", "3.0 to 4.1"});
+        refuse("v " + version + "\n", {"a.txt:1", "version \"" + version + "\"", "3.x and 4.x"});
     refuse("v 4.0\n", {"no line \"n bits width height\""});
     refuse("v 4.0\nn 17 320 240\n", {"a.txt:2", "bits 17 is outside 1..16"});
     refuse("v 4.0\nn 12 320\n", {"a.txt:2", "height is missing"});
