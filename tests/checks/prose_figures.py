@@ -1,20 +1,29 @@
-"""The figures in the conclusions of docs/rivals.md are those of the table above them."""
+"""The figures in the conclusions of rivals.md, explored_spaces.md and concept.md are those of the tables beside them."""
 
 import re
 
 from tree import report
 
-PAGE = "docs/rivals.md"
+RIVALS, EXPLORED, CONCEPT = "docs/rivals.md", "docs/explored_spaces.md", "docs/concept.md"
 FRAMES = ("1x vbm4d", "4x best", "alternating kang2003", "binned naive", "binned vbm4d", "charge-binned vbm4d")
 
 
-def table_of(text):
-    """By system and column; a cell "31.4 / 33.9 / 33.2" is a list of numbers."""
-    head, _, *rows = re.search(r"<!-- strongest -->\n(.*?)\n\n", text, re.DOTALL)[1].splitlines()
-    names = [name.strip(" `") for name in head.strip("|").split("|")]
+def table_after(text, begin):
+    """The first table after the text `begin`, by the first cell of the row and the column. "31.4 / 33.9 / 33.2" is a list of
+    numbers, of "31.4 ± 0.7" the first counts."""
+    head, _, *rows = re.search(r"(?:^\|.*\n)+", text[text.index(begin):], re.MULTILINE)[0].splitlines()
+    names = [name.replace("`", "").strip() for name in head.strip("|").split("|")]
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
-    return {row[0]: {name: [float(number) for number in cell.split("/")] for name, cell in zip(names[1:], row[1:])}
+    return {row[0]: {name: [number(part) for part in cell.split("/")] for name, cell in zip(names[1:], row[1:])}
             for row in cells}
+
+
+def number(cell):
+    """The cell itself if it is none."""
+    try:
+        return float(cell.split("±")[0])
+    except ValueError:
+        return cell
 
 
 def lead(table, clip, figure=0):
@@ -22,8 +31,8 @@ def lead(table, clip, figure=0):
     return table["hardware best"][clip][figure] - max(table[system][clip][figure] for system in FRAMES)
 
 
-def expected(table):
-    """Each conclusion with the figures of the table."""
+def of_rivals(text):
+    table = table_after(text, "<!-- strongest -->")
     leads = sorted(lead(table, clip) for clip in ("hdr_desk_fg", "nat30_coffee", "hdr_stilllife"))
     clips = [name for name, cell in table["coded best"].items() if len(cell) == 3]
     costs = [table["full rate best (4 x samples)"][clip][0] - table["hardware best"][clip][0] for clip in clips]
@@ -41,12 +50,38 @@ def expected(table):
     yield f"{table['coded best']['uJ/slot'][0] / table['4x best']['uJ/slot'][0]:.1f} times the energy"
 
 
+def of_explored(text):
+    def column(space, name):
+        return {row: cells[name][0] for row, cells in table_after(text, f"<!-- {space}.toml -->").items()}
+    rate, energy = column("lux1310_3000", "slots/s"), column("lux1310_3000", "uJ per slot")
+    yield f"at {rate['hardware_tiled']:.0f} slots/s, `random` at {rate['random']:.0f}"
+    yield f"for {energy['full4x'] / energy['random']:.2f} of the energy per slot"
+    psnr = column("exposure_lengths", "PSNR, dB")
+    yield f"`[1, 4]` and `[1, 2, 4]` have {psnr['[ 1, 4 ]']:.1f} and {psnr['[ 1, 2, 4 ]']:.1f} dB"
+    yield f"for {psnr['[ 1, 2, 4 ]'] - psnr['[ 1, 2, 4, 8 ]']:.1f} dB"
+    psnr, rate = column("group_size", "PSNR, dB"), column("group_size", "readout, slots/s")
+    costs = [psnr["1"] - psnr[groups] for groups in ("2", "4", "16")]
+    yield "groups of 2 cost {:.1f} dB, of 4 {:.1f} dB, of 16 {:.1f} dB of PSNR".format(*costs)
+    yield f"{min(rate.values()):.0f} to {max(rate.values()):.0f} slots/s"
+
+
+def of_concept(text):
+    decoded = {camera: cells["decoded by best"][0] for camera, cells in table_after(text, "Quality of the videos").items()}
+    yield f"{decoded['coded'] - max(decoded['1x exposure'], decoded['4x exposure']):.1f} dB better here"
+
+
+CONCLUSIONS = {RIVALS: of_rivals, EXPLORED: of_explored, CONCEPT: of_concept}
+
+
 def check(tree):
-    text = tree.text(PAGE)
-    prose = " ".join(text.split())
-    for conclusion in expected(table_of(text)):
-        if conclusion not in prose:
-            yield f'{PAGE}: the conclusions do not say "{conclusion}", as the table does'
+    for page, conclusions in CONCLUSIONS.items():
+        if page not in tree.files:
+            continue
+        text = tree.text(page)
+        prose = " ".join(text.split())
+        for conclusion in conclusions(text):
+            if conclusion not in prose:
+                yield f'{page}: the conclusions do not say "{conclusion}", as the table does'
 
 
 if __name__ == "__main__":

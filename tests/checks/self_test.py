@@ -16,8 +16,8 @@ import links
 import listed
 import modules
 import packages
+import prose_figures
 import quoted_messages
-import rivals_prose
 import sizes
 import tested
 import words
@@ -229,12 +229,15 @@ class ChecksTest(unittest.TestCase):
         sound["CMakeLists.txt"] = "pkg_check_modules(E REQUIRED IMPORTED_TARGET E)\n"
         self.assertEqual(len(self.findings(packages.check, sound)), 2)
 
-    def test_conclusions_on_rivals_have_the_figures_of_their_table(self):
-        page = (Path(__file__).parents[2] / rivals_prose.PAGE).read_text(encoding="utf-8")
-        self.assertEqual(self.findings(rivals_prose.check, {rivals_prose.PAGE: page}), [])
-        for begin in ("samples costs ", "on `mouse250_b` by ", "`hardware_tiled` at "):
-            changed = re.sub(begin + r"[\d.]+", begin + "99", page)
-            self.assertEqual(len(self.findings(rivals_prose.check, {rivals_prose.PAGE: changed})), 1, begin)
+    def test_conclusions_have_the_figures_of_their_tables(self):
+        for name, begins in {prose_figures.RIVALS: ("samples costs ", "on `mouse250_b` by ", "`hardware_tiled` at "),
+                             prose_figures.EXPLORED: ("`random` at ", "data rate for ", "groups of 2 cost "),
+                             prose_figures.CONCEPT: ("coded samples are ",)}.items():
+            page = (Path(__file__).parents[2] / name).read_text(encoding="utf-8")
+            self.assertEqual(self.findings(prose_figures.check, {name: page}), [])
+            for begin in begins:
+                changed = re.sub(begin.replace(" ", r"\s") + r"[\d.]+", begin + "99", page)
+                self.assertEqual(len(self.findings(prose_figures.check, {name: changed})), 1, begin)
 
     def test_the_citation_has_its_keys_and_the_version_of_the_project(self):
         keys = "cff-version: 1.2.0\nmessage: m\ntitle: t\nauthors:\n  - name: a\nlicense: l\n"
