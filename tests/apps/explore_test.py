@@ -98,6 +98,20 @@ class ExploreTest(ProgramTest):
         self.assertEqual(self.explore(space)["run"], 4)
         self.assertEqual(self.explore(space)["run"], 0)
 
+    def test_all_that_determines_a_figure_makes_another_trial(self):
+        self.explore()
+        for old, new in (("rows = 32", "rows = 24"), ("cols = 32", "cols = 24"), ("frames = 16", "frames = 20"),
+                         ("[clip]", "[clip]\nplanes = 3"), ("[clip]", "[clip]\ncompared = [4, 10]"),
+                         ("[clip]", "[readout]\nrows = 64\ncols = 32\n[clip]"),
+                         ("[clip]", '[readout]\nsensor = "lux2100"\n[clip]'), ("[axes]", "[axes]\nseed = 2"),
+                         ("[axes]", "[axes]\nbinning = 2"), ("[axes]", "[axes]\nwindow_rows = 0.5"),
+                         ("[axes]", '[axes]\nfootage = "roll"'), ('"naive"', '"fast"'),
+                         ("[clip]", '[set]\n"sensor.read_noise_e" = 11\n[clip]'),
+                         ("[clip]", '[set]\n"schedule.period_slots" = 30\n[clip]')):
+            with self.subTest(new=new):
+                figures = self.explore(SPACE.replace(old, new))
+                self.assertEqual((figures["known"], figures["run"] + figures["failed"]), (0, 4))
+
     def test_lists_and_ranges_of_keys(self):
         space = SPACE.replace('["paper", "lux1310"]', '"paper"').replace('["random", "full1x"]', '"random"') + """
 [set]
@@ -234,6 +248,15 @@ method = "fast"
         self.assertIn("the budget was spent", self.rows()[5]["problem"])
         # Without a budget the trials of the last rung are known.
         self.assertEqual(self.explore(space)["known"], 2)
+
+    def test_a_rank_by_what_should_be_little_keeps_the_least(self):
+        space = SPACE.replace('["paper", "lux1310"]', '"lux1310"').replace("frames = 16", "frames = 48") \
+            .replace('["random", "full1x"]', '["random", "single_bump", "full1x", "tiled"]')
+        self.explore(space, "--budget", 100, "--rank", "energy_uj_per_slot")
+        by_energy = sorted(self.rows(), key=lambda row: float(row["energy_uj_per_slot"]))
+        rungs = [int(row["rung"]) for row in by_energy]
+        self.assertEqual((rungs, by_energy[0]["schedule"]), (sorted(rungs, reverse=True), "full1x"))
+        self.assertGreater(rungs[0], rungs[-1])
 
     def test_a_budget_of_time_ends(self):
         space = SPACE + '[set]\n"sensor.read_noise_e" = { from = 1, to = 100, count = 100 }\n'
