@@ -44,9 +44,9 @@ class PickledTasks:
 
 
 class DaskTest(ProgramTest):
-    def write_clip(self, slots, planes=()):
+    def write_clip(self, slots, planes=(), sensor="paper"):
         light = np.random.default_rng(1).uniform(0, 1, (slots, 20, 24, *planes)).astype(np.float32)
-        stipple.emulate(light, output=self.folder / "clip.stipple")
+        stipple.emulate(light, sensor, output=self.folder / "clip.stipple")
         return self.folder / "clip.stipple"
 
     def test_blocks_make_the_bits_of_one_process(self):
@@ -94,6 +94,24 @@ class DaskTest(ProgramTest):
         self.assertEqual(len(list((self.folder / "windows").iterdir())), 4)
         with self.assertRaisesRegex(ValueError, 'another decoding: options is "rounds = 1.*" there and "" here'):
             decode_to("fast")
+
+    def test_blocks_of_another_calibration_or_filling_are_refused(self):
+        self.succeed("calibrate", "--sensor", "t6", "--size", "24x20", "-o", "chip.stcal")
+        decode_to = functools.partial(stipple.dask.decode_to, self.folder / "windows", self.write_clip(10), PickledTasks(),
+                                      "naive")
+        decode_to()
+        with self.assertRaisesRegex(ValueError, "another decoding: calibration_sha256 is"):
+            decode_to(calibration=self.folder / "chip.stcal")
+        with self.assertRaisesRegex(ValueError, "another decoding: fill_gaps is false there and true here"):
+            decode_to(fill_gaps=True)
+
+    def test_the_calibration_beside_the_stream_is_used_as_by_one_process(self):
+        self.succeed("calibrate", "--sensor", "t6", "--size", "24x20", "-o", "clip.stcal")
+        clip = self.write_clip(10, sensor="t6")
+        decoded = stipple.dask.decode(clip, PickledTasks(), "naive")
+        np.testing.assert_array_equal(decoded, stipple.decode(clip, "naive"))
+        without = stipple.dask.decode(clip, PickledTasks(), "naive", calibration="none")
+        self.assertFalse(np.array_equal(decoded, without))
 
     def test_the_program_goes_on_with_stored_blocks(self):
         clip = self.write_clip(150)

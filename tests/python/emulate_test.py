@@ -65,7 +65,10 @@ class EmulateTest(ProgramTest):
                   "half": light().astype(np.float16), "bytes": (255 * light()).astype(np.uint8),
                   "words": (65535 * colour).astype(np.uint16),
                   "swapped": light().astype(">f4"), "backwards": light()[::-1, ::-1, ::-1],
-                  "planar": np.moveaxis(light(planes=3).copy(), 0, 0)[..., ::-1]}
+                  "planar": np.moveaxis(light(planes=3).copy(), 0, 0)[..., ::-1],
+                  "crop": np.pad(light(), ((0, 0), (2, 1), (3, 4)))[:, 2:-1, 3:-4],
+                  "planar crop": np.pad(colour.transpose(0, 3, 1, 2), ((0, 0), (0, 0), (2, 1), (3, 4)))
+                  .transpose(0, 2, 3, 1)[:, 2:-1, 3:-4]}
         for name, array in arrays.items():
             with self.subTest(name):
                 self.write_array("light.npy", array, array.dtype.newbyteorder("="))
