@@ -1,10 +1,13 @@
-"""The figures in the conclusions of rivals.md, explored_spaces.md and concept.md are those of the tables beside them."""
+"""The figures in the conclusions of README.md, rivals.md, camera_map.md, explored_spaces.md and concept.md are those of
+the tables in docs/."""
 
 import re
 
 from tree import report
 
-RIVALS, EXPLORED, CONCEPT = "docs/rivals.md", "docs/explored_spaces.md", "docs/concept.md"
+README, RIVALS, MAP = "README.md", "docs/rivals.md", "docs/camera_map.md"
+EXPLORED, CONCEPT = "docs/explored_spaces.md", "docs/concept.md"
+CODED = ("coded", "hardware", "pixel flutter")
 FRAMES = ("1x vbm4d", "4x best", "alternating kang2003", "binned naive", "binned vbm4d", "charge-binned vbm4d")
 
 
@@ -65,23 +68,41 @@ def of_explored(text):
     yield f"{min(rate.values()):.0f} to {max(rate.values()):.0f} slots/s"
 
 
+def deficits(text):
+    """dB of `hardware best` behind the best camera of a cell: mean, worst; the least worst of the cameras of frames."""
+    table = {row: (cells["mean, dB"][0], cells["worst cell, dB"][0]) for row, cells in table_after(text, "One camera for").items()}
+    return *table["hardware best"], min(worst for row, (_, worst) in table.items() if not row.startswith(CODED))
+
+
+def of_map(text):
+    mean, worst, frames = deficits(text)
+    yield f"{mean:.1f} dB behind the best camera of each cell at the mean and {worst:.1f} dB at most"
+    yield f"by {frames:.1f} dB or more"
+
+
 def of_concept(text):
     decoded = {camera: cells["decoded by best"][0] for camera, cells in table_after(text, "Quality of the videos").items()}
     yield f"{decoded['coded'] - max(decoded['1x exposure'], decoded['4x exposure']):.1f} dB better here"
 
 
-CONCLUSIONS = {RIVALS: of_rivals, EXPLORED: of_explored, CONCEPT: of_concept}
+CONCLUSIONS = {RIVALS: of_rivals, MAP: of_map, EXPLORED: of_explored, CONCEPT: of_concept}
+
+
+def of_readme(text):
+    """`text` is the page of the map."""
+    _, worst, frames = deficits(text)
+    yield f"at most {worst:.1f} dB behind the best camera for a scene, each of the others {frames:.1f} dB or more"
 
 
 def check(tree):
-    for page, conclusions in CONCLUSIONS.items():
-        if page not in tree.files:
+    pages = [(page, page, conclusions) for page, conclusions in CONCLUSIONS.items()] + [(README, MAP, of_readme)]
+    for page, source, conclusions in pages:
+        if page not in tree.files or source not in tree.files:
             continue
-        text = tree.text(page)
-        prose = " ".join(text.split())
-        for conclusion in conclusions(text):
+        prose = " ".join(tree.text(page).split())
+        for conclusion in conclusions(tree.text(source)):
             if conclusion not in prose:
-                yield f'{page}: the conclusions do not say "{conclusion}", as the table does'
+                yield f'{page}: the conclusions do not say "{conclusion}", as the table of {source} does'
 
 
 if __name__ == "__main__":
