@@ -47,6 +47,8 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
             fmt::format("{}: its frames were exposed for {:.4g} of {:.4g} us each; "
                         "the light of the time between is not in them",
                         name, *traits.exposure_us, period_us));
+    for (const std::string& text : traits.warnings)
+        warnings.push_back(fmt::format("{}: {}", name, text));
     if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");
     return warnings;
 }

@@ -25,6 +25,7 @@ struct SourceTraits {
     std::optional<double> black_dn = {};  ///< that the file declares, or its kind
     std::optional<double> white_dn = {};
     std::string curve = {};  ///< from light to numbers, declared; undone unless `gamma_coded`
+    std::vector<std::string> warnings = {};  ///< what else it declares that users should know
 };
 
 /// One decoded image, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),

@@ -40,9 +40,13 @@ constexpr Key kStoredBits{"Color Bit", {"imageDataInfo", "colorInfo", "bit"}};
 constexpr Key kDepth{"EffectiveBit Depth", {"imageDataInfo", "effectiveBit", "depth"}};
 constexpr Key kSide{"EffectiveBit Side", {"imageDataInfo", "effectiveBit", "side"}};
 constexpr Key kRate{"Record Rate(fps)", {"recordInfo", "recordRate"}};
+constexpr Key kStep{"Save Step", {"frameInfo", "skipFrame"}};
+/// In .cih seconds, as 1/800000; in .cihx the N of 1/N s.
 constexpr Key kShutter{"Shutter Speed(s)", {"recordInfo", "shutterSpeed"}};
-constexpr std::array kKeys{kFormat,     kFrames, kWidth, kHeight, kColour,
-                           kStoredBits, kDepth,  kSide,  kRate,   kShutter};
+constexpr Key kShutterNs{"Shutter Type2(nsec)", {"recordInfo", "shutterSpeedNsec"}};
+constexpr Key kProcessed{"Apply Image Proc", {"imageDataInfo", "applyImageProc"}};
+constexpr std::array kKeys{kFormat, kFrames, kWidth, kHeight,  kColour,    kStoredBits, kDepth,
+                           kSide,   kRate,   kStep,  kShutter, kShutterNs, kProcessed};
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r\n";
@@ -64,12 +68,15 @@ class Header {
     [[nodiscard]] std::uint32_t count(const Key& key) const;
     /// Of "0.0001" or "1/10000"; nothing if it is no positive number or missing.
     [[nodiscard]] std::optional<double> number(const Key& key) const;
+    /// Declared as the time of a shutter, in seconds; nothing if it is not.
+    [[nodiscard]] std::optional<double> shutter_s() const;
 
   private:
     void read_lines(std::string_view text);
     void read_xml(std::string_view text);
 
     std::string name_;
+    bool is_xml_ = false;
     std::map<std::string, std::string, std::less<>> values_;
 };
 
@@ -79,7 +86,8 @@ Header::Header(const fs::path& file) : name_(file.string()) {
     if (bytes.size() > kMaxBytes) throw InputError(name_, "is too long for the header of a video");
     std::string text(bytes.size(), '\0');
     bytes.read(0, {reinterpret_cast<std::uint8_t*>(text.data()), text.size()});
-    lower_extension(file) == ".cih" ? read_lines(text) : read_xml(text);
+    is_xml_ = lower_extension(file) != ".cih";
+    is_xml_ ? read_xml(text) : read_lines(text);
 }
 
 /// "Key : value" each.
@@ -144,6 +152,11 @@ std::optional<double> Header::number(const Key& key) const {
     return std::isfinite(result) && result > 0 ? std::optional(result) : std::nullopt;
 }
 
+std::optional<double> Header::shutter_s() const {
+    const auto value = number(kShutter);
+    return value && is_xml_ ? std::optional(1 / *value) : value;
+}
+
 bool same_letters(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, [](char x, char y) { return (x | 32) == (y | 32); });
 }
@@ -181,7 +194,35 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
     format.packing = stored == 12 ? Packing::kMsbPacked : Packing::kBytes;
     const std::uint32_t used = std::min(stored, depth);
     const bool at_top = same_letters(header.text(kSide), "higher");
+    if (!at_top && !same_letters(header.text(kSide), "lower"))
+        throw InputError(header.name(), fmt::format("\"{}\" is \"{}\", neither Lower nor Higher",
+                                                    kSide.name, header.text(kSide)));
     return {format, ((1 << used) - 1) << (at_top ? stored - used : 0)};
+}
+
+/// Rate and exposure. The frames of a file may be every N-th of the recording.
+void read_times(const Header& header, SourceTraits& traits) {
+    traits.frames_hz = header.number(kRate);
+    const double step = header.number(kStep).value_or(1);
+    if (traits.frames_hz && step > 1) {
+        *traits.frames_hz /= step;
+        traits.warnings.push_back(
+            fmt::format("has one in {:.10g} of the {:.10g} frames per second recorded, so {:.10g} "
+                        "per second; --frames-hz sets another rate",
+                        step, *header.number(kRate), *traits.frames_hz));
+    }
+    constexpr double kSecondsANanosecond = 1e-9;
+    constexpr double kMicrosecondsASecond = 1e6;
+    constexpr double kRounding = 0.02;
+    const auto shutter_s = header.shutter_s();
+    const auto shutter_ns = header.number(kShutterNs);
+    if (!shutter_s && !shutter_ns) return;
+    const double exposure_s = shutter_ns ? *shutter_ns * kSecondsANanosecond : *shutter_s;
+    traits.exposure_us = exposure_s * kMicrosecondsASecond;
+    if (shutter_s && std::abs(*shutter_s - exposure_s) > kRounding * exposure_s)
+        traits.warnings.push_back(fmt::format(
+            "declares two exposures, {:.4g} us and {:.4g} us; the first, in nanoseconds, is taken",
+            *traits.exposure_us, *shutter_s * kMicrosecondsASecond));
 }
 
 }  // namespace
@@ -215,8 +256,10 @@ RawVideo open_photron(const fs::path& file) {
                                      video.shape.cols));
     video.traits.bits = std::popcount(static_cast<unsigned>(white_dn));
     video.traits.white_dn = white_dn;
-    video.traits.frames_hz = header.number(kRate);
-    if (const auto seconds = header.number(kShutter)) video.traits.exposure_us = *seconds * 1e6;
+    read_times(header, video.traits);
+    if (header.number(kProcessed))
+        video.traits.warnings.emplace_back(
+            "was saved with image processing, after which its numbers may not be linear light");
     return video;
 }
 

@@ -7,13 +7,14 @@ from program import INPUT
 
 
 def photron_header(kind="cihx", **changed):
-    """A header by the keys that pyMRAW reads."""
+    """A header in the forms of Photron's viewer: `shutter` is the N of 1/N s, `ns` the same in nanoseconds."""
     values = {"format": "MRaw", "frames": 4, "width": 8, "height": 6, "colour": "Mono", "bits": 12, "depth": 12,
-              "side": "Lower", "rate": 5000, "shutter": 0.00019} | changed
+              "side": "Lower", "rate": 5000, "shutter": 5000, "ns": 200000, "step": 1, "processed": 0} | changed
     text = """#Camera Information Header
 Record Rate(fps) : {rate}
-Shutter Speed(s) : {shutter}
+Shutter Speed(s) : 1/{shutter}
 Total Frame : {frames}
+Save Step : {step}
 Image Width : {width}
 Image Height : {height}
 Color Type : {colour}
@@ -21,15 +22,18 @@ Color Bit : {bits}
 File Format : {format}
 EffectiveBit Depth : {depth}
 EffectiveBit Side : {side}
+Shutter Type2(nsec) : {ns}
 Comment Text : a : b
 """ if kind == "cih" else """\x7f\x05\x01<cih>
 <fileInfo><date>2020/1/1</date></fileInfo>
 <imageFileInfo><fileFormat>{format}</fileFormat></imageFileInfo>
-<frameInfo><totalFrame>{frames}</totalFrame></frameInfo>
-<recordInfo><recordRate>{rate}</recordRate><shutterSpeed>{shutter}</shutterSpeed></recordInfo>
+<frameInfo><totalFrame>{frames}</totalFrame><skipFrame>{step}</skipFrame></frameInfo>
+<recordInfo><recordRate>{rate}</recordRate><shutterSpeed>{shutter}</shutterSpeed>
+<shutterSpeedNsec>{ns}</shutterSpeedNsec></recordInfo>
 <imageDataInfo><resolution><width>{width}</width><height>{height}</height></resolution>
 <colorInfo><type>{colour}</type><bit>{bits}</bit></colorInfo>
-<effectiveBit><depth>{depth}</depth><side>{side}</side></effectiveBit></imageDataInfo>
+<effectiveBit><depth>{depth}</depth><side>{side}</side></effectiveBit>
+<applyImageProc>{processed}</applyImageProc></imageDataInfo>
 </cih>\r\nmore"""
     return text.format(**values).encode("latin-1")
 
@@ -59,15 +63,48 @@ class PhotronTest(CameraFilesTest):
         self.assert_light(MOSAIC / 4095, "clip.mraw")
 
     def test_rate_and_exposure(self):
-        for shutter in ("0.00005", "1/20000"):
-            self.light(self.photron(shutter=shutter))
-            self.assertIn("has 5000 frames/s, but a slot of sensor \"paper\" takes 5000 us", self.said)
-            self.assertIn("its frames were exposed for 50 of 200 us each", self.said)
+        for kind in ("cihx", "cih"):
+            with self.subTest(kind=kind):
+                self.light(self.photron(kind=kind, shutter=20000, ns=50000))
+                self.assertIn("has 5000 frames/s, but a slot of sensor \"paper\" takes 5000 us", self.said)
+                self.assertIn("its frames were exposed for 50 of 200 us each", self.said)
+
+    def test_the_exposures_of_public_recordings(self):
+        """N of 1/N s and nanoseconds, as in the samples of pyMRAW."""
+        for kind, rate, shutter, ns in (("cihx", 50000, 200000, 5000), ("cihx", 30000, 50000, 20000),
+                                        ("cih", 60000, 800000, 1250)):
+            for left_out in ("", "shutter", "ns"):
+                with self.subTest(ns=ns, left_out=left_out):
+                    name = self.photron(kind=kind, rate=rate, **{"shutter": shutter, "ns": ns} |
+                                        ({left_out: "-"} if left_out else {}))
+                    figures = self.figures("info", name)
+                    self.assertAlmostEqual(figures["exposure_us"], ns / 1000)
+                    self.assertEqual(figures["frames_hz"], rate)
+
+    def test_two_exposures_that_differ_are_said(self):
+        for kind in ("cihx", "cih"):
+            with self.subTest(kind=kind):
+                self.light(self.photron(kind=kind, shutter=10000, ns=190000))
+                self.assertIn("clip.%s: declares two exposures, 190 us and 100 us" % kind, self.said)
+                self.light(self.photron(kind=kind, shutter=5263, ns=190000))
+                self.assertNotIn("two exposures", self.said)
+
+    def test_a_file_of_every_36th_frame_has_that_rate(self):
+        for kind in ("cihx", "cih"):
+            with self.subTest(kind=kind):
+                name = self.photron(kind=kind, rate=60000, step=36)
+                self.assertAlmostEqual(self.figures("info", name)["frames_hz"], 60000 / 36)
+                self.light(name)
+                self.assertIn("has one in 36 of the 60000 frames per second recorded, so 1666.66", self.said)
+
+    def test_image_processing_is_said(self):
+        self.light(self.photron(processed=1))
+        self.assertIn("was saved with image processing, after which its numbers may not be linear light", self.said)
 
     def test_the_stream_names_both_files_by_their_hash(self):
         self.light(self.photron())
         before = self.succeed("info", "clip.stipple")
-        self.light(self.photron(shutter=0.00018))
+        self.light(self.photron(shutter=5001))
         self.assertNotEqual(self.succeed("info", "clip.stipple"), before)
 
     def test_what_is_not_read(self):
@@ -75,7 +112,8 @@ class PhotronTest(CameraFilesTest):
                            ("colour (\"Color\")", {"colour": "Color"}),
                            ("10 bits per pixel", {"bits": 10}), ("\"Total Frame\" is \"0\"", {"frames": 0}),
                            ("\"Image Width\" is \"-8\"", {"width": -8}), ("is \"many\"", {"frames": "many"}),
-                           ("outside 1..65535", {"width": 70000}), ("end within a byte", {"width": 7})):
+                           ("outside 1..65535", {"width": 70000}), ("end within a byte", {"width": 7}),
+                           ("neither Lower nor Higher", {"side": "Middle"})):
             for kind in ("cihx", "cih"):
                 with self.subTest(kind=kind, **what):
                     self.refuse([part], self.photron(kind=kind, **what))
