@@ -42,6 +42,9 @@ constexpr std::uint32_t kUnpacked = 0;  // kinds of biCompression
 constexpr std::uint32_t kPacked10 = 256;
 constexpr std::uint32_t kPacked12 = 1024;
 
+constexpr std::uint16_t kTimeStamps = 1002;  // kinds of tagged blocks
+constexpr std::uint16_t kExposures = 1003;
+
 /// What the three headers say.
 struct Cine {
     std::uint16_t compression = 0;
@@ -52,12 +55,16 @@ struct Cine {
     std::uint16_t stored_bits = 0;
     std::uint32_t packing = kUnpacked;
     bool flipped = false;
+    bool mirrored = false;
+    std::int32_t turned_degrees = 0;
     std::uint32_t frames_hz = 0;
     double exposure_us = 0;
+    double second_exposure_us = 0;  ///< of bright pixels (extreme dynamic range); 0: none
     std::uint32_t filter = 0;
     std::uint32_t real_bits = 0;
     std::int32_t black_dn = 0;
     std::int32_t white_dn = 0;  ///< 0: not declared
+    std::uint64_t tags_at = 0;  ///< byte after SETUP, from which to offsets_at tagged blocks lie
 
     explicit Cine(FileBytes& file);
     void read_setup(FileBytes& file, std::uint64_t offset);
@@ -95,12 +102,16 @@ void Cine::read_setup(FileBytes& file, std::uint64_t offset) {
                          "is no SETUP of a camera that is read; save the file again with the "
                          "present software of Phantom cameras");
     const Block setup(file, offset, std::min(length, kLevelsEnd));
+    tags_at = offset + length;
+    mirrored = setup.u32(756) != 0;
     flipped = setup.u32(760) != 0;
+    turned_degrees = setup.at<std::int32_t>(884);
     frames_hz = setup.u32(768);
     filter = setup.u32(808);
     real_bits = setup.u32(896);
     constexpr double kNanosecondsAMicrosecond = 1000;
     exposure_us = setup.u32(1568) / kNanosecondsAMicrosecond;
+    if (setup.bytes.size() >= 1576) second_exposure_us = setup.u32(1572) / kNanosecondsAMicrosecond;
     if (length < kLevelsEnd) return;
     black_dn = setup.at<std::int32_t>(5732);
     white_dn = setup.at<std::int32_t>(5736);
@@ -187,6 +198,102 @@ SourceTraits traits_of(const Cine& cine, const PixelFormat& format) {
     return traits;
 }
 
+/// Warnings of what is declared and not applied.
+void warn_of_setup(const Cine& cine, SourceTraits& traits) {
+    if (cine.second_exposure_us > 0 && cine.second_exposure_us < cine.exposure_us)
+        traits.warnings.push_back(
+            fmt::format("bright pixels were exposed for {:.4g} of {:.4g} us (extreme dynamic "
+                        "range), so its numbers are not linear light",
+                        cine.second_exposure_us, cine.exposure_us));
+    if (cine.mirrored || cine.turned_degrees != 0)
+        traits.warnings.push_back(fmt::format("is to be shown {}; its frames are read as stored",
+                                              cine.mirrored ? "mirrored" : "turned"));
+}
+
+constexpr double kSecondsATick = 1.0 / (1ULL << 32U);  // of time stamps and exposures
+
+/// The numbers of the tagged block of this kind, one a frame; empty if there is none. Blocks begin
+/// with their length and kind.
+template <typename Number>
+std::vector<Number> numbers_of_frames(FileBytes& file, const Cine& cine, std::uint16_t kind,
+                                      SourceTraits& traits) {
+    constexpr std::uint64_t kHeadBytes = 8;
+    constexpr int kMaxBlocks = 64;
+    std::uint64_t offset = cine.tags_at;
+    for (int i = 0; i < kMaxBlocks && offset + kHeadBytes <= cine.offsets_at; ++i) {
+        const Block head(file, offset, kHeadBytes);
+        const std::uint64_t length = head.u32(0);
+        if (length < kHeadBytes || length > cine.offsets_at - offset) break;
+        const std::uint64_t count = (length - kHeadBytes) / sizeof(Number);
+        if (head.u16(4) == kind && count != cine.images) {
+            traits.warnings.push_back(fmt::format(
+                "holds times of {} frames in place of {}; they are left out", count, cine.images));
+            break;
+        }
+        if (head.u16(4) == kind) {
+            std::vector<Number> numbers(count);
+            file.read(offset + kHeadBytes,
+                      {reinterpret_cast<std::uint8_t*>(numbers.data()), count * sizeof(Number)});
+            return numbers;
+        }
+        offset += length;
+    }
+    return {};
+}
+
+/// Of a file saved with decimation, SETUP has the rate of the recording: the time stamps decide.
+void read_time_stamps(const std::vector<std::uint64_t>& stamps, SourceTraits& traits) {
+    constexpr double kStampRoundingS = 1e-6;
+    constexpr double kSameRate = 0.01;
+    if (stamps.size() < 2) return;
+    std::vector<double> periods_s;
+    for (std::size_t i = 1; i < stamps.size(); ++i)
+        periods_s.push_back(
+            static_cast<double>(static_cast<std::int64_t>(stamps[i] - stamps[i - 1])) *
+            kSecondsATick);
+    const auto [min_s, max_s] = std::ranges::minmax(periods_s);
+    const auto middle = periods_s.begin() + std::ssize(periods_s) / 2;
+    std::ranges::nth_element(periods_s, middle);
+    const bool equal = max_s - min_s <= std::max(2 * kStampRoundingS, min_s / 2);
+    const auto steps = static_cast<double>(periods_s.size());
+    const double period_s =
+        equal ? static_cast<double>(static_cast<std::int64_t>(stamps.back() - stamps.front())) *
+                    kSecondsATick / steps
+              : *middle;
+    if (!equal)
+        traits.warnings.push_back(fmt::format(
+            "its frames are {:.4g} to {:.4g} s apart by their time stamps, but each becomes one "
+            "slot; some may be missing",
+            min_s, max_s));
+    if (!(period_s > 0)) {
+        traits.warnings.emplace_back("its time stamps do not increase; they are left out");
+        return;
+    }
+    const double rounding = kSameRate + kStampRoundingS / (equal ? steps * period_s : period_s);
+    const double stamped_hz = 1 / period_s;
+    if (traits.frames_hz && std::abs(stamped_hz / *traits.frames_hz - 1) <= rounding) return;
+    if (traits.frames_hz)
+        traits.warnings.push_back(fmt::format(
+            "declares {:.10g} frames per second, but its time stamps are {:.4g} s apart; "
+            "{:.5g} per second are taken; --frames-hz sets another rate",
+            *traits.frames_hz, period_s, stamped_hz));
+    traits.frames_hz = stamped_hz;
+}
+
+void read_exposures(const std::vector<std::uint32_t>& exposures, SourceTraits& traits) {
+    constexpr double kSameExposure = 0.01;
+    constexpr double kMicrosecondsATick = kSecondsATick * 1e6;
+    if (exposures.empty()) return;
+    const auto [shortest, longest] = std::ranges::minmax(exposures);
+    const double min_us = shortest * kMicrosecondsATick;
+    const double max_us = longest * kMicrosecondsATick;
+    if (max_us - min_us > kSameExposure * max_us)
+        traits.warnings.push_back(fmt::format(
+            "its frames were exposed for {:.4g} to {:.4g} us, for which their light is not "
+            "corrected",
+            min_us, max_us));
+}
+
 }  // namespace
 
 RawVideo open_cine(const std::filesystem::path& path) {
@@ -213,6 +320,10 @@ RawVideo open_cine(const std::filesystem::path& path) {
     video.offsets.resize(cine.images);
     file.read(cine.offsets_at, {reinterpret_cast<std::uint8_t*>(video.offsets.data()),
                                 video.offsets.size() * sizeof(std::uint64_t)});
+    warn_of_setup(cine, video.traits);
+    SourceTraits& traits = video.traits;
+    read_time_stamps(numbers_of_frames<std::uint64_t>(file, cine, kTimeStamps, traits), traits);
+    read_exposures(numbers_of_frames<std::uint32_t>(file, cine, kExposures, traits), traits);
     return video;
 }
 

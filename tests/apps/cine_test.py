@@ -18,6 +18,7 @@ class Cine:
         self.bits, self.packing, self.real_bits, self.compression = 16, 0, 12, 0
         self.filter, self.flip, self.levels, self.hz, self.exposure_ns = 0, 0, (0, 0), 5000, 190000
         self.annotation, self.setup_bytes, self.images = 8, 5740, self.slots
+        self.seconds, self.exposed_s, self.mirrored, self.turned, self.bright_ns = (), (), 0, 0, 0
         self.__dict__.update(what)
         rows = frames if self.packing else frames[:, ::-1]
         if self.flip:
@@ -28,13 +29,20 @@ class Cine:
 
     def content(self):
         setup = bytearray(self.setup_bytes)
-        for offset, form, value in ((140, "2s", b"ST"), (142, "H", self.setup_bytes), (760, "I", self.flip),
+        for offset, form, value in ((140, "2s", b"ST"), (142, "H", self.setup_bytes), (756, "I", self.mirrored),
+                                    (760, "I", self.flip), (884, "i", self.turned), (1572, "I", self.bright_ns),
                                     (768, "I", self.hz), (808, "I", self.filter), (896, "I", self.real_bits),
                                     (1568, "I", self.exposure_ns), (5732, "2i", self.levels)):
-            if offset + 8 <= len(setup) or offset < 5732:
+            if offset + 8 <= len(setup) or offset < 1572:
                 struct.pack_into("<" + form, setup, offset, *(value if isinstance(value, tuple) else (value,)))
         bitmap = struct.pack("<IiiHHIIiiII", 40, self.cols, self.rows, 1, self.bits, self.packing,
                              len(self.payload[0]), 0, 0, 0, 0)
+        ticks = [[round(time * 2 ** 32) for time in times] for times in (self.seconds, self.exposed_s)]
+        tags = struct.pack("<IHH", 12, 1001, 0) + b"more"
+        for kind, form, numbers in ((1002, "Q", ticks[0]), (1003, "I", ticks[1])):
+            numbers = struct.pack(f"<{len(numbers)}{form}", *numbers)
+            tags += struct.pack("<IHH", 8 + len(numbers), kind, 0) + numbers if numbers else b""
+        setup += tags
         offsets_at = 84 + len(setup)
         offsets, records = [], b""
         for payload in self.payload:
@@ -99,6 +107,45 @@ class CineTest(CameraFilesTest):
         self.light(self.cine(hz=1000, exposure_ns=250000), "--set", "sensor.slot_us=1000")
         self.assertIn("its frames were exposed for 250 of 1000 us each", self.said)
         self.light(self.cine(hz=0, exposure_ns=0))
+        self.assertEqual(self.said, "")
+
+    def test_time_stamps_are_the_rate_where_frames_were_left_out_at_saving(self):
+        for declared, stamped in ((90000, 9000), (1000, 250), (0, 500), (200, 1000)):
+            with self.subTest(declared=declared, stamped=stamped):
+                name = self.cine(hz=declared, exposure_ns=0, seconds=[1.6e9 + i / stamped for i in range(4)])
+                self.assertAlmostEqual(self.figures("info", name)["frames_hz"] / stamped, 1, delta=1e-4)
+                self.light(name)
+                said = f"declares {declared} frames per second, but its time stamps are {1 / stamped:.4g} s apart"
+                self.assertEqual(said in self.said, declared > 0)
+
+    def test_time_stamps_that_agree_but_for_their_rounding_leave_the_rate(self):
+        for hz in (1000, 35087, 400000):
+            name = self.cine(hz=hz, exposure_ns=0, seconds=[1.6e9 + round(i / hz, 6) for i in range(4)])
+            self.assertEqual(self.figures("info", name)["frames_hz"], hz)
+            self.light(name)
+            self.assertNotIn("time stamps", self.said)
+
+    def test_unequal_time_stamps_are_said(self):
+        frames = np.repeat(MOSAIC, 2, axis=0)
+        times = [i / 1000 for i in (0, 1, 2, 3, 7, 8, 9, 10)]
+        name = self.cine(frames, hz=1000, seconds=times)
+        self.assertEqual(self.figures("info", name)["frames_hz"], 1000)
+        self.light(name)
+        self.assertIn("clip.cine: its frames are 0.001 to 0.004 s apart by their time stamps", self.said)
+        self.assertNotIn("declares", self.said)
+        self.light(self.cine(frames, hz=1000, seconds=times[::-1]))
+        self.assertIn("its time stamps do not increase; they are left out", self.said)
+        self.light(self.cine(frames, hz=1000, seconds=times[:5]))
+        self.assertIn("holds times of 5 frames in place of 8; they are left out", self.said)
+
+    def test_what_is_declared_and_not_applied_is_said(self):
+        for part, what in (("its frames were exposed for 100 to 150 us", {"exposed_s": [1e-4, 1.5e-4, 1e-4, 1e-4]}),
+                           ("bright pixels were exposed for 20 of 190 us", {"bright_ns": 20000}),
+                           ("is to be shown mirrored", {"mirrored": 1}), ("is to be shown turned", {"turned": -90})):
+            with self.subTest(**what):
+                self.light(self.cine(**what))
+                self.assertIn(part, self.said)
+        self.light(self.cine(hz=0, exposed_s=[1e-4] * 4, bright_ns=190000))
         self.assertEqual(self.said, "")
 
     def test_a_mosaic_keeps_its_filters(self):
