@@ -142,6 +142,7 @@ struct VideoDecoder::Impl {
     void send_packet();
     void check_end();
     void count_packet();
+    void check_fields() const;
     void note_time(std::int64_t tick);
     [[nodiscard]] std::string unequal_times() const;
     [[nodiscard]] double announced_s() const;
@@ -242,6 +243,18 @@ void VideoDecoder::Impl::check_end() {
     shortfall = fmt::format("{}: {}; frames may be missing", name, text);
 }
 
+/// \throws InputError if the frame holds two moments. A container may declare what a decoder does
+/// not tell, and the reverse.
+void VideoDecoder::Impl::check_fields() const {
+    constexpr auto kEnd = static_cast<AVFieldOrder>(AV_FIELD_BT + 1);
+    const AVFieldOrder order = known(stream->codecpar->field_order, kEnd, AV_FIELD_UNKNOWN);
+    const bool declared = order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
+    if (declared || frame->interlaced_frame != 0)
+        throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
+                         "is interlaced, so its even and odd rows are of two moments; make a frame "
+                         "of each first: ffmpeg -i VIDEO -vf bwdif OUT.mkv");
+}
+
 void VideoDecoder::Impl::note_time(std::int64_t tick) {
     if (tick == AV_NOPTS_VALUE) return;
     if (last_tick != AV_NOPTS_VALUE) {
@@ -284,6 +297,7 @@ const AVFrame* VideoDecoder::next() {
     if (error < 0) impl_->fail("is damaged: " + ffmpeg_reason(error));
     if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
         impl_->fail("is damaged: parts of it are missing or made up");
+    impl_->check_fields();
     ++impl_->errors.next_frame;
     impl_->note_time(frame.best_effort_timestamp);
     complete_colours(frame, *impl_->stream->codecpar);

@@ -21,8 +21,8 @@ class VideoDecoder {
     VideoDecoder& operator=(VideoDecoder&&) noexcept;
 
     /// The next frame, valid until the next call; null at the end, but not before the first frame.
-    /// \throws InputError if the file is damaged there, or ends well before the frame that its
-    /// container announces.
+    /// \throws InputError if the file is damaged there, if the frame is interlaced, or if the file
+    /// ends well before the frame that its container announces.
     const AVFrame* next();
 
     /// Quarter turns, counter-clockwise, that rotate the frames upright: 0..3. \throws InputError

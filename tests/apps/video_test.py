@@ -103,6 +103,29 @@ class VideoTest(ProgramTest):
                     with self.subTest(rows=rows, matrix=matrix, span=span, pixels=pixels):
                         np.testing.assert_allclose(light[0, 20, 9] * 255, COLOUR, atol=2)
 
+    def test_two_moments_in_a_frame_are_refused(self):
+        """Frames of fields, as each kind of file declares them; bwdif makes a frame of each."""
+        fields = ["-vf", "interlace=scan=tff"]
+        for name, options in (
+                ("h264.mp4", ["-c:v", "libx264", "-flags", "+ilme+ildct", "-x264-params", "tff=1"]),
+                ("mpeg2.mpg", ["-c:v", "mpeg2video", "-flags", "+ilme+ildct", "-top", "1"]),
+                ("prores.mov", ["-c:v", "prores_ks", "-flags", "+ildct", "-top", "1"]),
+                ("raw.y4m", ["-pix_fmt", "yuv420p", "-field_order", "tt"])):
+            with self.subTest(name=name):
+                self.write_moving(name, *fields, *options, seconds=0.4)
+                for command in (["info", name], ["emulate", name, "-o", "x.stipple"]):
+                    self.fails(INPUT, [f"{name}: frame 0: is interlaced", "ffmpeg -i VIDEO -vf bwdif OUT.mkv"],
+                               *command)
+                self.ffmpeg("-i", name, "-vf", "bwdif", "progressive.mkv")
+                self.assertGreater(len(self.emulate("progressive.mkv")[0]), 10)
+
+    def test_fields_that_begin_later_are_refused_where_they_do(self):
+        self.write_moving("a.m2v", "-c:v", "mpeg2video", seconds=0.2)
+        self.write_moving("b.m2v", "-vf", "interlace=scan=tff", "-c:v", "mpeg2video", "-flags", "+ilme+ildct", seconds=0.4)
+        (self.folder / "both.mpg").write_bytes((self.folder / "a.m2v").read_bytes() + (self.folder / "b.m2v").read_bytes())
+        said = self.fails(INPUT, ["is interlaced"], "emulate", "both.mpg", "-o", "x.stipple")
+        self.assertNotIn("frame 0:", said)
+
     def test_prores_keeps_ten_bits(self):
         ramp = np.broadcast_to(np.arange(64, 940, dtype="<u2")[:768], (1, 64, 768))
         neutral = np.full((1, 64, 384), 512, "<u2")
