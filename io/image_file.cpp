@@ -41,7 +41,9 @@ void to_image(const TiffPixels& pixels, Image& image) {
     image.resize(pixels.shape);
     image.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
                     .floating = pixels.sample == Sample::kF32,
-                    .has_alpha = pixels.channels > planes};
+                    .has_alpha = pixels.channels > planes,
+                    .frames_hz = pixels.times.frames_hz,
+                    .warnings = pixels.times.warnings};
     const auto sample_bits = 8 * static_cast<int>(pixels.sample_bytes());
     const bool floating = image.traits.floating;
     image.traits.sample_format = fmt::format("{}{}", floating ? "float" : "uint", sample_bits);

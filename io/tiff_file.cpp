@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <string_view>
 
 #include "core/error.h"
 #include "core/light.h"
+#include "io/tiff_axes.h"
 #include "io/tiff_handle.h"
 
 namespace stipple {
@@ -183,10 +182,11 @@ struct TiffFile::Impl {
     TiffHandle file;
     int pages = 1;
     int page = 0;  ///< the one at hand
+    TiffTimes times;
 
     explicit Impl(const std::filesystem::path& path) : file(path) {}
     bool turn_to(int wanted);
-    void check_imagej_pages() const;
+    [[nodiscard]] TiffTimes declared_times() const;
 };
 
 /// The next page is found from this one, any other from the first.
@@ -199,25 +199,21 @@ bool TiffFile::Impl::turn_to(int wanted) {
     return found;
 }
 
-/// Of a stack beyond 4 GB, ImageJ writes the first page, and says in its description how many
-/// follow.
-void TiffFile::Impl::check_imagej_pages() const {
+/// What the first page, which is at hand, declares of all.
+TiffTimes TiffFile::Impl::declared_times() const {
     const char* text = nullptr;
-    if (TIFFGetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, &text) != 1) return;
-    const std::string_view description(text);
-    const auto images = description.find("\nimages=");
-    if (!description.starts_with("ImageJ=") || images == std::string_view::npos) return;
-    const int announced = std::atoi(text + images + std::string_view("\nimages=").size());
-    if (announced > pages)
-        throw InputError(file.name(),
-                         fmt::format("announces {} images, but its directories hold {}; save it "
-                                     "from ImageJ as an image sequence",
-                                     announced, pages));
+    if (TIFFGetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, &text) != 1) return {};
+    const Page first(file.get());
+    return times_of_pages(text,
+                          {.pages = static_cast<std::uint64_t>(pages),
+                           .channels = std::max<std::uint64_t>(first.channels, 1),
+                           .page_samples = std::uint64_t{first.rows} * first.cols * first.channels},
+                          file.name());
 }
 
 TiffFile::TiffFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
     impl_->pages = static_cast<int>(TIFFNumberOfDirectories(impl_->file.get()));
-    impl_->check_imagej_pages();
+    impl_->times = impl_->declared_times();
 }
 
 TiffFile::~TiffFile() = default;
@@ -242,6 +238,7 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     if (!problem.empty()) throw InputError(where(page), problem);
     pixels.sample = sample_of(about);
     pixels.channels = about.channels;
+    pixels.times = impl_->times;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, where(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
     impl_->file.check_size(bytes, bytes + sizeof(float) * pixels.shape.sites(), about.max_packed(),

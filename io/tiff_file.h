@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "io/tiff_axes.h"
 
 namespace stipple {
 
@@ -17,6 +18,7 @@ struct TiffPixels {
     FrameShape shape;
     Sample sample = Sample::kU8;
     int channels = 1;  ///< planes and alpha
+    TiffTimes times;   ///< of all pages of the file
     std::vector<std::byte> bytes;
 
     [[nodiscard]] std::size_t sample_bytes() const;
@@ -26,7 +28,8 @@ struct TiffPixels {
 /// separate channels. Nothing is written to standard error.
 class TiffFile {
   public:
-    /// \throws InputError if the file is missing, unreadable or no TIFF.
+    /// \throws InputError if the file is missing, unreadable or no TIFF, or declares pages that are
+    /// no moments in time.
     explicit TiffFile(const std::filesystem::path& file);
     ~TiffFile();
     TiffFile(TiffFile&&) noexcept;

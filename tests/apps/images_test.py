@@ -65,6 +65,21 @@ class ImagesTest(ProgramTest):
                 self.assertEqual([float(pixels.get(key)) for key in ("TimeIncrement", "PhysicalSizeX", "SizeT")],
                                  [0.005, 6.5, 5])
 
+    @unittest.skipUnless(tifffile, "python3-tifffile is not installed")
+    def test_stacks_of_an_independent_writer_are_moments_or_refused(self):
+        """Of 4 times and 2 channels, and of one channel of it."""
+        stack = (self.footage[:4, ..., :2] * 30000).astype(np.uint16).transpose(0, 3, 1, 2)
+        for name, options in (("a.ome.tif", {}), ("a.tif", {}), ("a.tif", {"imagej": True})):
+            def write(values, axes):
+                tifffile.imwrite(self.folder / name, values, metadata={"axes": axes}, photometric="minisblack",
+                                 **options)
+            with self.subTest(name=name, **options):
+                for values, axes in ((stack, "TCYX"), (stack, "TZYX"), (stack[:, 0], "CYX")):
+                    write(values, axes)
+                    self.fails(INPUT, [f"{name}: declares ", "each page becomes a moment in time"], "info", name)
+                write(stack[:, 0], "TYX")
+                np.testing.assert_allclose(self.read_back(name), stack[:, 0] / 65535, atol=1e-6)
+
     def test_xml_is_well_formed(self):
         content = (self.folder / self.decode("a.tif")).read_bytes()
         begin = content.rindex(b"<?xml")
