@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -43,10 +44,11 @@ constexpr Key kRate{"Record Rate(fps)", {"recordInfo", "recordRate"}};
 constexpr Key kStep{"Save Step", {"frameInfo", "skipFrame"}};
 /// In .cih seconds, as 1/800000; in .cihx the N of 1/N s.
 constexpr Key kShutter{"Shutter Speed(s)", {"recordInfo", "shutterSpeed"}};
+constexpr Key kCamera{"Camera Type", {"deviceInfo", "deviceName"}};
 constexpr Key kShutterNs{"Shutter Type2(nsec)", {"recordInfo", "shutterSpeedNsec"}};
 constexpr Key kProcessed{"Apply Image Proc", {"imageDataInfo", "applyImageProc"}};
 constexpr std::array kKeys{kFormat, kFrames, kWidth, kHeight,  kColour,    kStoredBits, kDepth,
-                           kSide,   kRate,   kStep,  kShutter, kShutterNs, kProcessed};
+                           kSide,   kRate,   kStep,  kShutter, kShutterNs, kProcessed,  kCamera};
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r\n";
@@ -173,6 +175,44 @@ fs::path beside(const fs::path& file, std::span<const char* const> extensions) {
                      fmt::format("needs the {} file of the same name beside it", extensions[0]));
 }
 
+/// Whether the bits that are used are the highest of a sample.
+bool is_at_top(const Header& header) {
+    const std::string_view side = header.text(kSide);
+    if (same_letters(side, "higher")) return true;
+    if (same_letters(side, "lower")) return false;
+    throw InputError(header.name(),
+                     fmt::format("\"{}\" is \"{}\", neither Lower nor Higher", kSide.name, side));
+}
+
+/// Whether the name of a camera has the -M of grey ones, as "FASTCAM SA-Z type 2100K-M-64GB".
+bool is_grey_camera(std::string_view name) {
+    for (auto at = name.find("-M"); at != name.npos; at = name.find("-M", at + 1)) {
+        const bool ends = at + 2 == name.size();
+        if (ends || std::isalpha(static_cast<unsigned char>(name[at + 2])) == 0) return true;
+    }
+    return false;
+}
+
+/// "Raw" is what the sensor gave: grey, or the mosaic of a filter array that no key names.
+/// \throws InputError unless the pixels are grey.
+void check_grey(const Header& header, std::uint32_t stored, std::uint32_t depth) {
+    const std::string_view colour = header.has(kColour) ? header.text(kColour) : "Mono";
+    const bool is_raw = same_letters(colour, "raw");
+    const std::string_view camera = header.has(kCamera) ? header.text(kCamera) : "not named";
+    if (same_letters(colour, "mono") || (is_raw && is_grey_camera(camera))) return;
+    if (!is_raw)
+        throw InputError(header.name(),
+                         fmt::format("declares colour (\"{}\"); only grey is supported", colour));
+    const bool in_words = depth >= 10 && depth < stored && depth % 2 == 0 && !is_at_top(header);
+    const std::string bits = stored == 12 ? "12msb" : fmt::to_string(in_words ? depth : stored);
+    throw InputError(
+        header.name(),
+        fmt::format("declares raw pixels of a camera that is not known to be grey ({0}); give the "
+                    ".mraw file with --raw {1}x{2}:bayerrg{3} (or bayergr, bayergb, bayerbg, as "
+                    "its filter array begins), or --raw {1}x{2}:mono{3} if it is grey",
+                    camera, header.count(kWidth), header.count(kHeight), bits));
+}
+
 /// The format, and its highest number.
 std::pair<PixelFormat, int> format_of(const Header& header) {
     const std::uint32_t stored = header.count(kStoredBits);
@@ -181,23 +221,16 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
         throw InputError(header.name(),
                          fmt::format("declares the format \"{}\"; only MRAW is supported",
                                      header.text(kFormat)));
-    if (header.has(kColour) && !same_letters(header.text(kColour), "mono"))
-        throw InputError(
-            header.name(),
-            fmt::format("declares colour (\"{}\"); only grey is supported", header.text(kColour)));
     if (stored != 8 && stored != 12 && stored != 16)
         throw InputError(
             header.name(),
             fmt::format("declares {} bits per pixel; only 8, 12 and 16 are supported", stored));
+    check_grey(header, stored, depth);
     PixelFormat format{.name = "MRAW"};
     format.bits_per_pixel = format.significant_bits = static_cast<int>(stored);
     format.packing = stored == 12 ? Packing::kMsbPacked : Packing::kBytes;
     const std::uint32_t used = std::min(stored, depth);
-    const bool at_top = same_letters(header.text(kSide), "higher");
-    if (!at_top && !same_letters(header.text(kSide), "lower"))
-        throw InputError(header.name(), fmt::format("\"{}\" is \"{}\", neither Lower nor Higher",
-                                                    kSide.name, header.text(kSide)));
-    return {format, ((1 << used) - 1) << (at_top ? stored - used : 0)};
+    return {format, ((1 << used) - 1) << (is_at_top(header) ? stored - used : 0)};
 }
 
 /// Rate and exposure. The frames of a file may be every N-th of the recording.

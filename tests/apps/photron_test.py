@@ -9,8 +9,10 @@ from program import INPUT
 def photron_header(kind="cihx", **changed):
     """A header in the forms of Photron's viewer: `shutter` is the N of 1/N s, `ns` the same in nanoseconds."""
     values = {"format": "MRaw", "frames": 4, "width": 8, "height": 6, "colour": "Mono", "bits": 12, "depth": 12,
-              "side": "Lower", "rate": 5000, "shutter": 5000, "ns": 200000, "step": 1, "processed": 0} | changed
+              "side": "Lower", "rate": 5000, "shutter": 5000, "ns": 200000, "step": 1, "processed": 0,
+              "camera": "FASTCAM SA-Z type 2100K-C-64GB"} | changed
     text = """#Camera Information Header
+Camera Type : {camera}
 Record Rate(fps) : {rate}
 Shutter Speed(s) : 1/{shutter}
 Total Frame : {frames}
@@ -27,6 +29,7 @@ Comment Text : a : b
 """ if kind == "cih" else """\x7f\x05\x01<cih>
 <fileInfo><date>2020/1/1</date></fileInfo>
 <imageFileInfo><fileFormat>{format}</fileFormat></imageFileInfo>
+<deviceInfo><deviceName>{camera}</deviceName></deviceInfo>
 <frameInfo><totalFrame>{frames}</totalFrame><skipFrame>{step}</skipFrame></frameInfo>
 <recordInfo><recordRate>{rate}</recordRate><shutterSpeed>{shutter}</shutterSpeed>
 <shutterSpeedNsec>{ns}</shutterSpeedNsec></recordInfo>
@@ -56,6 +59,26 @@ class PhotronTest(CameraFilesTest):
                     with self.subTest(name=name, kind=kind, **what):
                         self.assert_light(MOSAIC % (most + 1) / most, name, "--set", "sensor.slot_us=200")
                         self.assertEqual(self.said, "")
+
+    def test_raw_pixels_of_a_grey_camera_are_grey(self):
+        for camera in ("FASTCAM Nova S16 type 1100K-M-64GB 10GbE model", "FASTCAM SA5 model 775K-M2", "FASTCAM X-M"):
+            for kind in ("cihx", "cih"):
+                with self.subTest(camera=camera, kind=kind):
+                    self.assert_light(MOSAIC / 4095, self.photron(kind=kind, colour="Raw", camera=camera))
+
+    def test_raw_pixels_of_another_camera_are_refused_with_their_formats(self):
+        formats = (({"bits": 12}, "12msb", msb_packed(MOSAIC, 12)), ({"bits": 16}, "12", MOSAIC.astype("<u2").tobytes()),
+                   ({"bits": 8, "depth": 8}, "8", (MOSAIC % 256).astype("u1").tobytes()),
+                   ({"bits": 16, "side": "Higher"}, "16", (MOSAIC * 16).astype("<u2").tobytes()))
+        for what, bits, content in formats:
+            for camera in ("FASTCAM SA-Z type 2100K-C-64GB", "FASTCAM-Mini", ""):
+                with self.subTest(camera=camera, **what):
+                    header = self.photron(content, colour="Raw", camera=camera, **what)
+                    self.refuse([f"--raw 8x6:bayerrg{bits} ", f"--raw 8x6:mono{bits} if it is grey"], header)
+            light = {"8": MOSAIC % 256 / 255, "16": MOSAIC * 16 / 65535}.get(bits, MOSAIC / 4095)
+            self.assert_light(light, "clip.mraw", "--raw", f"8x6:mono{bits}")
+            self.light("clip.mraw", "--raw", f"8x6:bayerrg{bits}", "--set", "sensor.mode=physical", "--set",
+                       "sensor.cfa=rggb")
 
     def test_a_header_without_a_kind_of_colour_is_of_grey(self):
         self.photron()
