@@ -6,6 +6,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <fmt/format.h>
 #include <openexr.h>
@@ -13,12 +14,14 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -26,6 +29,7 @@
 #include "core/light.h"
 #include "core/memory_limit.h"
 #include "io/output_file.h"
+#include "io/primaries.h"
 
 namespace stipple {
 namespace {
@@ -49,17 +53,20 @@ void note_fault(exr_const_context_t context, exr_result_t code, const char* text
 }
 
 /// OpenEXRCore compares all sizes in the header with the file. OpenEXR's own class believes them,
-/// and takes as much memory. \throws std::runtime_error if the header is damaged.
-void check_header(const std::filesystem::path& file) {
+/// and takes as much memory. \returns the number of parts. \throws std::runtime_error if the header
+/// is damaged.
+int check_header(const std::filesystem::path& file) {
     HeaderFault fault;
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
     settings.error_handler_fn = note_fault;
     settings.user_data = &fault;
     exr_context_t context = nullptr;
     const exr_result_t code = exr_start_read(&context, file.c_str(), &settings);
+    int parts = 1;
+    if (code == EXR_ERR_SUCCESS) exr_get_count(context, &parts);
     exr_finish(&context);
     if (fault.no_memory || code == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (code == EXR_ERR_SUCCESS && fault.text[0] == '\0') return;
+    if (code == EXR_ERR_SUCCESS && fault.text[0] == '\0') return parts;
     throw std::runtime_error(fault.text[0] == '\0' ? exr_get_default_error_message(code)
                                                    : fault.text.data());
 }
@@ -141,15 +148,6 @@ Imf::Slice plane_slice(Sample* plane, const Imath::Box2i& window, FrameShape sha
                             sizeof(Sample) * static_cast<std::size_t>(shape.cols));
 }
 
-const Imath::Box2i& checked_window(const Imf::Header& header, const std::string& where) {
-    const Imath::Box2i& window = header.dataWindow();
-    if (window != header.displayWindow())
-        throw InputError(where,
-                         "its data window differs from its display window; "
-                         "crop or pad the image to its display window");
-    return window;
-}
-
 std::uint64_t side(int low, int high) {
     return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
 }
@@ -169,15 +167,79 @@ void check_size(const Imf::Header& header, const std::vector<std::string>& names
     check_memory(sizeof(float) * shape.pixels() * names.size(), where, "the image", bytes);
 }
 
+FrameShape checked_shape_of(const Imath::Box2i& window, std::size_t planes,
+                            const std::string& where) {
+    return checked_shape(side(window.min.y, window.max.y), side(window.min.x, window.max.x), planes,
+                         where);
+}
+
+/// The image of the display window from that of the data window. Pixels without data are 0.
+void fit_to_display(const Imath::Box2i& data, const Imath::Box2i& display, const std::string& where,
+                    Image& image) {
+    const FrameShape shape =
+        checked_shape_of(display, static_cast<std::size_t>(image.shape.planes), where);
+    check_memory(sizeof(float) * (shape.sites() + image.shape.sites()), where,
+                 "the image of its display window", std::filesystem::file_size(where));
+    std::vector<float> shown(shape.sites());
+    const std::int64_t top = std::int64_t{data.min.y} - display.min.y;
+    const std::int64_t left = std::int64_t{data.min.x} - display.min.x;
+    const std::int64_t begin = std::max<std::int64_t>(left, 0);
+    const std::int64_t end = std::min<std::int64_t>(left + image.shape.cols, shape.cols);
+    const std::int64_t rows = std::min<std::int64_t>(top + image.shape.rows, shape.rows);
+    for (std::int64_t plane = 0; plane < shape.planes; ++plane)
+        for (std::int64_t row = std::max<std::int64_t>(top, 0); row < rows && begin < end; ++row) {
+            const std::int64_t stored = plane * image.shape.rows + row - top;
+            const auto* const from = image.values.data() + stored * image.shape.cols + begin - left;
+            std::copy(from, from + end - begin,
+                      shown.data() + (plane * shape.rows + row) * shape.cols + begin);
+        }
+    image.shape = shape;
+    image.values = std::move(shown);
+}
+
+/// Rate and exposure, and what is declared and not applied.
+void read_attributes(const Imf::Header& header, SourceTraits& traits) {
+    constexpr double kMicrosecondsASecond = 1e6;
+    if (Imf::hasFramesPerSecond(header)) {
+        const Imf::Rational rate = Imf::framesPerSecond(header);
+        if (rate.n > 0 && rate.d > 0) traits.frames_hz = static_cast<double>(rate);
+    }
+    if (Imf::hasExpTime(header)) {
+        const double seconds{Imf::expTime(header)};
+        if (seconds > 0 && std::isfinite(seconds))
+            traits.exposure_us = kMicrosecondsASecond * seconds;
+    }
+    if (header.pixelAspectRatio() != 1)
+        traits.warnings.push_back(fmt::format(
+            "declares pixels {:.4g} times as wide as high; they are taken for square ones",
+            header.pixelAspectRatio()));
+}
+
+/// To the primaries of Rec. 709, which all light here has.
+void convert_colours(const Imf::Header& header, const std::string& where, Image& image) {
+    if (image.shape.planes != 3 || !Imf::hasChromaticities(header)) return;
+    const Imf::Chromaticities& declared = Imf::chromaticities(header);
+    const auto at = [](const Imath::V2f& colour) { return Chromaticity{colour.x, colour.y}; };
+    const auto matrix =
+        to_rec709({at(declared.red), at(declared.green), at(declared.blue), at(declared.white)});
+    if (!matrix)
+        throw InputError(where,
+                         "declares chromaticities that make no colours; correct or remove "
+                         "the attribute first");
+    if (is_identity(*matrix)) return;
+    convert(image.values, *matrix);
+    image.traits.warnings.emplace_back(
+        "declares other primaries than Rec. 709, to which its colours are converted");
+}
+
 void read_planes(Imf::InputFile& input, const std::string& where, Image& image) {
-    const Imath::Box2i window = checked_window(input.header(), where);
+    const Imath::Box2i window = input.header().dataWindow();
     const auto names = image_channels(input.header().channels(), where);
     image.traits = {.floating = true,
                     .has_alpha = input.header().channels().findChannel("A") != nullptr};
     const bool half = input.header().channels()[names.front().c_str()].type == Imf::HALF;
     image.traits.sample_format = half ? "float16" : "float32";
-    const FrameShape shape = checked_shape(side(window.min.y, window.max.y),
-                                           side(window.min.x, window.max.x), names.size(), where);
+    const FrameShape shape = checked_shape_of(window, names.size(), where);
     check_size(input.header(), names, shape, where);
     image.resize(shape);
     Imf::FrameBuffer planes;
@@ -186,6 +248,10 @@ void read_planes(Imf::InputFile& input, const std::string& where, Image& image) 
                                             image.shape));
     input.setFrameBuffer(planes);
     input.readPixels(window.min.y, window.max.y);
+    read_attributes(input.header(), image.traits);
+    convert_colours(input.header(), where, image);
+    const Imath::Box2i& display = input.header().displayWindow();
+    if (window != display) fit_to_display(window, display, where, image);
 }
 
 /// The file of an image, in memory: OpenEXR swallows errors that occur when a file is closed.
@@ -235,10 +301,13 @@ std::string encoded_as(FrameShape shape, std::span<const float> frame, std::stri
 
 void read_exr(const std::filesystem::path& file, Image& image) {
     try {
-        check_header(file);
+        const int parts = check_header(file);
         check_channel_lists(file);
         Imf::InputFile input(file.c_str(), kThreads);
         read_planes(input, file.string(), image);
+        if (parts > 1)
+            image.traits.warnings.push_back(
+                fmt::format("has {} parts, of which the first is read", parts));
     } catch (const InputError&) {
         throw;
     } catch (const std::bad_alloc&) {

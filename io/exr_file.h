@@ -11,9 +11,10 @@
 namespace stipple {
 
 /// Reads an OpenEXR image (half or float) into `image`: its channels R, G, B, else Y, else its
-/// only channel if that is not depth. Alpha and other channels are omitted; nothing is scaled.
-/// \throws InputError naming the file if it is unreadable or truncated, has none of these channels,
-/// or stores another rectangle than it displays.
+/// only channel if that is not depth. Alpha and other channels are omitted. Colours of other
+/// primaries than those of Rec. 709 are converted (io/primaries.h), nothing is scaled. The image is
+/// that of the display window; pixels outside of the data window are 0. \throws InputError naming
+/// the file if it is unreadable or truncated, or has none of these channels.
 void read_exr(const std::filesystem::path& file, Image& image);
 
 enum class ExrSample { kFloat, kHalf };

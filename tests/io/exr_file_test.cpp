@@ -3,10 +3,15 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -87,10 +92,100 @@ TEST_F(ExrFileTest, ReadsWindowsThatDoNotBeginAtZero) {
     EXPECT_EQ(read().values, (Floats{0, 1, 2, 3, 4, 5}));
 }
 
-TEST_F(ExrFileTest, RefusesADataWindowThatIsNotTheDisplayWindow) {
-    const Imath::Box2i display({0, 0}, {9, 9});
-    write_channels(file_, {"Y"}, Imf::FLOAT, Imf::Header(display, {{0, 0}, {2, 1}}));
-    expect_parts(problem(), {"f.exr: its data window differs"});
+/// Pixel (x, y) of a 3 x 2 data window that begins at (left, top); elsewhere 0.
+float pixel_of(int x, int y, int left, int top) {
+    const bool has_data = x >= left && x < left + 3 && y >= top && y < top + 2;
+    return has_data ? static_cast<float>(3 * (y - top) + x - left) : 0;
+}
+
+TEST_F(ExrFileTest, ShowsItsDisplayWindowWhateverHasData) {
+    const Imath::Box2i display({-1, 2}, {3, 5});
+    for (int top = -1; top < 8; ++top)
+        for (int left = -5; left < 6; ++left) {
+            const Imath::Box2i data({left, top}, {left + 2, top + 1});
+            write_channels(file_, {"B", "G", "R"}, Imf::FLOAT, Imf::Header(display, data));
+            Floats expected;
+            for (const float plane : {20.0F, 10.0F, 0.0F})
+                for (int y = 2; y <= 5; ++y)
+                    for (int x = -1; x <= 3; ++x) {
+                        const bool outside = x < left || x > left + 2 || y < top || y > top + 1;
+                        expected.push_back(outside ? 0 : plane + pixel_of(x, y, left, top));
+                    }
+            const Image image = read();
+            EXPECT_EQ(image.shape, (FrameShape{4, 5, 3}));
+            EXPECT_EQ(image.values, expected) << left << ' ' << top;
+        }
+}
+
+TEST_F(ExrFileTest, RefusesADisplayWindowBeyondMemory) {
+    const MemoryLimit limit(std::uint64_t{1} << 20U);
+    for (const int last : {999, 65534}) {
+        const Imath::Box2i display({0, 0}, {last, last});
+        write_channels(file_, {"Y"}, Imf::FLOAT, Imf::Header(display, {{0, 0}, {2, 1}}));
+        expect_parts(problem(), {"f.exr: ", last == 999 ? "memory" : "outside"});
+    }
+}
+
+TEST_F(ExrFileTest, ConvertsThePrimariesThatItDeclares) {
+    Imf::Header header(3, 2);
+    Imf::addChromaticities(header, {{1, 0}, {0, 1}, {0, 0}, {1.0F / 3, 1.0F / 3}});
+    write_channels(file_, {"R", "G", "B"}, Imf::FLOAT, header);  // X = i, Y = 10 + i, Z = 20 + i
+    const Image image = read();
+    ASSERT_EQ(image.traits.warnings.size(), 1);
+    expect_parts(image.traits.warnings[0], {"declares other primaries than Rec. 709"});
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(0.2126F * image.values[i] + 0.7152F * image.values[6 + i] +
+                        0.0722F * image.values[12 + i],
+                    10 + static_cast<float>(i), 2e-3);
+    write_channels(file_, {"Y"}, Imf::FLOAT, header);
+    EXPECT_EQ(read().values, (Floats{0, 1, 2, 3, 4, 5}));
+    Imf::addChromaticities(header, Imf::Chromaticities());
+    write_channels(file_, {"R", "G", "B"}, Imf::FLOAT, header);
+    EXPECT_EQ(read().values[17], 25);
+    EXPECT_TRUE(read().traits.warnings.empty());
+    Imf::addChromaticities(header, {{1, 0}, {1, 0}, {0, 0}, {0.3F, 0.3F}});
+    write_channels(file_, {"R", "G", "B"}, Imf::FLOAT, header);
+    expect_parts(problem(), {"f.exr: declares chromaticities that make no colours"});
+}
+
+TEST_F(ExrFileTest, SaysThatItReadsTheFirstOfSeveralParts) {
+    std::vector<Imf::Header> headers(2, Imf::Header(3, 2));
+    for (std::size_t i = 0; i < 2; ++i) {
+        headers[i].setName(i == 0 ? "left" : "right");
+        headers[i].setType(Imf::SCANLINEIMAGE);
+        headers[i].channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    }
+    {
+        Imf::MultiPartOutputFile output(file_.c_str(), headers.data(), 2, false, 0);
+        for (int i = 0; i < 2; ++i) {
+            Floats light(6, static_cast<float>(i + 1));
+            Imf::FrameBuffer planes;
+            planes.insert("Y", Imf::Slice::Make(Imf::FLOAT, light.data(), headers[0].dataWindow()));
+            Imf::OutputPart part(output, i);
+            part.setFrameBuffer(planes);
+            part.writePixels(2);
+        }
+    }
+    const Image image = read();
+    EXPECT_EQ(image.values, Floats(6, 1));
+    ASSERT_EQ(image.traits.warnings.size(), 1);
+    expect_parts(image.traits.warnings[0], {"has 2 parts, of which the first is read"});
+}
+
+TEST_F(ExrFileTest, ReadsRateAndExposure) {
+    Imf::Header header(3, 2, 2.0F);
+    Imf::addFramesPerSecond(header, {24000, 1001});
+    Imf::addExpTime(header, 0.02F);
+    write_channels(file_, {"Y"}, Imf::FLOAT, header);
+    const SourceTraits traits = read().traits;
+    EXPECT_DOUBLE_EQ(*traits.frames_hz, 24000.0 / 1001);
+    EXPECT_NEAR(*traits.exposure_us, 20000, 1e-2);
+    ASSERT_EQ(traits.warnings.size(), 1);
+    expect_parts(traits.warnings[0], {"pixels 2 times as wide as high"});
+    Imf::addFramesPerSecond(header, {24, 0});
+    Imf::addExpTime(header, -1);
+    write_channels(file_, {"Y"}, Imf::FLOAT, header);
+    EXPECT_FALSE(read().traits.frames_hz || read().traits.exposure_us);
 }
 
 TEST_F(ExrFileTest, NamesATruncatedFileWhateverItsLength) {
