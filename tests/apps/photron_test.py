@@ -9,7 +9,7 @@ from program import INPUT
 def photron_header(kind="cihx", **changed):
     """A header in the forms of Photron's viewer: `shutter` is the N of 1/N s, `ns` the same in nanoseconds."""
     values = {"format": "MRaw", "frames": 4, "width": 8, "height": 6, "colour": "Mono", "bits": 12, "depth": 12,
-              "side": "Lower", "rate": 5000, "shutter": 5000, "ns": 200000, "step": 1, "processed": 0,
+              "side": "Lower", "rate": 5000, "shutter": 5263, "ns": 190000, "step": 1, "processed": 0,
               "camera": "FASTCAM SA-Z type 2100K-C-64GB"} | changed
     text = """#Camera Information Header
 Camera Type : {camera}
@@ -127,7 +127,7 @@ class PhotronTest(CameraFilesTest):
     def test_the_stream_names_both_files_by_their_hash(self):
         self.light(self.photron())
         before = self.succeed("info", "clip.stipple")
-        self.light(self.photron(shutter=5001))
+        self.light(self.photron(shutter=5264))
         self.assertNotEqual(self.succeed("info", "clip.stipple"), before)
 
     def test_what_is_not_read(self):
