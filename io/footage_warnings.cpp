@@ -47,6 +47,13 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
             fmt::format("{}: its frames were exposed for {:.4g} of {:.4g} us each; "
                         "the light of the time between is not in them",
                         name, *traits.exposure_us, period_us));
+    const auto used = transfer == Transfer::kAuto ? traits.declared : transfer;
+    const bool converted = traits.bt2020 && (used == Transfer::kPq || used == Transfer::kHlg);
+    if (!traits.primaries.empty() && !converted)
+        warnings.push_back(
+            fmt::format("{}: declares the primaries {}, which are not converted to those of Rec. "
+                        "709; convert it first: ffmpeg -i VIDEO -vf colorspace=bt709 OUT.mkv",
+                        name, traits.primaries));
     for (const std::string& text : traits.warnings)
         warnings.push_back(fmt::format("{}: {}", name, text));
     if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");

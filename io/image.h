@@ -24,7 +24,8 @@ struct SourceTraits {
     int bits = 0;                         ///< significant bits of a sample; 0: unknown or floating
     std::optional<double> black_dn = {};  ///< that the file declares, or its kind
     std::optional<double> white_dn = {};
-    std::string curve = {};  ///< from light to numbers, declared; undone unless `gamma_coded`
+    std::string curve = {};      ///< from light to numbers, declared; undone unless `gamma_coded`
+    std::string primaries = {};  ///< of a video, if far from those of Rec. 709
     std::vector<std::string> warnings = {};  ///< what else it declares that users should know
 };
 

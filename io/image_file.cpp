@@ -39,15 +39,16 @@ void to_image(const TiffPixels& pixels, Image& image) {
     using Sample = TiffPixels::Sample;
     const int planes = pixels.shape.planes;
     image.resize(pixels.shape);
-    image.traits = {.gamma_coded = planes == 3 && pixels.sample == Sample::kU8,
-                    .floating = pixels.sample == Sample::kF32,
+    const bool is_float = pixels.sample == Sample::kF32;
+    const bool is_picture = planes == 3 && pixels.sample == Sample::kU8;
+    image.traits = {.gamma_coded = is_picture || (pixels.has_profile && !is_float),
+                    .floating = is_float,
                     .has_alpha = pixels.channels > planes,
                     .frames_hz = pixels.times.frames_hz,
                     .warnings = pixels.times.warnings};
     const auto sample_bits = 8 * static_cast<int>(pixels.sample_bytes());
-    const bool floating = image.traits.floating;
-    image.traits.sample_format = fmt::format("{}{}", floating ? "float" : "uint", sample_bits);
-    if (!floating) image.traits.bits = sample_bits;
+    image.traits.sample_format = fmt::format("{}{}", is_float ? "float" : "uint", sample_bits);
+    if (!is_float) image.traits.bits = sample_bits;
     const auto split = [&]<typename Stored>(Stored, auto to_float) {
         split_planes<Stored>(pixels.bytes, pixels.channels, planes, image.values, to_float);
     };

@@ -26,6 +26,7 @@ struct Page {
     std::uint16_t orientation = ORIENTATION_TOPLEFT;
     std::uint16_t compression = COMPRESSION_NONE;
     bool apart = false;  ///< one channel after the other
+    bool has_profile = false;
 
     explicit Page(TIFF* tiff);
     [[nodiscard]] std::string problem() const;
@@ -44,6 +45,9 @@ Page::Page(TIFF* tiff) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &orientation);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    std::uint32_t profile_bytes = 0;
+    const void* profile = nullptr;
+    has_profile = TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &profile_bytes, &profile) == 1;
     apart = planar == PLANARCONFIG_SEPARATE && channels > 1;
     if (compression == COMPRESSION_JPEG && photometric == PHOTOMETRIC_YCBCR) {
         TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
@@ -239,6 +243,7 @@ void TiffFile::read(int page, TiffPixels& pixels) {
     pixels.sample = sample_of(about);
     pixels.channels = about.channels;
     pixels.times = impl_->times;
+    pixels.has_profile = about.has_profile;
     pixels.shape = checked_shape(about.rows, about.cols, about.channels < 3 ? 1 : 3, where(page));
     const std::size_t bytes = pixels.shape.pixels() * about.channels * pixels.sample_bytes();
     impl_->file.check_size(bytes, bytes + sizeof(float) * pixels.shape.sites(), about.max_packed(),

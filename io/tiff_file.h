@@ -17,8 +17,9 @@ struct TiffPixels {
 
     FrameShape shape;
     Sample sample = Sample::kU8;
-    int channels = 1;  ///< planes and alpha
-    TiffTimes times;   ///< of all pages of the file
+    int channels = 1;          ///< planes and alpha
+    TiffTimes times;           ///< of all pages of the file
+    bool has_profile = false;  ///< of its colours (ICC)
     std::vector<std::byte> bytes;
 
     [[nodiscard]] std::size_t sample_bytes() const;

@@ -333,6 +333,11 @@ std::vector<std::string> VideoDecoder::warnings() const {
             "{}: the decoder reports {} error{}, the first at frame {}: "
             "frames from there on may be wrong",
             impl_->name, count, count == 1 ? "" : "s", impl_->errors.first_frame.load()));
+    const AVRational pixel = impl_->codec->sample_aspect_ratio;
+    if (pixel.num > 0 && pixel.den > 0 && pixel.num != pixel.den)
+        texts.push_back(fmt::format(
+            "{}: declares pixels {:.4g} times as wide as high; they are taken for square ones",
+            impl_->name, av_q2d(pixel)));
     for (const std::string& text : {impl_->shortfall, impl_->unequal_times()})
         if (!text.empty()) texts.push_back(text);
     return texts;

@@ -22,6 +22,7 @@ extern "C" {
 namespace stipple {
 namespace {
 
+STIPPLE_LATE(av_color_primaries_name);
 STIPPLE_LATE(av_color_space_name);
 STIPPLE_LATE(av_color_transfer_name);
 STIPPLE_LATE(av_frame_alloc);
@@ -142,6 +143,20 @@ std::optional<Transfer> transfer_of(AVColorTransferCharacteristic curve) {
     }
 }
 
+/// The name of primaries far from those of Rec. 709; those of SD video are near.
+std::string other_primaries(AVColorPrimaries primaries) {
+    switch (primaries) {
+        case AVCOL_PRI_FILM:
+        case AVCOL_PRI_BT2020:
+        case AVCOL_PRI_SMPTE428:
+        case AVCOL_PRI_SMPTE431:
+        case AVCOL_PRI_SMPTE432:
+            return av_color_primaries_name(primaries);
+        default:
+            return {};
+    }
+}
+
 /// What a frame declares of its curve goes first. Where it declares none, all but grey and RGB of
 /// more than 8 bits are gamma-coded, as is usual.
 SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
@@ -155,6 +170,8 @@ SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
     if (is_declared && av_color_transfer_name(curve) != nullptr)
         traits.curve = av_color_transfer_name(curve);
     traits.bt2020 = frame.color_primaries == AVCOL_PRI_BT2020;
+    if (colours_of(about) != Colours::kGrey)
+        traits.primaries = other_primaries(frame.color_primaries);
     traits.sample_format = about.name;
     traits.bits = about.comp[0].depth;
     traits.has_alpha =

@@ -80,6 +80,14 @@ class ImagesTest(ProgramTest):
                 write(stack[:, 0], "TYX")
                 np.testing.assert_allclose(self.read_back(name), stack[:, 0] / 65535, atol=1e-6)
 
+    @unittest.skipUnless(tifffile, "python3-tifffile is not installed")
+    def test_integers_with_a_colour_profile_look_gamma_coded(self):
+        for kind, profile, is_coded in ((np.uint16, b"icc", True), (np.uint16, None, False), (np.float32, b"icc", False)):
+            with self.subTest(kind=kind, profile=profile):
+                tifffile.imwrite(self.folder / "a.tif", np.ones((12, 10, 3), kind), photometric="rgb",
+                                 extratags=[(34675, 7, 3, profile, True)] if profile else [])
+                self.assertEqual(self.figures("info", "a.tif")["gamma_coded"], is_coded)
+
     def test_xml_is_well_formed(self):
         content = (self.folder / self.decode("a.tif")).read_bytes()
         begin = content.rindex(b"<?xml")

@@ -119,6 +119,29 @@ class VideoTest(ProgramTest):
                 self.ffmpeg("-i", name, "-vf", "bwdif", "progressive.mkv")
                 self.assertGreater(len(self.emulate("progressive.mkv")[0]), 10)
 
+    def test_other_primaries_are_said_unless_they_are_converted(self):
+        for primaries, curve, options, is_said in (
+                ("bt2020", "bt709", [], True), ("smpte432", "bt709", ["--transfer", "bt709"], True),
+                ("bt2020", "smpte2084", ["--transfer", "auto"], False), ("bt2020", "smpte2084", [], True),
+                ("bt709", "bt709", [], False), ("smpte170m", "smpte170m", [], False)):
+            with self.subTest(primaries=primaries, curve=curve, options=options):
+                self.write_moving("a.mkv", "-pix_fmt", "yuv420p", "-c:v", "libx264", "-color_primaries", primaries,
+                                  "-color_trc", curve, "-colorspace", "bt2020nc", seconds=0.1)
+                _, said = self.emulate("a.mkv", *options)
+                self.assertEqual(f"declares the primaries {primaries}, which are not converted" in said, is_said, said)
+        self.write_moving("a.mkv", "-pix_fmt", "yuv420p", "-c:v", "libx264", "-color_primaries", "bt2020", "-color_trc",
+                          "bt709", "-colorspace", "bt2020nc", "-color_range", "tv", seconds=0.1)
+        self.ffmpeg("-i", "a.mkv", "-vf", "colorspace=bt709", "b.mkv")
+        self.assertNotIn("primaries", self.emulate("b.mkv")[1])
+        self.write_raw("grey.mkv", np.zeros((1, 16, 16), np.uint8), "gray", "-color_primaries", "bt2020")
+        self.assertNotIn("primaries", self.emulate("grey.mkv")[1])
+
+    def test_pixels_that_are_not_square_are_said(self):
+        self.write_moving("a.mp4", "-vf", "setsar=4/3", "-c:v", "libx264", seconds=0.1)
+        self.assertIn("a.mp4: declares pixels 1.333 times as wide as high", self.emulate("a.mp4")[1])
+        self.write_moving("a.mp4", "-c:v", "libx264", seconds=0.1)
+        self.assertNotIn("as wide", self.emulate("a.mp4")[1])
+
     def test_fields_that_begin_later_are_refused_where_they_do(self):
         self.write_moving("a.m2v", "-c:v", "mpeg2video", seconds=0.2)
         self.write_moving("b.m2v", "-vf", "interlace=scan=tff", "-c:v", "mpeg2video", "-flags", "+ilme+ildct", seconds=0.4)
