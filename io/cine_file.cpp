@@ -320,8 +320,8 @@ RawVideo open_cine(const std::filesystem::path& path) {
     video.offsets.resize(cine.images);
     file.read(cine.offsets_at, {reinterpret_cast<std::uint8_t*>(video.offsets.data()),
                                 video.offsets.size() * sizeof(std::uint64_t)});
-    warn_of_setup(cine, video.traits);
     SourceTraits& traits = video.traits;
+    warn_of_setup(cine, traits);
     read_time_stamps(numbers_of_frames<std::uint64_t>(file, cine, kTimeStamps, traits), traits);
     read_exposures(numbers_of_frames<std::uint32_t>(file, cine, kExposures, traits), traits);
     return video;

@@ -333,7 +333,8 @@ std::vector<std::string> VideoDecoder::warnings() const {
             "{}: the decoder reports {} error{}, the first at frame {}: "
             "frames from there on may be wrong",
             impl_->name, count, count == 1 ? "" : "s", impl_->errors.first_frame.load()));
-    const AVRational pixel = impl_->codec->sample_aspect_ratio;
+    const AVRational of_stream = impl_->stream->sample_aspect_ratio;
+    const AVRational pixel = of_stream.num > 0 ? of_stream : impl_->codec->sample_aspect_ratio;
     if (pixel.num > 0 && pixel.den > 0 && pixel.num != pixel.den)
         texts.push_back(fmt::format(
             "{}: declares pixels {:.4g} times as wide as high; they are taken for square ones",

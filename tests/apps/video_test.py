@@ -137,10 +137,12 @@ class VideoTest(ProgramTest):
         self.assertNotIn("primaries", self.emulate("grey.mkv")[1])
 
     def test_pixels_that_are_not_square_are_said(self):
-        self.write_moving("a.mp4", "-vf", "setsar=4/3", "-c:v", "libx264", seconds=0.1)
-        self.assertIn("a.mp4: declares pixels 1.333 times as wide as high", self.emulate("a.mp4")[1])
-        self.write_moving("a.mp4", "-c:v", "libx264", seconds=0.1)
-        self.assertNotIn("as wide", self.emulate("a.mp4")[1])
+        for name, codec in (("a.mp4", "libx264"), ("a.mkv", "ffv1"), ("a.avi", "mpeg4")):
+            with self.subTest(name=name):
+                self.write_moving(name, "-vf", "setsar=4/3", "-c:v", codec, seconds=0.1)
+                self.assertIn(f"{name}: declares pixels 1.333 times as wide as high", self.emulate(name)[1])
+                self.write_moving(name, "-c:v", codec, seconds=0.1)
+                self.assertNotIn("as wide", self.emulate(name)[1])
 
     def test_fields_that_begin_later_are_refused_where_they_do(self):
         self.write_moving("a.m2v", "-c:v", "mpeg2video", seconds=0.2)
