@@ -205,7 +205,7 @@ void read_attributes(const Imf::Header& header, SourceTraits& traits) {
         if (rate.n > 0 && rate.d > 0) traits.frames_hz = static_cast<double>(rate);
     }
     if (Imf::hasExpTime(header)) {
-        const double seconds{Imf::expTime(header)};
+        const auto seconds = static_cast<double>(Imf::expTime(header));
         if (seconds > 0 && std::isfinite(seconds))
             traits.exposure_us = kMicrosecondsASecond * seconds;
     }
@@ -219,7 +219,9 @@ void read_attributes(const Imf::Header& header, SourceTraits& traits) {
 void convert_colours(const Imf::Header& header, const std::string& where, Image& image) {
     if (image.shape.planes != 3 || !Imf::hasChromaticities(header)) return;
     const Imf::Chromaticities& declared = Imf::chromaticities(header);
-    const auto at = [](const Imath::V2f& colour) { return Chromaticity{colour.x, colour.y}; };
+    const auto at = [](const Imath::V2f& colour) {
+        return Chromaticity{static_cast<double>(colour.x), static_cast<double>(colour.y)};
+    };
     const auto matrix =
         to_rec709({at(declared.red), at(declared.green), at(declared.blue), at(declared.white)});
     if (!matrix)

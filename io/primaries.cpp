@@ -118,7 +118,9 @@ void convert(std::span<float> planes, const ColourMatrix& matrix) {
     assert(planes.size() == 3 * pixels);
     const Vector luminance{0.2126, 0.7152, 0.0722};
     for (std::size_t i = 0; i < pixels; ++i) {
-        const Vector source{planes[i], planes[pixels + i], planes[2 * pixels + i]};
+        Vector source;
+        for (std::size_t plane = 0; plane < 3; ++plane)
+            source[plane] = static_cast<double>(planes[plane * pixels + i]);
         Vector light = product(matrix, source);
         const double grey =
             luminance[0] * light[0] + luminance[1] * light[1] + luminance[2] * light[2];

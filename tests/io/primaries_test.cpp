@@ -42,11 +42,11 @@ TEST(PrimariesTest, AdaptsTheWhite) {
 
 TEST(PrimariesTest, HasNoneOfPrimariesThatMakeNoColours) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const Primaries& none :
-         {Primaries{{0.3, 0.3}, {0.3, 0.3}, {0.1, 0.1}, {0.3, 0.3}},
-          Primaries{{0.1, 0.1}, {0.2, 0.2}, {0.3, 0.3}, {0.3, 0.3}}, Primaries{{nan, 0}},
-          Primaries{.white = {0.3, 0}}, Primaries{.white = {0.3, -1}},
-          Primaries{.white = {nan, nan}}, Primaries{.red = {INFINITY, 0}}})
+    for (const Primaries& none : {Primaries{{0.3, 0.3}, {0.3, 0.3}, {0.1, 0.1}, {0.3, 0.3}},
+                                  Primaries{{0.1, 0.1}, {0.2, 0.2}, {0.3, 0.3}, {0.3, 0.3}},
+                                  Primaries{{nan, 0}}, Primaries{.white = {0.3, 0}},
+                                  Primaries{.white = {0.3, -1}}, Primaries{.white = {nan, nan}},
+                                  Primaries{.red = {std::numeric_limits<double>::infinity(), 0}}})
         EXPECT_FALSE(to_rec709(none).has_value());
 }
 
