@@ -28,6 +28,11 @@ TEST(PrimariesTest, HasThePublishedMatrices) {
         *to_rec709({{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, {0.3127, 0.3290}}),
         {{{1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}}},
         5e-5);
+    // OpenColorIO's matrix from ACES 2065-1, by Bradford, to four digits.
+    expect_near(
+        *to_rec709(kAces),
+        {{{2.5217, -1.1341, -0.3876}, {-0.2765, 1.3727, -0.0962}, {-0.0154, -0.1530, 1.1684}}},
+        5e-4);
     EXPECT_TRUE(is_identity(*to_rec709({})));
     EXPECT_FALSE(is_identity(*to_rec709(kXyz)));
 }
@@ -62,9 +67,9 @@ TEST(PrimariesTest, KeepsTheLuminanceOfColoursOutside) {
         EXPECT_NEAR(luminance, xyz[3 + i], 2e-4);
         for (std::size_t plane = 0; plane < 3; ++plane) EXPECT_GE(planes[3 * plane + i], 0);
     }
-    std::vector<float> negative{-1, -1, -1};
+    std::vector<float> negative{-0.1F, 0.5F, 0.5F};
     convert(negative, matrix);
-    EXPECT_LT(negative[0], 0);
+    EXPECT_LT(negative[0], -1);
     std::vector<float> nan(3, std::numeric_limits<float>::quiet_NaN());
     convert(nan, matrix);
     EXPECT_TRUE(std::isnan(nan[0]));
