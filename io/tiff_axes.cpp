@@ -79,8 +79,16 @@ TiffTimes times_of_imagej(std::string_view text, const TiffExtent& extent,
     TiffTimes times{.frames_hz =
                         rate_of(number_of<double>(value("\nfinterval=")), value("\ntunit="))};
     if (extent.pages == 1) return times;
+    // ImageJ shows up to 7 channels. tifffile declares the pages of any bare array as such.
+    constexpr std::uint64_t kMaxChannels = 7;
     const std::uint64_t channels = size_of(value("\nchannels="));
     const std::uint64_t slices = size_of(value("\nslices="));
+    if (channels > kMaxChannels && channels == extent.pages) {
+        times.warnings.push_back(fmt::format(
+            "declares {} channels, more than ImageJ shows; each is taken for a moment in time",
+            channels));
+        return times;
+    }
     if (channels > 1) refuse(fmt::format("{} channels", channels), extent, where);
     if (slices == 1) return times;
     if (size_of(value("\nframes=")) > 1 || value("\nhyperstack=") == "true")

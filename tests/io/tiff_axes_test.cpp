@@ -71,6 +71,13 @@ TEST(TiffAxesTest, TakesPagesThatAreMoments) {
     EXPECT_THAT(times_of(R"({"shape": [4, 32, 48, 3]})", 4, 3).warnings, IsEmpty());
 }
 
+TEST(TiffAxesTest, TakesMoreChannelsThanImageJShowsForMomentsWithAWarning) {
+    EXPECT_THAT(refusal_of("ImageJ=1.11a\nimages=7\nchannels=7\nhyperstack=true\n", 7),
+                HasSubstr("7 channels"));
+    EXPECT_THAT(times_of("ImageJ=1.11a\nimages=8\nchannels=8\nhyperstack=true\n", 8).warnings,
+                ElementsAre(HasSubstr("8 channels")));
+}
+
 TEST(TiffAxesTest, WarnsOfAPlainStackOfImageJAndOfMomentsInOtherFiles) {
     EXPECT_THAT(times_of("ImageJ=1.54f\nimages=4\nslices=4\nloop=false\n", 4).warnings,
                 ElementsAre(HasSubstr("declares 4 slices")));
