@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/error.h"
@@ -35,18 +37,29 @@ float light_at(int slot, std::size_t pixel) {
     return 2 + std::sin(0.3F * static_cast<float>(slot) + 0.01F * static_cast<float>(pixel));
 }
 
-/// Gains of the pixels, and what is estimated from samples with relative errors of this deviation.
+/// Samples of a trial.
+struct Setup {
+    double sample_error = 0;  ///< relative, its standard deviation
+    double full_well_e = 60000;
+    float brightness = 1;  ///< factor of the light
+    /// Light above which a sample is any number.
+    double any_above = std::numeric_limits<double>::infinity();
+};
+
+/// Gains of the pixels, and their estimate.
 struct Trial {
-    explicit Trial(double sample_error) {
-        std::mt19937 random(1);
+    explicit Trial(const Setup& setup) {
+        std::mt19937 random(1), other(2);
         std::normal_distribution<double> normal;
         for (std::size_t i = 0; i < kShape.pixels(); ++i)
             gain.push_back(1 + kPrnu * normal(random));
-        const StreamHeader header = chip();
+        StreamHeader header = chip();
+        header.calibration.full_well_e = setup.full_well_e;
         SceneGain scene(header, "clip.stipple");
         std::vector<float> frame(kShape.pixels());
         for (int slot = 0; slot < kSlots; ++slot) {
-            for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = light_at(slot, i);
+            for (std::size_t i = 0; i < frame.size(); ++i)
+                frame[i] = setup.brightness * light_at(slot, i);
             scene.add_frame(frame);
             if (slot % 4 != 0 && slot % 4 != 3) continue;
             SamplePacket packet{.slot = slot, .rows = kShape.rows, .dn = {}};
@@ -54,9 +67,13 @@ struct Trial {
                 double light = static_cast<double>(light_at(slot, i));
                 if (slot % 4 == 3)
                     light += static_cast<double>(light_at(slot - 1, i) + light_at(slot - 2, i));
-                const double electrons =
-                    1000 * gain[i] * light * (1 + sample_error * normal(random));
-                packet.dn.push_back(static_cast<std::uint16_t>(std::lround(100 + electrons)));
+                light *= static_cast<double>(setup.brightness);
+                double electrons =
+                    1000 * gain[i] * light * (1 + setup.sample_error * normal(random));
+                if (light > setup.any_above) electrons = static_cast<double>(other() % 65536);
+                electrons = std::min(electrons, setup.full_well_e);
+                packet.dn.push_back(
+                    static_cast<std::uint16_t>(std::min(std::lround(100 + electrons), 65535L)));
             }
             scene.add_samples(packet);
         }
@@ -77,7 +94,7 @@ struct Trial {
 
 TEST(SceneGainTest, FindsTheGainsOfExactSamples) {
     // The least error that is believed, PRNU^2 / 5, shrinks each gain by 1 / 6.
-    const Trial trial(0);
+    const Trial trial({});
     EXPECT_NEAR(trial.error(), kPrnu / 6, 0.1 * kPrnu);
     EXPECT_EQ(trial.estimate.shape, kShape);
     EXPECT_FLOAT_EQ(trial.estimate.sites[7].offset_dn, 100);
@@ -86,8 +103,22 @@ TEST(SceneGainTest, FindsTheGainsOfExactSamples) {
 TEST(SceneGainTest, ShrinksGainsByTheScatterThatPrnuLeaves) {
     // 32 samples with errors of 30 %: 5.3 % of the gain, so the best estimate errs by 6 % x 5.3 % /
     // hypot(6 %, 5.3 %) = 4.0 %.
-    const Trial trial(0.3);
+    const Trial trial({.sample_error = 0.3});
     EXPECT_NEAR(trial.error(), 0.040, 0.004);
+}
+
+// The range ends at the full well, or where the converter does. Three slots have a light of up
+// to 81.
+TEST(SceneGainTest, SamplesOfLightAbove80PercentOfTheRangeDoNotCountWhateverTheyAre) {
+    for (const double full_well_e : {60000.0, 1e6}) {
+        const double used = 0.8 * std::min(full_well_e, 65535.0 - 100) / 1000;
+        const auto sites = [&](double any_above) {
+            return Trial({.full_well_e = full_well_e, .brightness = 9, .any_above = any_above})
+                .estimate.sites;
+        };
+        EXPECT_EQ(sites(used), sites(100)) << full_well_e;
+        EXPECT_NE(sites(0.98 * used), sites(100)) << full_well_e;
+    }
 }
 
 TEST(SceneGainTest, LeavesPixelsWithoutLightAsTheyAre) {

@@ -190,27 +190,30 @@ TEST(CodedSensorTest, CountsSlotsSamplesAndThoseAtFullScaleAndZero) {
 }
 
 // Without noise an exposure of n slots of the light x is clipped if n r x exceeds the full well,
-// which here is below full scale.
+// which here is below full scale; 2000 e is just the charge of four slots.
 TEST(CodedSensorTest, CountsSamplesThatTheFullWellClips) {
-    const SensorParams params{.full_well_e = 1500, .read_noise_e = 0, .shot_noise = false};
     FluxVideo video(30, {.rows = 40, .cols = 24, .planes = 3});
     std::ranges::fill(video.data(), 0.5F);
     const auto schedule = random_schedule(40, 24, kPaperExposureSlots, 1);
-    for (const SensorMode mode : {SensorMode::kPaper, SensorMode::kPhysical}) {
-        SensorParams of_mode = params;
-        of_mode.mode = mode;
-        CodedSensor sensor(of_mode, video.shape(), schedule, kSeed);
-        SamplePacket packet;
-        std::uint64_t clipped = 0;
-        for (int slot = 0; slot < video.slots(); ++slot) {
-            sensor.expose(video.frame(slot), packet);
-            for (int row = 0; row < 40; ++row)
-                visit_due(schedule, slot, row, 24, [&](int, int span_slots) {
-                    if (span_slots * 500 > 1500) clipped += 3;
-                });
+    for (const double full_well_e : {1500, 2000})
+        for (const SensorMode mode : {SensorMode::kPaper, SensorMode::kPhysical}) {
+            const SensorParams params{.full_scale_e = 5000,
+                                      .full_well_e = full_well_e,
+                                      .read_noise_e = 0,
+                                      .shot_noise = false,
+                                      .mode = mode};
+            CodedSensor sensor(params, video.shape(), schedule, kSeed);
+            SamplePacket packet;
+            std::uint64_t clipped = 0;
+            for (int slot = 0; slot < video.slots(); ++slot) {
+                sensor.expose(video.frame(slot), packet);
+                for (int row = 0; row < 40; ++row)
+                    visit_due(schedule, slot, row, 24, [&](int, int span_slots) {
+                        if (span_slots * 500 > full_well_e) clipped += 3;
+                    });
+            }
+            EXPECT_EQ(sensor.stats().saturated_samples, clipped);
         }
-        EXPECT_EQ(sensor.stats().saturated_samples, clipped);
-    }
 }
 
 TEST(CodedSensorTest, TakesInfiniteLightAsSaturation) {

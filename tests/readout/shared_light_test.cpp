@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <vector>
 
 #include "core/flux_video.h"
@@ -43,6 +44,42 @@ Slots expose(const FluxVideo& video, const ExposureSchedule& schedule, const Sen
         dn.push_back(packet.dn);
     }
     return dn;
+}
+
+/// The exposures of one store of a two-bucket schedule of one pixel: a schedule without
+/// interleaving. A store may change sides from period to period, so it has two periods.
+ExposureSchedule of_store(const ExposureSchedule& schedule, int store) {
+    const auto period = static_cast<std::uint32_t>(schedule.period_slots());
+    const auto both = schedule.exposures(0, 0);
+    std::vector<Exposure> own;
+    for (std::uint32_t repetition = 0; repetition < 2; ++repetition)
+        for (std::size_t i = 0; i < both.size(); ++i)
+            if (schedule.store(0, 0, i, repetition) == store)
+                own.push_back({repetition * period + both[i].first_slot, both[i].open_slots});
+    const auto count = static_cast<std::uint32_t>(own.size());
+    return {1, 1, schedule.period_slots() * 2, {0, count}, own};
+}
+
+/// Two-bucket pixels read what two chips read that have one store each.
+void expect_two_stores_are_two_chips(const PhysicalTerms& terms) {
+    std::mt19937 random(1);
+    FluxVideo video(120, {.rows = 5, .cols = 6, .planes = 2});
+    for (float& flux : video.data()) flux = static_cast<float>(random() % 4096) / 512;
+    SensorParams two = sensor(terms);
+    SensorParams ideal = sensor({});
+    two.charge_stores = ideal.charge_stores = 2;
+    for (const auto& schedule : {alternating_schedule(), interleaved_schedule(1, 1, 9, 1),
+                                 interleaved_schedule(1, 1, 8, 2)}) {
+        ASSERT_TRUE(schedule.interleaved());
+        const Slots given = expose(video, schedule, two);
+        EXPECT_NE(given, expose(video, schedule, ideal)) << "the test means something";
+        const Slots first = expose(video, of_store(schedule, 0), sensor(terms));
+        const Slots second = expose(video, of_store(schedule, 1), sensor(terms));
+        for (std::size_t slot = 0; slot < given.size(); ++slot) {
+            ASSERT_TRUE(first[slot].empty() || second[slot].empty());
+            EXPECT_EQ(given[slot], first[slot].empty() ? second[slot] : first[slot]) << slot;
+        }
+    }
 }
 
 TEST(LagTest, AStepLeavesPowersOfTheLagAndSteadyLightNothing) {
@@ -100,6 +137,24 @@ TEST(BloomingTest, CountsTheChargeOfEarlierSlotsOfTheExposure) {
     for (int slot = 0; slot < 2; ++slot) video.plane(slot, 0)(0, 0) = 8;  // 800 e, then 1600 e
     const auto dn = expose(video, full_schedule(2, 2), sensor({.blooming = 1}));
     EXPECT_EQ(dn[1], (std::vector<std::uint16_t>{1000, 150}));
+}
+
+TEST(TwoStoresTest, EachKeepsTheLagOfItsOwnExposures) {
+    expect_two_stores_are_two_chips({.lag = 0.25});
+}
+
+TEST(TwoStoresTest, EachCollectsItsOwnParasiticLight) {
+    expect_two_stores_are_two_chips({.parasitic_light_sensitivity = 0.125});
+}
+
+// No pixel has an open store while another one has the other open, so no charge goes from one chip
+// to the other.
+TEST(TwoStoresTest, TheOpenOneOverflows) {
+    expect_two_stores_are_two_chips({.blooming = 0.5});
+}
+
+TEST(TwoStoresTest, WhatLagLeavesInAStoreCountsTowardsItsOverflow) {
+    expect_two_stores_are_two_chips({.blooming = 0.5, .lag = 0.25});
 }
 
 TEST(RowSkewTest, ALaterRowSeesTheSlotBefore) {

@@ -106,6 +106,23 @@ TEST(PhysicalPixelsTest, IsTheFormulaWordByWordOnEverySimdTarget) {
     });
 }
 
+TEST(PhysicalPixelsTest, ClipsChargeAboveTheFullWellAlone) {
+    SensorParams params = physical({.quantum_efficiency = 0.5});
+    params.full_well_e = 4096;  // at light 8: 512 e a unit
+    params.photons_per_unit = 1024;
+    params.shot_noise = false;
+    params.read_noise_e = 0;
+    const float full = 8, above = std::nextafter(full, 9.0F), below = std::nextafter(full, 7.0F);
+    const PhysicalPixels pixels(params, {.rows = 1, .cols = 3, .planes = 2}, kSeed);
+    const Exposures exposures{{0, 1, 2}, {below, full, above}, {1, 1, 1}};
+    std::vector<float> electrons(3);
+    std::vector<std::uint8_t> clipped(3);
+    pixels.expose({exposures.pixels, exposures.light, exposures.open_slots}, 5, 1,
+                  {electrons, clipped});
+    EXPECT_EQ(electrons, (std::vector<float>{512 * below, 4096, 4096}));
+    EXPECT_EQ(clipped, (std::vector<std::uint8_t>{0, 0, 1}));
+}
+
 TEST(PhysicalPixelsTest, WithoutTermsIsEquationOneBitByBit) {
     const Exposures exposures = mixed(3001, 7);
     std::vector<float> expected(exposures.pixels.size());

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
 #include "capture/serve/coded_payload.h"
 #include "core/error.h"
 #include "core/gap_limit.h"
@@ -16,8 +21,12 @@ class CodedRecorderTest : public ::testing::Test {
   protected:
     /// A frame with the packets of a slot.
     [[nodiscard]] ScriptedStep slot(std::int64_t number, bool damaged = false) const {
+        return frame_of(packets_of(number), damaged);
+    }
+    [[nodiscard]] ScriptedStep frame_of(const std::vector<SamplePacket>& packets,
+                                        bool damaged = false) const {
         CapturedFrame frame;
-        frame.payload = coded_payload(packets_of(number), coded_header(header_), image_);
+        frame.payload = coded_payload(packets, coded_header(header_), image_);
         if (damaged) frame.payload.front() ^= 1U;
         return arrives(frame);
     }
@@ -66,6 +75,30 @@ TEST_F(CodedRecorderTest, SlotsThatDoNotArriveAreDroppedPackets) {
     const std::vector<SamplePacket> expected{packets_of(0)[0], packets_of(1)[0], dropped(2),
                                              dropped(3),       packets_of(4)[0], dropped(5),
                                              dropped(6)};
+    EXPECT_EQ(recorded(), expected);
+}
+
+// Slots of four bands, of which so many arrive. What follows them is a dropped packet; a slot is
+// missing if nothing of it came.
+TEST_F(CodedRecorderTest, ASlotOfWhichTheRestIsLostIsNotMissing) {
+    const std::vector<int> bands_that_came{4, 2, 0, 4, 1, 0, 0, 3, 4, 2};
+    const int rows = header_.shape.rows;
+    std::deque<ScriptedStep> steps;
+    std::vector<SamplePacket> expected;
+    for (std::int64_t number = 0; number < std::ssize(bands_that_came); ++number) {
+        const int came = bands_that_came[static_cast<std::size_t>(number)];
+        std::vector<SamplePacket> packets;
+        for (int row = 0; row < came; ++row)
+            packets.push_back(random_packet(header_, number, row, 1));
+        expected.insert(expected.end(), packets.begin(), packets.end());
+        if (came < rows)
+            expected.push_back({number, came, rows - came, SamplePacket::kDropped, {}});
+        if (came > 0) steps.push_back(frame_of(packets));
+    }
+    const CodedRecording recording = record(std::move(steps), {}, "10");
+    EXPECT_EQ(recording.slots, 10);
+    EXPECT_EQ(recording.missing_slots, std::ranges::count(bands_that_came, 0));
+    EXPECT_EQ(recording.damaged_frames, 0);
     EXPECT_EQ(recorded(), expected);
 }
 

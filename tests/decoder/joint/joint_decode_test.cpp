@@ -80,13 +80,13 @@ class JointDecodeTest : public testing::Test {
         for (std::size_t i = 0; i < files_.size(); ++i)
             rig.push_back({readers.emplace_back(files_[i]), views_[i]});
         std::vector<float> x;
-        const DecodeReport report =
+        report_ =
             decode_rig(rig, {.method = method}, [&](std::int64_t, std::span<const float> frame) {
                 x.insert(x.end(), frame.begin(), frame.end());
                 return true;
             });
         const FrameShape shape = decoded_shape(readers.front().header());
-        FluxVideo video(static_cast<int>(report.slots), shape);
+        FluxVideo video(static_cast<int>(report_.slots), shape);
         std::ranges::copy(x, video.data().begin());
         return video;
     }
@@ -101,6 +101,7 @@ class JointDecodeTest : public testing::Test {
     TemporaryFolder folder_;
     std::vector<std::filesystem::path> files_;
     std::vector<SensorView> views_;
+    DecodeReport report_;  ///< of the last rig
 };
 
 /// PSNR of the voxels that `of` selects by light, row and column, without the first and last 4
@@ -245,6 +246,32 @@ TEST_F(JointDecodeTest, OffsetAndPhaseAreUndone) {
         views_[1] = {moved.from_reference, 0};
         expect_quality(name + "_beside_now", undone - psnr_db(decode(method), video, 1, is_path),
                        beside_now_db);
+    }
+}
+
+// Of sensors without a full well below full scale, DN 255 is what saturates.
+TEST_F(JointDecodeTest, ReportsTheSamplesOfAllSensors) {
+    FluxVideo video = scene(70);  // two blocks
+    for (int slot = 0; slot < 70; ++slot)
+        std::ranges::fill(video.frame(slot).first(4 * 56), 0.0F);  // four rows
+    const TestSensor bright{every_slot(), 0.92}, coded{random_of(1), 0.5};
+    const TestSensor dim{every_slot(), 0.075, {{}, 3}};
+    for (const auto& rig : {std::vector{bright, coded, dim}, {coded, dim, bright}, {coded}}) {
+        decode(video, rig, DecodeMethod::kNaive);
+        std::uint64_t samples = 0, saturated = 0, zeros = 0;
+        for (const auto& file : files_) {
+            StreamReader reader(file);
+            for (SamplePacket packet; reader.next(packet);) {
+                samples += packet.dn.size();
+                saturated += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 255));
+                zeros += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
+            }
+        }
+        EXPECT_GT(saturated, 0U);
+        EXPECT_GT(zeros, 0U);
+        EXPECT_EQ(report_.samples, samples);
+        EXPECT_EQ(report_.saturated_samples, saturated);
+        EXPECT_EQ(report_.zero_samples, zeros);
     }
 }
 

@@ -72,6 +72,51 @@ TEST(CameraFiguresTest, OfALinearCameraAreItsOwn) {
     EXPECT_DOUBLE_EQ(found.dark_mean_dn, kBlack);
 }
 
+/// Relative non-uniformities of the light, and those of the dark in electrons, in parts.
+struct Patterns {
+    double row, column, pixel, high_pass;
+};
+
+// What the dark has of a part is no response to light: of each part PRNU is without its DSNU.
+TEST(CameraFiguresTest, EachPartOfThePrnuIsWithoutItsPartOfTheDsnu) {
+    constexpr Patterns kDark{.row = 3, .column = 5, .pixel = 7, .high_pass = 9};
+    constexpr Patterns kLight{.row = 0.002, .column = 0.003, .pixel = 0.008, .high_pass = 0.009};
+    Camera camera = linear_camera();
+    for (GroupStatistics& group : camera.statistics) {
+        const double signal = (group.images.mean_dn - kBlack) / kGain;
+        const auto variance_dn2 = [&](double Patterns::*part) {
+            return kGain * kGain * (std::pow(kDark.*part, 2) + std::pow(kLight.*part * signal, 2));
+        };
+        group.split = {.row_dn2 = variance_dn2(&Patterns::row),
+                       .column_dn2 = variance_dn2(&Patterns::column),
+                       .pixel_dn2 = variance_dn2(&Patterns::pixel)};
+        group.high_pass_dn2 = variance_dn2(&Patterns::high_pass);
+    }
+    const CameraFigures f = evaluate(camera.series, camera.statistics, "a").figures;
+    EXPECT_NEAR(f.dsnu_row_e, kDark.row, 1e-12);
+    EXPECT_NEAR(f.dsnu_column_e, kDark.column, 1e-12);
+    EXPECT_NEAR(f.dsnu_pixel_e, kDark.pixel, 1e-12);
+    EXPECT_NEAR(f.dsnu_high_pass_e, kDark.high_pass, 1e-12);
+    EXPECT_NEAR(f.prnu_row, kLight.row, 1e-12);
+    EXPECT_NEAR(f.prnu_column, kLight.column, 1e-12);
+    EXPECT_NEAR(f.prnu_pixel, kLight.pixel, 1e-12);
+    EXPECT_NEAR(f.prnu_high_pass, kLight.high_pass, 1e-12);
+}
+
+// The errors of the variances may leave less in the light than in the dark.
+TEST(CameraFiguresTest, ThereIsNoPrnuOfAPartThatTheLightDoesNotIncrease) {
+    Camera camera = linear_camera();
+    for (GroupStatistics& group : camera.statistics) {
+        group.split.row_dn2 = group.images.mean_dn > kBlack ? 1 : 2;
+        group.split.column_dn2 = -1;
+    }
+    const CameraFigures f = evaluate(camera.series, camera.statistics, "a").figures;
+    EXPECT_EQ(f.prnu_row, 0);
+    EXPECT_EQ(f.prnu_column, 0);
+    EXPECT_EQ(f.dsnu_column_e, 0);
+    EXPECT_NEAR(f.dsnu_row_e, std::sqrt(2) / kGain, 1e-12);
+}
+
 TEST(CameraFiguresTest, LinearityErrorIsTheMeanDistanceToTheBestLine) {
     Camera camera = linear_camera();
     for (std::size_t i = 0; i < 50; ++i)  // 1 % up and down by turns

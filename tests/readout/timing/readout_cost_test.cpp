@@ -276,6 +276,24 @@ TEST(ReadoutCostTest, WhatDroppingRowsCannotHelpIsRefused) {
     EXPECT_EQ(slot_clocks(timing, 1000), 74250);
 }
 
+// In whole numbers: n clocks of h Hz take 10^9 n / h ns.
+TEST(ReadoutCostTest, ASlotHasTheWholeClocksThatFitInIt) {
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing;
+        timing.clock_hz = draw(1'000'000, 400'000'000);
+        const std::int64_t slot_ns = draw(1000, 20'000'000);
+        const std::int64_t clocks = slot_clocks(timing, static_cast<double>(slot_ns) / 1000);
+        EXPECT_LE(clocks * 1'000'000'000, slot_ns * timing.clock_hz) << "seed " << seed;
+        EXPECT_GT((clocks + 1) * 1'000'000'000, slot_ns * timing.clock_hz) << "seed " << seed;
+    }
+    ReadoutTiming slow;
+    slow.clock_hz = 1'000'000;
+    EXPECT_EQ(slot_clocks(slow, 1), 1);
+    EXPECT_EQ(slot_clocks(slow, 1.6), 1);
+    EXPECT_THROW(static_cast<void>(slot_clocks(slow, 0.6)), InputError);
+}
+
 TEST(ReadoutCostTest, ScheduleMemoryIsThatOfTheCompiledProgram) {
     const auto tiled = tiled_schedule(4, 6, std::vector{1, 2, 4, 8}, 1);
     for (const ExposureSchedule& schedule : {tiled, full_schedule(1, 4), full_schedule(4, 4)})
