@@ -65,12 +65,10 @@ RecordingEnd RecordingWriter::totals() const {
 }
 
 void RecordingWriter::finish(RecordingEnd end) {
-    const RecordingEnd counted = totals();
-    end.frames = counted.frames;
-    end.incomplete = counted.incomplete;
-    end.payload_bytes = counted.payload_bytes;
-    end.clocks = counted.clocks;
-    append_block(BlockKind::kEnd, bytes_of(encode_end(end)), {});
+    totals_.reason = std::move(end.reason);
+    totals_.lost = end.lost;
+    totals_.transport = end.transport;
+    append_block(BlockKind::kEnd, bytes_of(encode_end(totals())), {});
     file_.close();
 }
 

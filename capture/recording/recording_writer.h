@@ -30,7 +30,7 @@ class RecordingWriter {
     void finish(RecordingEnd end);
 
     /// The values that `finish` adds (frames, incomplete, payload bytes, clocks), and the losses by
-    /// the records of the frames, so far.
+    /// the records of the frames, so far; after `finish`, the end record.
     [[nodiscard]] RecordingEnd totals() const;
     [[nodiscard]] std::uint64_t frames() const { return totals_.frames; }
     [[nodiscard]] std::uint64_t bytes_written() const { return file_.bytes(); }

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
+#include <memory>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
@@ -66,6 +71,66 @@ TEST_F(CameraRecorderTest, FramesThatAreMissingAreCountedInFileAndResult) {
     RecordingReader reader(file_);
     EXPECT_EQ(read_frames(reader).size(), 4U);
     EXPECT_EQ(sum(reader.end()->lost), 2U);
+}
+
+/// A frame of 2 MB.
+ScriptedStep large_frame(std::uint64_t number) {
+    auto frame = std::make_shared<CapturedFrame>(test_frame(number, "Mono8", 1, 1));
+    FrameLayout& layout = frame->record.layout;
+    layout.width = 2000;
+    layout.height = 1000;
+    layout.stride_bytes = 2000;
+    frame->payload.assign(layout.payload_bytes(), static_cast<std::uint8_t>(number));
+    frame->record.bytes_received = frame->payload.size();
+    return {[frame] { return Arrival(std::move(*frame)); }, {}};
+}
+
+std::uintmax_t bytes_in(const std::filesystem::path& folder) {
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        bytes += entry.file_size();
+    return bytes;
+}
+
+/// Silence until the files of a folder have so many bytes.
+ScriptedStep wait_for_bytes(const std::filesystem::path& folder, std::uintmax_t bytes) {
+    return {[=] {
+                const auto end = std::chrono::steady_clock::now() + kLong;
+                while (bytes_in(folder) < bytes && std::chrono::steady_clock::now() < end)
+                    std::this_thread::yield();
+                return Arrival(NoFrame{});
+            },
+            {}};
+}
+
+// One frame may wait; the first is written before the others come, faster than any disk. The end of
+// the file has those that were refused, and those that were taken and did not fit on the disk.
+TEST_F(CameraRecorderTest, EachFrameThatArrivesIsInTheFileOrCountedOnce) {
+    constexpr auto kQueue = static_cast<std::size_t>(GapCause::kQueueDrop);
+    constexpr std::uint64_t kSent = 24;
+    for (const bool full : {false, true}) {
+        std::deque<ScriptedStep> steps{large_frame(0), wait_for_bytes(folder_.path(), 2'000'000)};
+        for (std::uint64_t i = 1; i < kSent; ++i) steps.push_back(large_frame(i));
+        steps.push_back(is_lost("end of the script", true));
+        const CameraRecording recording = [&] {
+            const FileSizeLimit disk(full ? 3'000'000 : 100'000'000);
+            return record(std::move(steps), {.queue_bytes = 1}, always);
+        }();
+        const std::uint64_t refused = recording.session.lost[kQueue];
+        EXPECT_EQ(recording.end.frames + recording.end.lost[kQueue],
+                  recording.session.frames + refused);
+        EXPECT_EQ(recording.failure != nullptr, full);
+        if (full) {
+            EXPECT_EQ(recording.end.frames, 1U);
+        } else {
+            EXPECT_GT(refused, 0U) << "the test means something";
+            EXPECT_EQ(recording.end.frames + recording.end.lost[kQueue], kSent);
+        }
+        RecordingReader reader(file_);
+        EXPECT_EQ(read_frames(reader).size(), recording.end.frames);
+        EXPECT_EQ(reader.end()->lost, recording.end.lost);
+        std::filesystem::remove(file_);
+    }
 }
 
 TEST_F(CameraRecorderTest, ACameraThatIsLostLeavesWhatCameBefore) {
