@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/subcommands.h"
@@ -65,7 +66,8 @@ std::string findings_text(const std::vector<DoctorFinding>& findings) {
 
 void doctor(const std::string& address, const RunOptions& run) {
     JsonFile json(run);
-    const std::vector<DoctorFinding> findings = examine(address);
+    const std::vector<DoctorFinding> findings =
+        interruptible([address] { return examine(address); });
     json.write(findings_json(findings));
     run.say(findings_text(findings));
     const auto problems = std::ranges::count(findings, Level::kProblem, &DoctorFinding::level);

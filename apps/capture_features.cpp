@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/interrupt.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
@@ -74,7 +75,8 @@ std::string features_text(const std::vector<CameraFeature>& features) {
 
 void list_features(const FeaturesOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    const std::vector<CameraFeature> features = camera_features(options.address, options.pattern);
+    const std::vector<CameraFeature> features =
+        interruptible([options] { return camera_features(options.address, options.pattern); });
     json.write(features_json(options, features));
     run.say(features.empty() ? "no features" : features_text(features));
 }

@@ -130,11 +130,7 @@ void tell(const LiveReport& report, const LiveArguments& arguments, const LivePr
 void live(const LiveArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     if (!arguments.preview.file.empty()) check_preview_file(arguments.preview, run.force);
-    LiveCamera camera(
-        [&chosen = arguments.camera, settings = camera_settings(arguments.camera)] {
-            return open_image_camera(chosen.address, settings, chosen.buffers);
-        },
-        camera_options(arguments));
+    LiveCamera camera(image_camera_opener(arguments.camera), camera_options(arguments));
     const FrameLight to_light(camera.layout(), arguments.black_level_dn);
     const SensorSetup setup = set_up_sensor(arguments.sensor, to_light.shape(), to_light.filter());
     const std::string& address = arguments.camera.address;

@@ -93,13 +93,12 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
     const CameraSettings settings = camera_settings(arguments.camera);
     const std::string& address = arguments.camera.address;
-    CameraRecorder recorder(
-        [&] { return open_image_camera(address, settings, arguments.camera.buffers); }, settings,
-        file_for(arguments.output),
-        {.session = session_options(address, arguments.session),
-         .limits = arguments.limits,
-         .force = run.force,
-         .tell = say_event});
+    CameraRecorder recorder(image_camera_opener(arguments.camera), settings,
+                            file_for(arguments.output),
+                            {.session = session_options(address, arguments.session),
+                             .limits = arguments.limits,
+                             .force = run.force,
+                             .tell = say_event});
     say_warnings(recorder.description());
     say_leftover(recorder.file());
     const std::string file = recorder.file().string();  // afterwards there may be no memory for it
@@ -118,7 +117,9 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
 
 void record_coded_stream(const RecordArguments& arguments, const RunOptions& run) {
     const std::string& address = arguments.camera.address;
-    auto camera = open_camera(address, camera_settings(arguments.camera), arguments.camera.buffers);
+    auto camera = interruptible(
+        [address, settings = camera_settings(arguments.camera),
+         buffers = arguments.camera.buffers] { return open_camera(address, settings, buffers); });
     JsonFile json(run);
     CodedRecorder recorder(std::move(camera), arguments.output, run.force, arguments.limits);
     say_leftover(arguments.output);

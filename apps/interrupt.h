@@ -2,6 +2,9 @@
 
 #include <csignal>
 #include <string_view>
+#include <type_traits>
+
+#include "core/abandonable_call.h"
 
 namespace stipple {
 
@@ -25,6 +28,15 @@ void occupy_standard_streams();
 
 /// \throws Interrupted if a signal asked to stop. `left` is a literal.
 void throw_if_stopped(std::string_view left = {});
+
+/// The result of `work`, which may wait for a camera; a signal ends the waiting at once. `work`
+/// must own what it uses. \throws Interrupted, and what `work` throws.
+template <typename Work>
+[[nodiscard]] std::invoke_result_t<Work&> interruptible(Work work) {
+    auto result = call_unless(std::move(work), [] { return stop_signal() != 0; });
+    if (!result) throw Interrupted{};
+    return std::move(*result);
+}
 
 /// While it lives, the signals that `catch_signals` catches wait: for libraries that take a poll()
 /// that one interrupts for a fault.

@@ -1,7 +1,5 @@
 #include "capture/camera_reopener.h"
 
-#include <exception>
-
 namespace stipple {
 namespace {
 
@@ -40,9 +38,9 @@ void CameraReopener::open_until_back(const std::stop_token& stop, const Opener& 
             back_ = std::move(camera);
             changed_.notify_all();
             return;
-        } catch (const std::exception&) {
+        } catch (...) {
             // Not back yet, or no memory for it. InputError, a setting that it took before: it is
-            // not up yet, or it is another camera.
+            // not up yet, or it is another camera. Or the program is told to stop.
         }
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, stop, kBetweenTries, [] { return false; });

@@ -33,6 +33,18 @@ bool is_set_back(const FrameRecord& before, const FrameRecord& after, nanosecond
            before.device_ns - after.device_ns >= period.count();
 }
 
+bool is_dropped(const CapturedFrame& incomplete, IncompletePolicy policy) {
+    return incomplete.record.status == FrameStatus::kOtherLayout ||
+           policy == IncompletePolicy::kDrop ||
+           (policy == IncompletePolicy::kMask && incomplete.holes.empty());
+}
+
+/// Why a frame of that status is incomplete.
+GapCause cause_of(FrameStatus status) {
+    if (status == FrameStatus::kOtherLayout) return GapCause::kLayout;
+    return status == FrameStatus::kDeviceError ? GapCause::kDevice : GapCause::kTransport;
+}
+
 }  // namespace
 
 struct CaptureSession::Impl {
@@ -214,11 +226,8 @@ SessionEvent CaptureSession::Impl::deliver(CapturedFrame frame) {
     last_frame = record;
     if (!first_frame) first_frame = record;
     const bool complete = record.status == FrameStatus::kComplete;
-    const bool dropped =
-        !complete && (options.incomplete == IncompletePolicy::kDrop ||
-                      (options.incomplete == IncompletePolicy::kMask && frame.holes.empty()));
-    if (dropped) {
-        count_lost(GapCause::kQueueDrop, 1);
+    if (!complete && is_dropped(frame, options.incomplete)) {
+        count_lost(cause_of(record.status), 1);
         pool.give_back(std::move(frame.payload));
         return NoFrame{};
     }

@@ -17,7 +17,7 @@ namespace stipple {
 
 /// Treatment of incomplete frames. Missing bytes are zero in any case.
 enum class IncompletePolicy : std::uint8_t {
-    kDrop,  ///< dropped, counted as kQueueDrop
+    kDrop,  ///< dropped, counted as lost by what made it incomplete
     kKeep,  ///< delivered without the list of holes
     kMask,  ///< delivered with the list of its holes; if they are unknown, as kDrop
 };

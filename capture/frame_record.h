@@ -29,6 +29,7 @@ enum class FrameStatus : std::uint8_t {
     kMissingPackets = 1,  ///< the transport lost a part for good
     kSizeMismatch = 2,    ///< fewer or more bytes than its layout needs
     kDeviceError = 3,     ///< the device or its driver says that the content is damaged
+    kOtherLayout = 4,     ///< no image, or not of a known format and a size that can be; never kept
 };
 
 /// Why frames before this one are missing.
@@ -37,11 +38,12 @@ enum class GapCause : std::uint8_t {
     kDevice = 1,        ///< ids that the camera itself left out
     kTransport = 2,     ///< lost between camera and host
     kHostUnderrun = 3,  ///< no buffer was free
-    kQueueDrop = 4,     ///< our queue was full, or the policy drops incomplete frames
+    kQueueDrop = 4,     ///< our queue was full
     kReconnect = 5,     ///< the camera was lost; its ids do not tell the number of frames
+    kLayout = 6,        ///< the camera sent what cannot be used: no image, or of another format
 };
-inline constexpr std::array<std::string_view, 6> kGapCauseNames{
-    "none", "device", "transport", "host_underrun", "queue_drop", "reconnect"};
+inline constexpr std::array<std::string_view, 7> kGapCauseNames{
+    "none", "device", "transport", "host_underrun", "queue_drop", "reconnect", "layout"};
 
 /// Which clock gave a device stamp.
 enum class StampSource : std::uint8_t {

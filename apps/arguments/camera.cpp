@@ -7,7 +7,9 @@
 #include <string>
 
 #include "apps/arguments/checks.h"
+#include "apps/interrupt.h"
 #include "capture/camera_kind.h"
+#include "capture/image_camera.h"
 #include "core/config.h"
 
 namespace stipple {
@@ -30,6 +32,13 @@ CameraSettings camera_settings(const CameraArguments& arguments) {
                               ? Config(arguments.settings, "camera")
                               : Config(arguments.config, arguments.settings, "camera");
     return config.entries();
+}
+
+CaptureSession::Opener image_camera_opener(const CameraArguments& arguments) {
+    return [address = arguments.address, settings = camera_settings(arguments),
+            buffers = arguments.buffers] {
+        return interruptible([=] { return open_image_camera(address, settings, buffers); });
+    };
 }
 
 bool is_replay(const CameraArguments& arguments) {

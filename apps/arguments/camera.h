@@ -24,6 +24,10 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 
+/// Opens the camera, which must send images. A signal ends the waiting for it: Interrupted.
+/// \throws InputError.
+[[nodiscard]] CaptureSession::Opener image_camera_opener(const CameraArguments& arguments);
+
 /// Whether the address is that of a recording or footage.
 [[nodiscard]] bool is_replay(const CameraArguments& arguments);
 

@@ -5,6 +5,8 @@
 
 #include "capture/aravis/aravis_device.h"
 #include "capture/aravis/aravis_stream.h"
+#include "capture/aravis/glib_error.h"
+#include "capture/aravis/limited_time.h"
 #include "capture/payload_hash.h"
 #include "core/error.h"
 #include "core/geometry.h"
@@ -36,7 +38,9 @@ int read_int(const AravisDevice& device, const char* feature, int fallback) {
 /// What the camera is set to send.
 FrameLayout layout_of(const AravisDevice& device) {
     auto* camera = static_cast<ArvCamera*>(device.native());
-    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, nullptr));
+    GlibError error;
+    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, error.slot()));
+    error.check_answer(device.address());
     FrameLayout layout;
     layout.format = pixel_format_of_pfnc(code);
     if (layout.format == nullptr)
@@ -182,7 +186,9 @@ Arrival AravisCamera::wait(std::chrono::milliseconds timeout) {
 std::unique_ptr<Camera> open_aravis_camera(const std::string& address,
                                            const CameraSettings& settings,
                                            const CameraBuffers& buffers) {
-    return std::make_unique<AravisCamera>(address, settings, buffers);
+    return within_limited_time(address, [=]() -> std::unique_ptr<Camera> {
+        return std::make_unique<AravisCamera>(address, settings, buffers);
+    });
 }
 
 }  // namespace stipple

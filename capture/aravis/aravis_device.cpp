@@ -12,6 +12,8 @@
 #include <span>
 
 #include "capture/aravis/genicam_check.h"
+#include "capture/aravis/genicam_download.h"
+#include "capture/aravis/glib_error.h"
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
@@ -21,37 +23,18 @@
 namespace stipple {
 namespace {
 
-/// Takes what a GLib function has to complain of.
-class GlibError {
-  public:
-    ~GlibError() { g_clear_error(&error_); }
-    GlibError() = default;
-    GlibError(const GlibError&) = delete;
-    GlibError& operator=(const GlibError&) = delete;
-    GError** slot() { return &error_; }
-    [[nodiscard]] bool any() const { return error_ != nullptr; }
-    [[nodiscard]] std::string text() const {
-        return error_ == nullptr ? std::string("no reason given") : std::string(error_->message);
-    }
-
-  private:
-    GError* error_ = nullptr;
-};
-
 ArvDevice* open_gige(const std::string& address, const std::string& ip) {
-    if (!parse_ipv4(ip))
+    const auto number = parse_ipv4(ip);
+    if (!number)
         throw InputError(address,
                          "is no IPv4 address: write gige:192.168.0.5 (\"stipple capture "
                          "list\" shows the cameras that answer)");
+    check_genicam_download(address, *number);
     GlibError error;
     ArvDevice* device =
         arv_interface_open_device(arv_gv_interface_get_instance(), ip.c_str(), error.slot());
     if (device == nullptr)
-        throw DeviceError(address,
-                          fmt::format("no camera answers ({}): check power, cable and that the "
-                                      "address is in the subnet of an interface of this machine "
-                                      "(\"stipple capture doctor\")",
-                                      error.text()));
+        throw DeviceError(address, fmt::format("answers, but cannot be opened: {}", error.text()));
     return device;
 }
 
@@ -188,8 +171,12 @@ std::string AravisDevice::controller() const {
 bool AravisDevice::has(const std::string& feature) const {
     impl_->check->check_lengths();
     ArvGcNode* node = arv_device_get_feature(impl_->device, feature.c_str());
-    return node != nullptr && ARV_IS_GC_FEATURE_NODE(node) != FALSE &&
-           arv_gc_feature_node_is_available(ARV_GC_FEATURE_NODE(node), nullptr) != FALSE;
+    if (node == nullptr || ARV_IS_GC_FEATURE_NODE(node) == FALSE) return false;
+    GlibError error;
+    const bool available =
+        arv_gc_feature_node_is_available(ARV_GC_FEATURE_NODE(node), error.slot()) != FALSE;
+    error.check_answer(address_);
+    return available;
 }
 
 std::optional<std::string> AravisDevice::read(const std::string& feature) const {
@@ -201,6 +188,7 @@ std::optional<std::string> AravisDevice::read(const std::string& feature) const 
         return std::nullopt;
     GlibError error;
     const char* value = arv_gc_feature_node_get_value_as_string(named, error.slot());
+    error.check_answer(address_);
     if (error.any() || value == nullptr) return std::nullopt;
     return std::string(value);
 }
@@ -224,6 +212,7 @@ void AravisDevice::Impl::set_number(const std::string& where, const NumberFeatur
                          fmt::format("{} cannot be set; it takes {} to {}", value, min, max));
     GlibError error;
     feature.set(camera, *number, error.slot());
+    error.check_answer(where);
     if (error.any())
         throw InputError(where, fmt::format("{} cannot be set ({})", value, error.text()));
 }
@@ -232,6 +221,7 @@ void AravisDevice::Impl::set_choice(const std::string& where, const char* featur
                                     const std::string& value) const {
     GlibError error;
     arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
+    error.check_answer(where);
     if (error.any())
         throw InputError(where, fmt::format("\"{}\" cannot be set ({}); the camera has {}", value,
                                             error.text(), choices_of(device, feature)));
@@ -248,6 +238,7 @@ void AravisDevice::Impl::set_integer(const std::string& where, const char* featu
     if (!number) throw InputError(where, fmt::format("needs an integer, but is \"{}\"", value));
     GlibError error;
     arv_device_set_integer_feature_value(device, feature, *number, error.slot());
+    error.check_answer(where);
     if (error.any())
         throw InputError(where, fmt::format("{} cannot be set ({}){}", value, error.text(),
                                             range_of(device, feature)));
@@ -277,6 +268,7 @@ void AravisDevice::Impl::set_other(const std::string& where, const char* feature
     } else {
         arv_device_set_string_feature_value(device, feature, value.c_str(), error.slot());
     }
+    error.check_answer(where);
     if (error.any()) throw InputError(where, error.text());
 }
 

@@ -5,6 +5,8 @@
 
 #include "capture/aravis/aravis_camera.h"
 #include "capture/aravis/aravis_device.h"
+#include "capture/aravis/glib_error.h"
+#include "capture/aravis/limited_time.h"
 
 namespace stipple {
 namespace {
@@ -16,13 +18,14 @@ std::string text_of(const char* text) {
 /// The value that `get` reads, as text; nothing if the camera does not tell, for which Aravis has
 /// the lowest, the highest and the smallest number.
 template <typename Node, typename Number>
-std::optional<std::string> told(Node* node, Number (*get)(Node*, GError**)) {
+std::optional<std::string> told(const std::string& address, Node* node,
+                                Number (*get)(Node*, GError**)) {
     using Limits = std::numeric_limits<Number>;
-    GError* error = nullptr;
-    const Number value = get(node, &error);
-    const bool failed = error != nullptr;
-    g_clear_error(&error);
-    if (failed || value == Limits::lowest() || value == Limits::max() || value == Limits::min())
+    GlibError error;
+    const Number value = get(node, error.slot());
+    error.check_answer(address);
+    if (error.any() || value == Limits::lowest() || value == Limits::max() ||
+        value == Limits::min())
         return {};
     return fmt::format("{}", value);
 }
@@ -38,9 +41,13 @@ std::string type_of(ArvGcNode* node) {
     return ARV_IS_GC_REGISTER(node) ? "register" : "unknown";
 }
 
-std::string access_of(ArvGcFeatureNode* node) {
-    if (arv_gc_feature_node_is_available(node, nullptr) == FALSE) return "na";
-    const bool locked = arv_gc_feature_node_is_locked(node, nullptr) != FALSE;
+std::string access_of(const std::string& address, ArvGcFeatureNode* node) {
+    GlibError error;
+    const bool available = arv_gc_feature_node_is_available(node, error.slot()) != FALSE;
+    error.check_answer(address);
+    if (!available) return "na";
+    const bool locked = arv_gc_feature_node_is_locked(node, error.slot()) != FALSE;
+    error.check_answer(address);
     switch (arv_gc_feature_node_get_actual_access_mode(node)) {
         case ARV_GC_ACCESS_MODE_RO:
             return "ro";
@@ -51,29 +58,31 @@ std::string access_of(ArvGcFeatureNode* node) {
     }
 }
 
-void describe_number(ArvGcNode* node, CameraFeature& feature) {
+void describe_number(const std::string& address, ArvGcNode* node, CameraFeature& feature) {
     if (feature.type == "integer") {
         auto* const number = ARV_GC_INTEGER(node);
-        feature.minimum = told(number, arv_gc_integer_get_min);
-        feature.maximum = told(number, arv_gc_integer_get_max);
-        feature.increment = told(number, arv_gc_integer_get_inc);
+        feature.minimum = told(address, number, arv_gc_integer_get_min);
+        feature.maximum = told(address, number, arv_gc_integer_get_max);
+        feature.increment = told(address, number, arv_gc_integer_get_inc);
         feature.unit = text_of(arv_gc_integer_get_unit(number));
     } else if (feature.type == "float") {
         auto* const number = ARV_GC_FLOAT(node);
-        feature.minimum = told(number, arv_gc_float_get_min);
-        feature.maximum = told(number, arv_gc_float_get_max);
-        feature.increment = told(number, arv_gc_float_get_inc);
+        feature.minimum = told(address, number, arv_gc_float_get_min);
+        feature.maximum = told(address, number, arv_gc_float_get_max);
+        feature.increment = told(address, number, arv_gc_float_get_inc);
         feature.unit = text_of(arv_gc_float_get_unit(number));
     }
 }
 
-std::vector<std::string> choices_of(ArvGcNode* node) {
+std::vector<std::string> choices_of(const std::string& address, ArvGcNode* node) {
     guint count = 0;
-    const char** const names =
-        arv_gc_enumeration_dup_available_string_values(ARV_GC_ENUMERATION(node), &count, nullptr);
+    GlibError error;
+    const char** const names = arv_gc_enumeration_dup_available_string_values(
+        ARV_GC_ENUMERATION(node), &count, error.slot());
     std::vector<std::string> choices;
     for (guint i = 0; names != nullptr && i < count; ++i) choices.push_back(text_of(names[i]));
     g_free(names);
+    error.check_answer(address);
     return choices;
 }
 
@@ -82,14 +91,14 @@ CameraFeature described(const AravisDevice& device, ArvGcNode* node, const Featu
     CameraFeature feature{.name = name.name,
                           .category = name.category,
                           .type = type_of(node),
-                          .access = access_of(feature_node)};
+                          .access = access_of(device.address(), feature_node)};
     feature.text = text_of(arv_gc_feature_node_get_tooltip(feature_node));
     if (feature.text.empty())
         feature.text = text_of(arv_gc_feature_node_get_description(feature_node));
     if (feature.access == "na") return feature;
     feature.value = device.read(name.name);
-    describe_number(node, feature);
-    if (feature.type == "choice") feature.choices = choices_of(node);
+    describe_number(device.address(), node, feature);
+    if (feature.type == "choice") feature.choices = choices_of(device.address(), node);
     return feature;
 }
 
@@ -107,7 +116,8 @@ std::vector<CameraFeature> describe_features(const AravisDevice& device) {
 }
 
 std::vector<CameraFeature> aravis_features(const std::string& address) {
-    return describe_features(AravisDevice(address));
+    return within_limited_time(address,
+                               [address] { return describe_features(AravisDevice(address)); });
 }
 
 }  // namespace stipple

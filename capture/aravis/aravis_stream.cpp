@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "capture/aravis/gige_link.h"
+#include "capture/aravis/glib_error.h"
 #include "capture/aravis/usb_packets.h"
 #include "capture/frame_holes.h"
 #include "capture/host_clock.h"
@@ -19,9 +20,6 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kMaxPayloadBytes = std::size_t{1} << 30U;
-/// After so many openings of a stream the traffic of others does not pause.
-constexpr int kMaxOpenings = 10;
-
 using BufferMemory = std::vector<std::uint8_t>;
 
 /// What `push_buffers` gave it.
@@ -87,7 +85,7 @@ struct AravisStream::Impl {
 
     void create(std::optional<int> packet_bytes);
     void open_stream();
-    void drop_foreign_packets();
+    void prepare_socket();
     void check_buffers() const;
     void push_buffers();
     void hand_back(ArvBuffer* buffer, bool complete);
@@ -122,22 +120,22 @@ void AravisStream::Impl::create(std::optional<int> packet_bytes) {
 
 void AravisStream::Impl::open_stream() {
     g_clear_object(&stream);
-    GError* error = nullptr;
-    stream = arv_camera_create_stream(camera, nullptr, nullptr, &error);
-    if (stream == nullptr) {
-        const std::string why = error == nullptr ? "no reason given" : error->message;
-        g_clear_error(&error);
-        throw DeviceError(device.address(), fmt::format("gives no stream: {}", why));
-    }
-    if (link) link->set_socket_buffer(stream, layout.payload_bytes(), buffers.socket_frames);
+    // The thread that receives calls this before it reads the socket.
+    const ArvStreamCallback prepare = [](void* self, ArvStreamCallbackType type, ArvBuffer*) {
+        if (type == ARV_STREAM_CALLBACK_TYPE_INIT) static_cast<Impl*>(self)->prepare_socket();
+    };
+    buffer_bytes = wanted_bytes();
+    GlibError error;
+    stream = arv_camera_create_stream(camera, prepare, this, error.slot());
+    error.check_answer(device.address());
+    if (stream == nullptr)
+        throw DeviceError(device.address(), fmt::format("gives no stream: {}", error.text()));
+    if (link) link->check(stream);
     push_buffers();
 }
 
-/// Aravis (0.8.26) opens its packet socket before it sets the filter, so packets for other streams
-/// of this host come in. It takes them for its own: then it discards frames with lower ids as late.
-/// Before the acquisition starts every packet is foreign.
-void AravisStream::Impl::drop_foreign_packets() {
-    for (int i = 0; i < kMaxOpenings && info("n_received_packets") > 0; ++i) open_stream();
+void AravisStream::Impl::prepare_socket() {
+    if (link) link->prepare_socket(buffer_bytes, layout.payload_bytes(), buffers.socket_frames);
 }
 
 /// What a buffer must hold.
@@ -175,7 +173,6 @@ bool AravisStream::Impl::is_credible(const FrameLayout& said, std::size_t came) 
 }
 
 void AravisStream::Impl::push_buffers() {
-    buffer_bytes = wanted_bytes();
     for (int i = 0; i < buffers.frames; ++i) {
         auto* const memory = new BufferMemory(buffer_bytes);
         reuse(arv_buffer_new_full(buffer_bytes, memory->data(), memory,
@@ -212,7 +209,7 @@ std::uint64_t AravisStream::Impl::info(const char* name) const {
 
 /// Frames that did not fit into their buffers, or did not fill them.
 std::uint64_t AravisStream::Impl::mismatches() const {
-    return link ? info("n_size_mismatch_errors") : cut_frames;
+    return info("n_size_mismatch_errors") + cut_frames;
 }
 
 /// Makes buffers of the size that the camera sends now.
@@ -220,6 +217,7 @@ void AravisStream::Impl::rebuild() {
     if (running) arv_camera_stop_acquisition(camera, nullptr);
     g_clear_object(&held_back);
     arv_stream_stop_thread(stream, TRUE);
+    buffer_bytes = wanted_bytes();
     push_buffers();
     arv_stream_start_thread(stream);
     if (running) arv_camera_start_acquisition(camera, nullptr);
@@ -244,11 +242,9 @@ void AravisStream::Impl::read_chunks(ArvBuffer* buffer, FrameRecord& record) con
     const auto number = [&](const char* name) -> std::optional<double> {
         if (arv_device_get_feature(arv_camera_get_device(camera), name) == nullptr)
             return std::nullopt;
-        GError* error = nullptr;
-        const double value = arv_chunk_parser_get_float_value(chunks, buffer, name, &error);
-        const bool failed = error != nullptr;
-        g_clear_error(&error);
-        return failed ? std::nullopt : std::optional(value);
+        GlibError error;
+        const double value = arv_chunk_parser_get_float_value(chunks, buffer, name, error.slot());
+        return error.any() ? std::nullopt : std::optional(value);
     };
     record.exposure_us = number("ChunkExposureTime");
     record.gain = number("ChunkGain");
@@ -272,12 +268,15 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool)
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
     stamp_arrival(buffer, record);
     std::size_t came = memory.size();
-    if (status == ARV_BUFFER_STATUS_SUCCESS) {
+    if (status == ARV_BUFFER_STATUS_SUCCESS && !has_leader) {
+        // What is no image Aravis (0.8.26) hands out as it came, with the status of before.
+        record.status = FrameStatus::kOtherLayout;
+    } else if (status == ARV_BUFFER_STATUS_SUCCESS) {
         arv_buffer_get_data(buffer, &came);
         const FrameLayout now = layout_of(buffer);
         const bool credible = is_credible(now, std::min(came, memory.size()));
         if (credible) layout = now;
-        if (!credible) record.status = FrameStatus::kDeviceError;
+        if (!credible) record.status = FrameStatus::kOtherLayout;
         if (arv_buffer_has_chunks(buffer) != FALSE) read_chunks(buffer, record);
     }
     record.layout = layout;
@@ -287,7 +286,10 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool)
     record.bytes_received = kept;
     if (came < wanted && record.status == FrameStatus::kComplete)
         record.status = FrameStatus::kSizeMismatch;
-    if (record.status == FrameStatus::kSizeMismatch) ++cut_frames;
+    // The filter of GigeLink keeps out what lies behind the buffer.
+    const bool outgrown = link && has_leader && status != ARV_BUFFER_STATUS_SUCCESS &&
+                          layout_of(buffer).payload_bytes() > memory.size();
+    if (record.status == FrameStatus::kSizeMismatch || outgrown) ++cut_frames;
     if (record.status != FrameStatus::kComplete) {
         if (!link) erase_usb_packets(frame.payload, record.wire_id);
         frame.holes = clear_holes(frame.payload);
@@ -341,16 +343,12 @@ TransportCounts AravisStream::counts() const {
 }
 
 void AravisStream::start() {
-    if (impl_->link) impl_->drop_foreign_packets();
-    GError* error = nullptr;
+    GlibError error;
     arv_camera_set_acquisition_mode(impl_->camera, ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
     impl_->started_ns = monotonic_ns();
-    arv_camera_start_acquisition(impl_->camera, &error);
-    if (error != nullptr) {
-        const std::string why = error->message;
-        g_clear_error(&error);
-        throw DeviceError(impl_->device.address(), fmt::format("does not start: {}", why));
-    }
+    arv_camera_start_acquisition(impl_->camera, error.slot());
+    if (error.any())
+        throw DeviceError(impl_->device.address(), fmt::format("does not start: {}", error.text()));
     impl_->running = true;
 }
 

@@ -17,11 +17,15 @@ namespace stipple {
 class GigeLink {
   public:
     /// To be made before the stream. `packet_bytes` is the packet size with headers; default: the
-    /// largest that the path carries. `device` must outlive the link.
+    /// largest that the path carries. `device` must outlive the link. \throws DeviceError.
     GigeLink(AravisDevice& device, std::optional<int> packet_bytes);
 
-    /// Asks for a socket buffer of `frames` frames of `frame_bytes`. `stream` is the ArvStream.
-    void set_socket_buffer(void* stream, std::size_t frame_bytes, int frames);
+    /// Lets only packets in that fit to blocks of at most `block_bytes` (filter_gvsp), and asks for
+    /// a socket buffer of `frames` frames of `frame_bytes`. To be called by the thread that
+    /// receives, before it does: then nothing has been read.
+    void prepare_socket(std::size_t block_bytes, std::size_t frame_bytes, int frames) noexcept;
+    /// After that. `stream` is the ArvStream. \throws DeviceError if the socket has no filter.
+    void check(void* stream);
     /// Fills in the losses of socket and interface since the construction.
     void count(void* stream, TransportCounts& counts) const;
 
@@ -31,10 +35,14 @@ class GigeLink {
 
   private:
     void watch_interface(std::uint32_t packet_bytes);
+    void judge_buffer(std::int64_t wanted, std::int64_t given, std::size_t frame_bytes, int frames);
 
     std::optional<NetworkInterface> interface_;
+    AravisDevice& device_;
+    bool extended_ids_;
+    std::uint32_t packet_bytes_ = 0;
+    std::uint16_t filtered_port_ = 0;  ///< of the socket with the filter; 0: none
     std::uint64_t link_faults_before_ = 0;
-    bool packet_socket_ = false;
     std::map<std::string, std::string> facts_;
     std::vector<std::string> warnings_;
 };

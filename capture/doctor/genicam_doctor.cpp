@@ -1,7 +1,12 @@
 #include <arv.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "capture/aravis/aravis_device.h"
+#include "capture/aravis/glib_error.h"
+#include "capture/aravis/limited_time.h"
 #include "capture/doctor/network_doctor.h"
 #include "capture/network.h"
 #include "core/error.h"
@@ -37,7 +42,9 @@ void examine_control(const AravisDevice& device, std::vector<DoctorFinding>& fin
 
 void examine_packets(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
     auto* camera = static_cast<ArvCamera*>(device.native());
-    const auto before = arv_camera_gv_get_packet_size(camera, nullptr);
+    GlibError error;
+    const auto before = arv_camera_gv_get_packet_size(camera, error.slot());
+    error.check_answer(device.address());
     const auto size = arv_camera_gv_auto_packet_size(camera, nullptr);
     findings.push_back({Level::kGood, "packet size",
                         size == before
@@ -48,7 +55,9 @@ void examine_packets(const AravisDevice& device, std::vector<DoctorFinding>& fin
 
 void examine_format(const AravisDevice& device, std::vector<DoctorFinding>& findings) {
     auto* camera = static_cast<ArvCamera*>(device.native());
-    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, nullptr));
+    GlibError error;
+    const auto code = static_cast<std::uint32_t>(arv_camera_get_pixel_format(camera, error.slot()));
+    error.check_answer(device.address());
     const PixelFormat* format = pixel_format_of_pfnc(code);
     if (format != nullptr) {
         findings.push_back({Level::kGood, "pixel format", std::string(format->name), ""});
@@ -58,22 +67,39 @@ void examine_format(const AravisDevice& device, std::vector<DoctorFinding>& find
                         "--set camera.PixelFormat=... when recording"});
 }
 
+/// \throws DeviceError.
+void examine(const std::string& address, std::vector<DoctorFinding>& findings) {
+    const AravisDevice device(address);
+    findings.push_back({Level::kGood, "camera",
+                        fmt::format("{} {}", device.read("DeviceVendorName").value_or("?"),
+                                    device.read("DeviceModelName").value_or("?")),
+                        ""});
+    examine_control(device, findings);
+    if (device.is_gige() && device.is_controller()) examine_packets(device, findings);
+    examine_format(device, findings);
+    for (const auto& [name, value] : device.features())
+        findings.push_back({Level::kGood, name, value, ""});
+}
+
+/// What was found before the camera was lost counts too.
+std::vector<DoctorFinding> examined(const std::string& address) {
+    std::vector<DoctorFinding> findings;
+    try {
+        examine(address, findings);
+    } catch (const DeviceError& e) {
+        findings.push_back({Level::kProblem, "camera", e.what(), ""});
+    }
+    return findings;
+}
+
 }  // namespace
 
 std::vector<DoctorFinding> examine_genicam_camera(const std::string& address) {
     std::vector<DoctorFinding> findings;
+    if (address.starts_with("gige:")) examine_path(address.substr(5), findings);
     try {
-        if (address.starts_with("gige:")) examine_path(address.substr(5), findings);
-        const AravisDevice device(address);
-        findings.push_back({Level::kGood, "camera",
-                            fmt::format("{} {}", device.read("DeviceVendorName").value_or("?"),
-                                        device.read("DeviceModelName").value_or("?")),
-                            ""});
-        examine_control(device, findings);
-        if (device.is_gige() && device.is_controller()) examine_packets(device, findings);
-        examine_format(device, findings);
-        for (const auto& [name, value] : device.features())
-            findings.push_back({Level::kGood, name, value, ""});
+        std::ranges::move(within_limited_time(address, [address] { return examined(address); }),
+                          std::back_inserter(findings));
     } catch (const DeviceError& e) {
         findings.push_back({Level::kProblem, "camera", e.what(), ""});
     }

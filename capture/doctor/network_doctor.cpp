@@ -17,19 +17,21 @@ constexpr int kJumboMtu = 9000;
 
 }  // namespace
 
-DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool packet_sockets) {
+DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool may_exceed) {
     const double mib = static_cast<double>(max_bytes) / (1 << 20U);
     DoctorFinding finding{Level::kGood, "receive buffer",
                           fmt::format("net.core.rmem_max is {:.1f} MiB", mib), ""};
     if (max_bytes == 0) finding.fact = "net.core.rmem_max cannot be read";
-    if (packet_sockets) {
-        finding.fact += "; not needed, packet sockets are used";
+    if (may_exceed) {
+        finding.fact += "; this program may exceed it";
         return finding;
     }
     if (max_bytes >= kComfortableBufferBytes) return finding;
     finding.level = Level::kWarning;
-    finding.fix = fmt::format("sysctl -w net.core.rmem_max={} (to stay: a file in sysctl.d)",
-                              kComfortableBufferBytes);
+    finding.fix = fmt::format(
+        "sysctl -w net.core.rmem_max={} (to stay: a file in sysctl.d), or "
+        "setcap cap_net_admin+ep on the program",
+        kComfortableBufferBytes);
     return finding;
 }
 
@@ -46,7 +48,7 @@ DoctorFinding judge_mtu(const std::string& interface, int mtu) {
 
 std::vector<DoctorFinding> examine_network() {
     std::vector<DoctorFinding> findings;
-    const bool packet_sockets = can_open_packet_socket();
+    const bool may_exceed = can_exceed_rmem_max();
     for (const NetworkInterface& interface : network_interfaces()) {
         DoctorFinding finding{
             Level::kGood, fmt::format("interface {}", interface.name),
@@ -65,14 +67,11 @@ std::vector<DoctorFinding> examine_network() {
         findings.push_back({Level::kWarning, "interfaces", "none has an IPv4 address",
                             "ip addr add 192.168.0.1/24 dev IF for a camera that is plugged in "
                             "directly"});
-    findings.push_back({Level::kGood, "CAP_NET_RAW",
-                        packet_sockets ? "held: packet sockets" : "not held: UDP sockets", ""});
-    if (!packet_sockets) {
-        findings.back().level = Level::kWarning;
-        findings.back().fix =
-            "setcap cap_net_raw+ep on the program, or a receive buffer that is large enough";
-    }
-    findings.push_back(judge_receive_buffer(rmem_max_bytes(), packet_sockets));
+    findings.push_back({Level::kGood, "CAP_NET_ADMIN",
+                        may_exceed ? "held: receive buffers of any size"
+                                   : "not held: receive buffers up to net.core.rmem_max",
+                        ""});
+    findings.push_back(judge_receive_buffer(rmem_max_bytes(), may_exceed));
     return findings;
 }
 

@@ -9,12 +9,12 @@
 namespace stipple {
 
 /// Network of this machine for GigE Vision cameras: interfaces with address and MTU, receive
-/// buffer, permission for packet sockets.
+/// buffer, permission for a larger one.
 [[nodiscard]] std::vector<DoctorFinding> examine_network();
 
-/// Finding on the receive buffer for a net.core.rmem_max of `max_bytes` (0: unknown), with or
-/// without packet sockets.
-[[nodiscard]] DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool packet_sockets);
+/// Finding on the receive buffer for a net.core.rmem_max of `max_bytes` (0: unknown), which this
+/// program may exceed or not.
+[[nodiscard]] DoctorFinding judge_receive_buffer(std::int64_t max_bytes, bool may_exceed);
 
 /// Finding on the packet size that a path of this MTU carries.
 [[nodiscard]] DoctorFinding judge_mtu(const std::string& interface, int mtu);

@@ -17,11 +17,14 @@ std::int64_t rmem_max_bytes() {
     return bytes;
 }
 
-bool can_open_packet_socket() {
-    const int descriptor = ::socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, 0);
+bool can_exceed_rmem_max() {
+    const int descriptor = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return false;
+    constexpr int kBytes = 1 << 16;
+    const bool can =
+        ::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof kBytes) == 0;
     ::close(descriptor);
-    return true;
+    return can;
 }
 
 std::uint64_t udp_drops(int port) {

@@ -9,8 +9,8 @@ namespace stipple {
 /// unknown.
 [[nodiscard]] std::int64_t rmem_max_bytes();
 
-/// Whether this program may open packet sockets (CAP_NET_RAW), which need no receive buffer.
-[[nodiscard]] bool can_open_packet_socket();
+/// Whether this program may have a receive buffer above net.core.rmem_max (CAP_NET_ADMIN).
+[[nodiscard]] bool can_exceed_rmem_max();
 
 /// Datagrams dropped by the full UDP socket bound to `port`; 0 if there is no such socket.
 [[nodiscard]] std::uint64_t udp_drops(int port);

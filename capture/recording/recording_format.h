@@ -83,8 +83,8 @@ struct SessionRecord {
 
 /// Content of the end block.
 struct RecordingEnd {
-    std::string reason = "stopped";          ///< "stopped", "disk full", "camera lost", ...
-    std::array<std::uint64_t, 6> lost = {};  ///< missing frames by GapCause
+    std::string reason = "stopped";  ///< "stopped", "disk full", "camera lost", ...
+    std::array<std::uint64_t, kGapCauseNames.size()> lost = {};  ///< missing frames by GapCause
     TransportCounts transport = {};
     std::uint64_t frames = 0;      ///< in the file
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete

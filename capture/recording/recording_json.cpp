@@ -15,7 +15,7 @@ using Texts = std::map<std::string, std::string>;
 /// By GapCause: the names in a recording (docs/recording_format.md). Reports say `queue_drop` where
 /// version 1 of the format says `own_drop`.
 constexpr std::array<std::string_view, kGapCauseNames.size()> kStoredCauses{
-    "none", "device", "transport", "host_underrun", "own_drop", "reconnect"};
+    "none", "device", "transport", "host_underrun", "own_drop", "reconnect", "layout"};
 
 std::string dumped(const Json& json) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -125,7 +125,8 @@ RecordingEnd decode_end(std::string_view text, std::string_view where) {
                          .incomplete = json.at("incomplete"),
                          .payload_bytes = json.at("payload_bytes")};
         for (std::size_t i = 1; i < kStoredCauses.size(); ++i)
-            end.lost[i] = json.at("lost").at(std::string(kStoredCauses[i]));
+            // Earlier versions of this program know fewer causes.
+            end.lost[i] = json.at("lost").value(std::string(kStoredCauses[i]), std::uint64_t{0});
         const ReadJson& transport = json.at("transport");
         end.transport = {.underruns = transport.at("underruns"),
                          .packets_resent = transport.at("packets_resent"),

@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, USAGE, ProgramTest
 
-CAUSES = ("device", "transport", "host_underrun", "queue_drop", "reconnect")
+CAUSES = ("device", "transport", "host_underrun", "queue_drop", "reconnect", "layout")
 
 
 def records_of(path):
