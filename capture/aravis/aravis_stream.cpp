@@ -209,7 +209,7 @@ std::uint64_t AravisStream::Impl::info(const char* name) const {
 
 /// Frames that did not fit into their buffers, or did not fill them.
 std::uint64_t AravisStream::Impl::mismatches() const {
-    return info("n_size_mismatch_errors") + cut_frames;
+    return link ? info("n_size_mismatch_errors") : cut_frames;
 }
 
 /// Makes buffers of the size that the camera sends now.
@@ -224,8 +224,13 @@ void AravisStream::Impl::rebuild() {
 }
 
 FrameLayout AravisStream::Impl::layout_of(ArvBuffer* buffer) const {
-    const auto* format = pixel_format_of_pfnc(arv_buffer_get_image_pixel_format(buffer));
     FrameLayout found;
+    const ArvBufferPayloadType type = arv_buffer_get_payload_type(buffer);
+    if ((type != ARV_BUFFER_PAYLOAD_TYPE_IMAGE &&
+         type != ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA) ||
+        arv_buffer_get_n_parts(buffer) == 0)
+        return found;
+    const auto* format = pixel_format_of_pfnc(arv_buffer_get_image_pixel_format(buffer));
     found.format = format;
     arv_buffer_get_image_region(buffer, &found.offset_x, &found.offset_y, &found.width,
                                 &found.height);
@@ -268,8 +273,9 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool)
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
     stamp_arrival(buffer, record);
     std::size_t came = memory.size();
-    if (status == ARV_BUFFER_STATUS_SUCCESS && !has_leader) {
-        // What is no image Aravis (0.8.26) hands out as it came, with the status of before.
+    if (!has_leader &&
+        (status == ARV_BUFFER_STATUS_SUCCESS || status == ARV_BUFFER_STATUS_CLEARED)) {
+        // For what is no image Aravis (0.8.26) hands out a buffer with the status of before.
         record.status = FrameStatus::kOtherLayout;
     } else if (status == ARV_BUFFER_STATUS_SUCCESS) {
         arv_buffer_get_data(buffer, &came);
@@ -286,10 +292,7 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool)
     record.bytes_received = kept;
     if (came < wanted && record.status == FrameStatus::kComplete)
         record.status = FrameStatus::kSizeMismatch;
-    // The filter of GigeLink keeps out what lies behind the buffer.
-    const bool outgrown = link && has_leader && status != ARV_BUFFER_STATUS_SUCCESS &&
-                          layout_of(buffer).payload_bytes() > memory.size();
-    if (record.status == FrameStatus::kSizeMismatch || outgrown) ++cut_frames;
+    if (record.status == FrameStatus::kSizeMismatch) ++cut_frames;
     if (record.status != FrameStatus::kComplete) {
         if (!link) erase_usb_packets(frame.payload, record.wire_id);
         frame.holes = clear_holes(frame.payload);

@@ -133,6 +133,25 @@ TEST(CaptureSessionTest, PacketsOfAFrameThatArrivedIncompleteExplainNoOtherFrame
     EXPECT_EQ(next_record(session).cause, GapCause::kDevice);
 }
 
+TEST(CaptureSessionTest, ADroppedFrameIsLostByWhatMadeItIncomplete) {
+    for (const auto& [status, cause] :
+         {std::pair(FrameStatus::kMissingPackets, GapCause::kTransport),
+          std::pair(FrameStatus::kSizeMismatch, GapCause::kTransport),
+          std::pair(FrameStatus::kDeviceError, GapCause::kDevice),
+          std::pair(FrameStatus::kOtherLayout, GapCause::kLayout)}) {
+        CapturedFrame dropped = incomplete(2, false);
+        dropped.record.status = status;
+        CaptureSession session(
+            plays({{arrives(scripted_frame(1)), arrives(std::move(dropped)),
+                    arrives(scripted_frame(3))}}),
+            {.incomplete = status == FrameStatus::kOtherLayout ? IncompletePolicy::kKeep
+                                                               : IncompletePolicy::kDrop});
+        static_cast<void>(next_record(session));
+        EXPECT_EQ(next_record(session).cause, cause);
+        EXPECT_EQ(lost(session, cause), 1U);
+    }
+}
+
 TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
     const std::deque<ScriptedStep> script{arrives(scripted_frame(1)), arrives(incomplete(2)),
                                           arrives(incomplete(3, false)),
@@ -152,13 +171,13 @@ TEST(CaptureSessionTest, EachPolicyAccountsForIncompleteFrames) {
             const CapturedFrame frame = wait_for<CapturedFrame>(session);
             EXPECT_EQ(frame.record.id, previous + 1 + frame.record.lost_before);
             EXPECT_EQ(frame.record.cause,
-                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kQueueDrop);
+                      frame.record.lost_before == 0 ? GapCause::kNone : GapCause::kTransport);
             EXPECT_EQ(frame.holes.empty(), one.policy == IncompletePolicy::kKeep ||
                                                frame.record.status == FrameStatus::kComplete);
             previous = frame.record.id;
         }
         EXPECT_EQ(previous, 3U);
-        EXPECT_EQ(lost(session, GapCause::kQueueDrop), one.dropped);
+        EXPECT_EQ(lost(session, GapCause::kTransport), one.dropped);
         EXPECT_EQ(session.totals().frames, one.frames);
         EXPECT_EQ(session.totals().incomplete, one.frames - 2);
     }

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "capture/aravis/aravis_camera.h"
+#include "capture/aravis/aravis_device.h"
+#include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"
 #include "tests/capture/aravis/genicam_file.h"
 #include "tests/support/private_network.h"
@@ -86,6 +88,19 @@ TEST_F(AravisFeaturesTest, LimitsThatNameEachOtherAreTold) {
     EXPECT_EQ(features[0].maximum, "59");
     EXPECT_EQ(features[1].maximum, "61");
     EXPECT_EQ(features[2].maximum, "9");
+}
+
+TEST_F(AravisFeaturesTest, ACameraThatGoesAwayIsLostAtTheFirstQuestion) {
+    const FakeCameraProcess camera;
+    const AravisDevice device("gige:127.0.0.1");
+    camera.freeze();
+    try {
+        static_cast<void>(describe_features(device));
+        ADD_FAILURE() << "features of a camera that is gone";
+    } catch (const DeviceError& e) {
+        EXPECT_NE(std::string(e.what()).find("camera lost"), std::string::npos);
+    }
+    camera.thaw();
 }
 
 }  // namespace

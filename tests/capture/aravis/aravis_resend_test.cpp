@@ -141,32 +141,88 @@ TEST_F(AravisResendTest, EveryIdIsAccountedForWhateverIsLost) {
     EXPECT_GE(missing, 5U);
 }
 
-TEST_F(AravisResendTest, AForgedLeaderDoesNotChangeTheLayout) {
-    ASSERT_TRUE(drop_capabilities());  // a packet socket looks at the sender's address
+/// A camera that sends nothing itself; the test does, from its address.
+class ForgedStream {
+  public:
+    explicit ForgedStream(std::uint32_t address) : forger_(address, address) {
+        camera_ = open_camera("gige:" + ipv4_text(address), {}, {.frames = 4});
+        camera_->start();
+    }
+    /// A block of 64 x 48 pixels, whose leader says `image` and `payload_type`.
+    void send(GvspImage image, std::uint8_t payload_type, std::uint16_t id, UdpEndpoint from = {}) {
+        GvspBlock block;
+        block.id = id;
+        image.pixel_format = pixel_format_named("Mono8")->pfnc;
+        block.image = image;
+        block.payload.resize(64 * 48, 7);
+        block.piece_bytes = block.payload.size();
+        const UdpEndpoint to{0x7F000001,
+                             static_cast<std::uint16_t>(*forger_.read(gige::kStreamPort))};
+        for (std::uint32_t i = 0; i < block.packets(); ++i) {
+            GvspPacket packet = gvsp_packet(block, i);
+            if (i == 0) packet.head[11] = payload_type;
+            const DatagramParts parts{std::span(packet.head).first(packet.head_bytes), packet.data};
+            if (from.is_somebody())
+                UdpSocket(from).send(to, std::span(&parts, 1));
+            else
+                forger_.data().send(to, std::span(&parts, 1));
+        }
+    }
+    [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout = kLong) {
+        return camera_->wait(timeout);
+    }
+    [[nodiscard]] int width() const { return camera_->layout().width; }
+
+  private:
+    GigeClient forger_;
+    std::unique_ptr<Camera> camera_;
+};
+
+TEST_F(AravisResendTest, ALeaderOfAnotherSizeDoesNotChangeTheLayout) {
     NoiseFrames source(64, 48, {"Mono8"}, kFrames);
     const GigeServing server(source, {.faults = {.freeze_at = 0}});
     ASSERT_EQ(server.failure(), "");
-    const auto camera = open_camera("gige:" + ipv4_text(server.address()), {}, {.frames = 4});
-    camera->start();
-    GigeClient forger(server.address());
-    const auto port = forger.read(gige::kStreamPort);
-    ASSERT_TRUE(port && *port != 0);
-    GvspBlock block;
-    block.image = {pixel_format_named("Mono8")->pfnc, 3000, 2000, 0, 0};
-    block.payload.resize(64 * 48);
-    block.piece_bytes = block.payload.size();
-    for (std::uint32_t i = 0; i < block.packets(); ++i) {
-        const GvspPacket packet = gvsp_packet(block, i);
-        const DatagramParts parts{std::span(packet.head).first(packet.head_bytes), packet.data};
-        forger.data().send({0x7F000001, static_cast<std::uint16_t>(*port)}, std::span(&parts, 1));
-    }
-    Arrival arrival = camera->wait(kLong);
+    ForgedStream stream(server.address());
+    stream.send({.width = 3000, .height = 2000}, 1, 1);
+    const Arrival arrival = stream.wait();
     const auto* frame = std::get_if<CapturedFrame>(&arrival);
     ASSERT_NE(frame, nullptr);
-    EXPECT_EQ(frame->record.status, FrameStatus::kDeviceError);
+    EXPECT_EQ(frame->record.status, FrameStatus::kOtherLayout);
     EXPECT_EQ(frame->record.layout.width, 64);
     EXPECT_EQ(frame->payload.size(), 64U * 48U);
-    EXPECT_EQ(camera->layout().width, 64);
+    EXPECT_EQ(stream.width(), 64);
+}
+
+TEST_F(AravisResendTest, WhatIsNoImageIsNeverACompleteFrame) {
+    NoiseFrames source(64, 48, {"Mono8"}, kFrames);
+    const GigeServing server(source, {.faults = {.freeze_at = 0}});
+    ASSERT_EQ(server.failure(), "");
+    ForgedStream stream(server.address());
+    int complete = 0;
+    int other = 0;
+    for (std::uint16_t id = 1; id <= 12; ++id) {  // more than there are buffers
+        stream.send({.width = 64, .height = 48}, id % 2 == 1 ? 1 : 2, id);
+        for (Arrival arrival = stream.wait(300ms); std::holds_alternative<CapturedFrame>(arrival);
+             arrival = stream.wait(300ms)) {
+            const auto& frame = std::get<CapturedFrame>(arrival);
+            other += frame.record.status == FrameStatus::kOtherLayout ? 1 : 0;
+            if (frame.record.status != FrameStatus::kComplete) continue;
+            ++complete;
+            EXPECT_EQ(frame.record.wire_id % 2, 1U);
+            EXPECT_EQ(frame.payload, std::vector<std::uint8_t>(64 * 48, 7));
+        }
+    }
+    EXPECT_EQ(complete, 6);
+    EXPECT_EQ(other, 6);
+}
+
+TEST_F(AravisResendTest, PacketsFromElsewhereAreNotSeen) {
+    NoiseFrames source(64, 48, {"Mono8"}, kFrames);
+    const GigeServing server(source, {.faults = {.freeze_at = 0}});
+    ASSERT_EQ(server.failure(), "");
+    ForgedStream stream(server.address());
+    stream.send({.width = 64, .height = 48}, 1, 1, {0x7F000001, 40000});
+    EXPECT_TRUE(std::holds_alternative<NoFrame>(stream.wait(200ms)));
 }
 
 /// Traffic of another camera: leaders of block 60, until it is gone.
