@@ -20,7 +20,8 @@
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "io/frame_writer.h"
+#include "io/npy_writer.h"
+#include "io/pending_output.h"
 #include "readout/footage_origin.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_identity.h"
@@ -61,6 +62,16 @@ WindowIdentity identity_of(const DecodeArguments& arguments, const DecodeSetup& 
             .shape = decoded_shape(header),
             .slot_us = header.slot_us};
 }
+
+struct WindowWriter {
+    PendingOutput output;
+    NpyWriter npy;
+
+    WindowWriter(const WindowFolder& folder, std::int64_t number)
+        : output(folder.window(number), true),
+          npy(output.partial(), output.final_path().string(), folder.identity().shape,
+              folder.mark(number)) {}
+};
 
 /// A run of the command: opened by the constructor, then `run`, then `tell`.
 class PartRun {
@@ -124,17 +135,17 @@ void PartRun::decode_windows(const NumberRange& windows, Progress& progress) {
     options.first_slot = folder_.begin_slot(windows.begin);
     const std::int64_t before = slots_;
     std::int64_t number = windows.begin;
-    std::optional<FrameWriter> window;
+    std::optional<WindowWriter> window;
     const auto take = [&](std::int64_t slot, std::span<const float> frame) {
         if (!window) {
             remove_leftovers(folder_.window(number));
-            window.emplace(folder_.window(number), folder_.identity().shape,
-                           FrameWriterOptions{.force = true});
+            window.emplace(folder_, number);
         }
-        window->write(frame);
+        window->npy.write(frame);
         ++slots_;
         if (slot + 1 < folder_.end_slot(number)) return true;
-        window->finish();
+        window->npy.finish();
+        window->output.commit();
         window.reset();
         return ++number < windows.end && stop_signal() == 0;
     };

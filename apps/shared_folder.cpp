@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/partial_output.h"
+#include "stream/crc32c.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -29,6 +30,11 @@ void publish(const fs::path& file, const std::string& text) {
     } catch (const fs::filesystem_error& e) {
         throw DeviceError(file.string(), "cannot be written: " + e.code().message());
     }
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::string differing(const std::string& key, const nlohmann::ordered_json& there,
@@ -66,9 +72,7 @@ nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderK
         throw InputError(folder.string(),
                          fmt::format("has no {}: it is no folder that `stipple {} --part` wrote",
                                      kind.identity, kind.verb));
-    std::ifstream stream(file);
-    const std::string text(std::istreambuf_iterator<char>(stream), {});
-    auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+    auto json = nlohmann::ordered_json::parse(text_of(file), nullptr, false);
     bool whole = json.is_object();
     for (const auto& [key, value] : pattern.items())
         whole = whole && json.contains(key) &&
@@ -91,6 +95,11 @@ std::string first_difference(const nlohmann::ordered_json& there,
         return differing(key, other, value);
     }
     return {};
+}
+
+std::uint32_t identity_crc(const fs::path& folder, const SharedFolderKind& kind) {
+    const std::string text = text_of(folder / kind.identity);
+    return crc32c({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 void remove_leftovers(const fs::path& file) {

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/error.h"
 #include "core/version.h"
 #include "decoder/block_partition.h"
+#include "io/npy_header.h"
 #include "io/npy_reader.h"
 
 namespace stipple {
@@ -57,6 +60,7 @@ WindowIdentity identity_of(const nlohmann::ordered_json& json, const fs::path& f
 WindowFolder::WindowFolder(fs::path folder, const WindowIdentity& identity)
     : folder_(std::move(folder)), identity_(identity) {
     claim_folder(folder_, kDecodingFolder, json_of(identity));
+    crc_ = identity_crc(folder_, kDecodingFolder);
 }
 
 WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -71,6 +75,7 @@ WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
     if (!other.empty())
         throw InputError(folder_.string(),
                          fmt::format("is of another version of this program: {}", other));
+    crc_ = identity_crc(folder_, kDecodingFolder);
 }
 
 std::int64_t WindowFolder::count() const {
@@ -79,6 +84,10 @@ std::int64_t WindowFolder::count() const {
 
 fs::path WindowFolder::window(std::int64_t number) const {
     return folder_ / fmt::format("window_{:06d}.npy", number);
+}
+
+std::string WindowFolder::mark(std::int64_t number) const {
+    return fmt::format("window {} of {:08x}", number, crc_);
 }
 
 std::int64_t WindowFolder::begin_slot(std::int64_t number) const {
@@ -99,11 +108,19 @@ bool WindowFolder::holds(std::int64_t number) const {
     if (!fs::exists(file)) return false;
     try {
         const NpyReader reader(file);
-        return reader.shape() == identity_.shape &&
-               reader.slots() == end_slot(number) - begin_slot(number);
     } catch (const InputError&) {
         return false;  // as after a power cut with --no-sync
     }
+    const auto slots = static_cast<int>(end_slot(number) - begin_slot(number));
+    const std::string header = format_npy_header(slots, identity_.shape, mark(number));
+    std::string start(header.size(), 0);
+    std::ifstream(file, std::ios::binary).read(start.data(), std::ssize(start));
+    if (start != header)
+        throw InputError(file.string(),
+                         "is not this window of the decoding that decoding.json describes: it was "
+                         "copied from elsewhere, or an earlier version wrote it; remove it, and "
+                         "run `stipple decode --part` again");
+    return true;
 }
 
 }  // namespace stipple

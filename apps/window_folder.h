@@ -25,7 +25,8 @@ struct WindowIdentity {
 
 /// A folder with a decoded stream in windows, each a complete file `window_000000.npy` or absent.
 /// The windows are the blocks that the decoder decodes independently. `decoding.json` holds the
-/// identity, so that no window of another decoding gets into the folder.
+/// identity. Each window names its number and the CRC of the identity, so that none of another
+/// decoding is taken for one of this.
 class WindowFolder {
   public:
     /// Makes the folder if it is missing. Several processes may do so at the same time.
@@ -40,10 +41,12 @@ class WindowFolder {
     [[nodiscard]] std::int64_t count() const;
     /// The file of a window, 0..count() - 1.
     [[nodiscard]] std::filesystem::path window(std::int64_t number) const;
+    /// The comment in the header of a window.
+    [[nodiscard]] std::string mark(std::int64_t number) const;
     /// The slots of a window: [begin_slot, end_slot).
     [[nodiscard]] std::int64_t begin_slot(std::int64_t number) const;
     [[nodiscard]] std::int64_t end_slot(std::int64_t number) const;
-    /// All of them, while this object lives.
+    /// All of them, while this object lives. To ask for one of another decoding \throws InputError.
     [[nodiscard]] NumberedParts windows() const;
 
   private:
@@ -52,6 +55,7 @@ class WindowFolder {
 
     std::filesystem::path folder_;
     WindowIdentity identity_;
+    std::uint32_t crc_ = 0;  ///< of decoding.json
 };
 
 }  // namespace stipple

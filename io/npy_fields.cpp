@@ -48,7 +48,10 @@ class Cursor {
         take(static_cast<std::size_t>(end - rest_.data()), 0);
         return value;
     }
+    /// Whether nothing follows but a comment.
     [[nodiscard]] bool at_end() {
+        skip_space();
+        if (rest_.starts_with('#')) take(std::min(rest_.find('\n'), rest_.size()), 0);
         skip_space();
         return rest_.empty();
     }

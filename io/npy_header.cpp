@@ -109,13 +109,14 @@ NpyHeader parse_npy_header(std::span<const std::byte> start, std::uint64_t file_
     return header;
 }
 
-std::string format_npy_header(int slots, FrameShape shape) {
+std::string format_npy_header(int slots, FrameShape shape, std::string_view comment) {
     constexpr std::size_t kHeaderBytes = 128;  // a multiple of 64; fits the largest numbers
     constexpr std::size_t kBegin = 10;
     const std::string_view colour = shape.planes == 3 ? ", 3" : "";
     std::string dictionary =
         fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}{}), }}", slots,
                     shape.rows, shape.cols, colour);
+    if (!comment.empty()) dictionary += fmt::format(" # {}", comment);
     dictionary.resize(kHeaderBytes - kBegin - 1, ' ');
     std::string header(kMagic);
     header.append({1, 0, static_cast<char>(kHeaderBytes - kBegin), 0});

@@ -47,7 +47,8 @@ struct NpyDictionary {
                                          std::string_view where);
 
 /// A header of fixed length for float32 frames of `shape`, so that the number of slots can be
-/// written later.
-[[nodiscard]] std::string format_npy_header(int slots, FrameShape shape);
+/// written later. `comment`, of at most 32 letters, follows the dictionary after a #.
+[[nodiscard]] std::string format_npy_header(int slots, FrameShape shape,
+                                            std::string_view comment = {});
 
 }  // namespace stipple

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "io/npy_header.h"
 
@@ -10,13 +11,14 @@ namespace stipple {
 
 static_assert(std::endian::native == std::endian::little, ".npy data are written as they lie");
 
-NpyWriter::NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape)
-    : file_(file, std::string(where)), shape_(shape) {
+NpyWriter::NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape,
+                     std::string comment)
+    : file_(file, std::string(where)), shape_(shape), comment_(std::move(comment)) {
     write_header();
 }
 
 void NpyWriter::write_header() {
-    const std::string header = format_npy_header(slots_, shape_);
+    const std::string header = format_npy_header(slots_, shape_, comment_);
     file_.seek(0);
     file_.write(std::as_bytes(std::span(header)));
     file_.seek(static_cast<long>(header.size() + static_cast<std::size_t>(slots_) * shape_.sites() *

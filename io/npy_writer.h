@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace stipple {
 /// file lacks at most the frames of the last second.
 class NpyWriter {
   public:
-    /// Creates `file`; messages name it `where`. \throws DeviceError.
-    NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape);
+    /// Creates `file`; messages name it `where`. The header has the comment. \throws DeviceError.
+    NpyWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape,
+              std::string comment = {});
 
     /// `frame` holds shape.sites() floats, order (plane, row, col). \throws DeviceError.
     void write(std::span<const float> frame);
@@ -29,6 +31,7 @@ class NpyWriter {
 
     OutputFile file_;
     FrameShape shape_;
+    std::string comment_;
     int slots_ = 0;
     int told_slots_ = 0;  ///< number of slots in the header
     Clock::time_point told_at_;

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "explore/dictionary_file.h"
+#include "io/npy_header.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
@@ -26,6 +28,7 @@
 #include "python/sensor.h"
 #include "python/stream.h"
 #include "readout/provenance.h"
+#include "stream/crc32c.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_identity.h"
 
@@ -118,6 +121,17 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
     return as_array(std::move(frames), shape);
 }
 
+/// The header of a window of "stipple decode --part": of its number, its slots, rows, columns and
+/// planes, and the text of decoding.json.
+py::bytes window_header(std::int64_t number, const std::array<int, 4>& sizes,
+                        const std::string& identity) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(identity.data());
+    const auto& [slots, rows, cols, planes] = sizes;
+    return format_npy_header(
+        slots, {rows, cols, planes},
+        fmt::format("window {} of {:08x}", number, crc32c({bytes, identity.size()})));
+}
+
 }  // namespace
 
 void bind_decode(py::module_& module) {
@@ -131,6 +145,7 @@ void bind_decode(py::module_& module) {
     module.def("decode_blocks", &block_count);
     module.def("block_begin", &block_begin);
     module.def("stream_identity", &stream_identity);
+    module.def("window_header", &window_header);
     module.def("decode", &decode_stream);
     module.def("decode_methods", [] {
         std::vector<std::string> names;

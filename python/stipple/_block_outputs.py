@@ -26,7 +26,7 @@ class BlockOutput(Protocol):
         """Makes the output unless it is there. Raises ValueError if it holds something else."""
 
     def holds(self, number: int) -> bool:
-        """Whether a block is there, with all of its frames."""
+        """Whether a block is there, with all of its frames. Raises ValueError for one of another decoding."""
 
     def write(self, number: int, frames: npt.NDArray[np.float32]) -> None:
         """Stores a block; the last axis of colour is its plane."""
@@ -84,16 +84,27 @@ class WindowFolder:
     def window(self, number: int) -> Path:
         return self.folder / f"window_{number:06d}.npy"
 
-    def holds(self, number: int) -> bool:
+    def _header(self, number: int) -> bytes:
+        """It names the decoding, so that no window of another one is taken for one of this."""
         begin, end = slots_of_block(number, self.identity["slots"])
+        rows, cols, planes = (self.identity[key] for key in ("rows", "cols", "planes"))
+        return _stipple.window_header(number, (end - begin, rows, cols, planes), (self.folder / IDENTITY).read_bytes())
+
+    def holds(self, number: int) -> bool:
+        file, header = self.window(number), self._header(number)
         try:
-            window = np.load(self.window(number), mmap_mode="r")
+            np.load(file, mmap_mode="r")
         except (FileNotFoundError, ValueError, EOFError):
             return False  # absent, or cut off by a power failure
-        return bool(window.shape == _shape(self.identity, end - begin) and window.dtype == np.float32)
+        with open(file, "rb") as stream:
+            if stream.read(len(header)) != header:
+                raise ValueError(f"{file}: is not this window of the decoding that {IDENTITY} describes: it was copied "
+                                 "from elsewhere, or an earlier version wrote it; remove it")
+        return True
 
     def write(self, number: int, frames: npt.NDArray[np.float32]) -> None:
-        self._put(self.window(number), lambda stream: np.save(stream, np.ascontiguousarray(frames)))
+        content = self._header(number) + np.ascontiguousarray(frames).tobytes()
+        self._put(self.window(number), lambda stream: stream.write(content))
         for left in self.folder.glob(f".window_{number:06d}.*.partial.npy"):
             left.unlink(missing_ok=True)  # of workers that were killed
 

@@ -5,6 +5,7 @@ import signal
 import time
 import unittest
 
+import numpy as np
 from program import INPUT, USAGE, ProgramTest
 
 NAIVE = ("--method", "naive")
@@ -118,6 +119,38 @@ class DecodePartTest(ProgramTest):
         identity.write_text(json.dumps(described | {"version": "0.0.1"}))
         self.fails(INPUT, ['version is "0.0.1" there'], *decode, *NAIVE)
         self.fails(INPUT, ["another version"], "join", "windows", "-o", "joined.npy")
+
+    def test_a_window_from_elsewhere_is_refused_wherever_it_has_the_size(self):
+        self.write_stream(slots=200)
+        self.write_stream("other.stipple", slots=200, light=0.4)
+        self.decode_part("1/1")
+        windows = self.folder / "windows"
+        own = (windows / "window_000001.npy").read_bytes()
+        windows.rename(self.folder / "kept")
+        self.decode_part("1/1", stream="other.stipple")
+        windows.rename(self.folder / "other")
+        (self.folder / "kept").rename(windows)
+        array = self.array("windows/window_000001.npy")
+        np.save(self.folder / "plain.npy", array)  # as of an earlier version, without a mark
+        np.save(self.folder / "wide.npy", array.astype(np.float64))
+        for foreign in ("other/window_000001.npy", "windows/window_000002.npy", "plain.npy", "wide.npy"):
+            (windows / "window_000001.npy").write_bytes((self.folder / foreign).read_bytes())
+            with self.subTest(foreign):
+                parts = ["window_000001.npy", "is not this window", "remove it", "decode --part"]
+                self.fails(INPUT, parts, "join", "windows", "-o", "joined.npy")
+                self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "windows", "--part", "1/1", *NAIVE)
+        self.decode_part("1/1", "--force")
+        self.assertEqual((windows / "window_000001.npy").read_bytes(), own)
+        self.expect_bytes_of_one_run()
+
+    def test_a_window_of_the_same_decoding_in_another_folder_is_taken(self):
+        self.write_stream(slots=100)
+        self.decode_part("1/2")
+        (self.folder / "windows").rename(self.folder / "first")
+        self.decode_part("2/2")
+        for path in (self.folder / "first").glob("window_*"):
+            path.rename(self.folder / "windows" / path.name)
+        self.expect_bytes_of_one_run()
 
     def test_a_folder_that_holds_something_else_is_refused(self):
         self.write_stream()

@@ -68,6 +68,17 @@ TEST(NpyHeaderTest, FormatsWhatItReadsAtAFixedLength) {
         }
 }
 
+TEST(NpyHeaderTest, ACommentFollowsTheDictionary) {
+    const std::string header = format_npy_header(64, {4096, 21845, 3}, std::string(32, 'c'));
+    ASSERT_EQ(header.size(), 128U);
+    EXPECT_NE(header.find(", } # " + std::string(32, 'c')), std::string::npos);
+    EXPECT_EQ(parse(header, 128 + 64ULL * 4096 * 21845 * 3 * 4).slots, 64);
+    expect_parts(
+        problem_of(npy_with_dictionary(
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1, 1)} # a\nb", "abcd")),
+        {"text follows the dictionary"});
+}
+
 TEST(NpyHeaderTest, RefusesForeignAndCutOffHeaders) {
     expect_parts(problem_of(""), {"clip.npy: is not a .npy file"});
     expect_parts(problem_of("PK\x03\x04"), {"is not a .npy file"});

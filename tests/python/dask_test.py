@@ -124,6 +124,19 @@ class DaskTest(ProgramTest):
         self.succeed("join", "windows", "-o", "joined.npy")
         np.testing.assert_array_equal(self.array("joined.npy"), stipple.decode(clip, "naive"))
 
+    def test_a_window_from_elsewhere_is_refused(self):
+        clip = self.write_clip(150)
+        decode_to = functools.partial(stipple.dask.decode_to, self.folder / "windows", clip, PickledTasks(), "naive")
+        decode_to()
+        window = self.folder / "windows" / "window_000001.npy"
+        array = np.load(window)
+        for foreign in (array, array.astype(np.float64), array[:-1]):
+            np.save(window, foreign)
+            with self.assertRaisesRegex(ValueError, "window_000001.npy: is not this window of the decoding .* remove it"):
+                decode_to()
+        window.unlink()
+        self.assertEqual(decode_to(), 1)
+
     def test_a_folder_that_holds_something_else_is_refused(self):
         clip = self.write_clip(10)
         (self.folder / "windows").mkdir()
