@@ -68,7 +68,7 @@ struct WindowWriter {
     NpyWriter npy;
 
     WindowWriter(const WindowFolder& folder, std::int64_t number)
-        : output(folder.window(number), true),
+        : output(folder.window(number), true, OutputKind::kManagedFile),
           npy(output.partial(), output.final_path().string(), folder.identity().shape,
               folder.mark(number)) {}
 };

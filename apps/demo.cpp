@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "explore/trial.h"
 #include "io/disk_sync.h"
+#include "io/pending_output.h"
 #include "report/run_report.h"
 
 namespace stipple {
@@ -57,6 +58,7 @@ DemoFolder::DemoFolder(const fs::path& folder, bool force) : path_(folder) {
                          "exists already; give another name, or --force to replace what is in it");
     if (fs::exists(folder, error) && !fs::is_directory(folder, error))
         throw InputError(folder.string(), "is not a folder; give another name");
+    refuse_links(folder);
     if (fs::is_directory(folder, error)) return;
     made_ = fs::create_directory(folder, error);
     if (!made_) throw DeviceError(folder.string(), "cannot be created: " + error.message());

@@ -74,7 +74,7 @@ class PieceWriter {
     void begin() {
         const std::filesystem::path file = folder_.piece(number_);
         remove_leftovers(file);
-        output_.emplace(file, true);
+        output_.emplace(file, true, OutputKind::kManagedFile);
         writer_.emplace(output_->partial(), header_, file.string(), folder_.begin_slot(number_));
     }
 

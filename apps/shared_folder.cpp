@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/partial_output.h"
+#include "io/pending_output.h"
 #include "stream/crc32c.h"
 
 namespace stipple {
@@ -49,6 +50,7 @@ void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
     std::error_code error;
     if (fs::create_directory(folder, error)) sync_to_disk(folder / "..");
     if (error) throw InputError(folder.string(), "cannot be made: " + error.message());
+    refuse_links(folder);
     const fs::path file = folder / kind.identity;
     if (!fs::exists(file)) {
         for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -67,6 +69,7 @@ void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
 
 nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderKind& kind,
                                      const nlohmann::ordered_json& pattern) {
+    refuse_links(folder);
     const fs::path file = folder / kind.identity;
     if (!fs::exists(file))
         throw InputError(folder.string(),

@@ -31,7 +31,8 @@ inline constexpr SharedFolderKind kEmulationFolder{"emulation.json", "an", "emul
 void claim_folder(const std::filesystem::path& folder, const SharedFolderKind& kind,
                   const nlohmann::ordered_json& identity);
 
-/// The identity of a folder, with the keys and the types of `pattern`. \throws InputError.
+/// The identity of a folder, with the keys and the types of `pattern`. \throws InputError, as for a
+/// link in the folder.
 [[nodiscard]] nlohmann::ordered_json read_identity(const std::filesystem::path& folder,
                                                    const SharedFolderKind& kind,
                                                    const nlohmann::ordered_json& pattern);

@@ -36,7 +36,7 @@ std::string text_of(const fs::path& file) {
 }
 
 void write_text(const fs::path& file, std::string_view text) {
-    PendingOutput output(file, true);
+    PendingOutput output(file, true, OutputKind::kManagedFile);
     OutputFile to(output.partial(), file.string());
     to.write(std::as_bytes(std::span(text)));
     to.close();
@@ -106,6 +106,7 @@ TrialStore::TrialStore(fs::path folder) : folder_(std::move(folder)) {
     const fs::path version_file = folder_ / "version.txt";
     const std::string own = std::string(version()) + "\n";
     std::error_code error;
+    refuse_links(folder_);
     if (fs::exists(version_file, error)) {
         if (text_of(version_file) != own)
             throw InputError(folder_.string(),
@@ -118,6 +119,7 @@ TrialStore::TrialStore(fs::path folder) : folder_(std::move(folder)) {
         write_text(version_file, own);
     }
     make_folder(folder_ / "trials");
+    refuse_links(folder_ / "trials");
     for (const PartialOutput& partial : partial_outputs(folder_ / "trials"))
         if (!partial.running()) fs::remove(partial.path, error);  // of a killed run
 }
@@ -159,7 +161,7 @@ void TrialStore::store(const std::string& identity, const TrialOutcome& outcome)
     // The figures last: with them the trial counts as known.
     const std::string address = address_of(identity);
     const fs::path picture = path(address, ".png");
-    PendingOutput output(picture, true);
+    PendingOutput output(picture, true, OutputKind::kManagedFile);
     write_png_file(output.partial(), outcome.picture, picture.string());
     output.commit();
     write_text(path(address, ".json"),

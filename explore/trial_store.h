@@ -15,8 +15,8 @@ namespace stipple {
 /// after the hash of all that determines it.
 class TrialStore {
   public:
-    /// Makes the folder if it is missing. \throws InputError if it holds something else or the
-    /// results of another version, DeviceError if it cannot be written.
+    /// Makes the folder if it is missing. \throws InputError if it holds something else, a link or
+    /// the results of another version, DeviceError if it cannot be written.
     explicit TrialStore(std::filesystem::path folder);
 
     /// The figures of a trial that was run before; nothing if its file is damaged.

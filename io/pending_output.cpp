@@ -49,7 +49,7 @@ fs::path tidy(const fs::path& path, OutputKind kind) {
         throw InputError("output \"-\"", "standard output does not take it; give it a name");
     fs::path result = path.lexically_normal();
     std::error_code error;
-    if (!result.empty() && !result.has_filename() && kind == OutputKind::kFile)
+    if (!result.empty() && !result.has_filename() && kind != OutputKind::kFolder)
         throw InputError(fmt::format("output \"{}\"", path.string()),
                          fs::is_directory(result, error)
                              ? "is a folder; name a file in it"
@@ -98,6 +98,14 @@ void remove_own_files(const fs::path& folder, IsOwnName is_own) {
     fs::remove(folder);
 }
 
+void refuse_link(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)))
+        throw InputError(path.string(),
+                         "is a link, which is neither followed nor replaced in a folder that this "
+                         "program fills; remove it");
+}
+
 /// What the link `path` leads to, by further links too; `path` if it is none.
 fs::path link_target(const fs::path& path) {
     constexpr int kMaxLinks = 40;  // as of Linux
@@ -123,8 +131,12 @@ fs::path link_target(const fs::path& path) {
 
 PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind kind,
                              IsOwnName is_own)
-    : final_(tidy(final_path, kind)), force_(force), kind_(kind), is_own_(is_own) {
+    : final_(tidy(final_path, kind)),
+      force_(force),
+      kind_(kind == OutputKind::kFolder ? kind : OutputKind::kFile),
+      is_own_(is_own) {
     if (kind == OutputKind::kFile) final_ = link_target(final_);
+    if (kind == OutputKind::kManagedFile) refuse_link(final_);
     const fs::path parent = folder_of(final_);
     std::error_code error;
     if (!fs::is_directory(parent, error))
@@ -267,6 +279,12 @@ fs::path PendingOutput::put_beside() const {
                                                            number, final_.extension().string());
         if (rename_to_free_name(partial_, name)) return name;
     }
+}
+
+void refuse_links(const fs::path& folder) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+        refuse_link(entry.path());
 }
 
 void visit_partial_outputs(void (*visit)(const char* path)) noexcept {

@@ -8,7 +8,8 @@
 
 namespace stipple {
 
-enum class OutputKind { kFile, kFolder };
+/// A managed file lies in a folder that the program fills, so no user has made it a link.
+enum class OutputKind { kFile, kFolder, kManagedFile };
 
 /// Whether a run of this kind writes a file with this name into its folder.
 using IsOwnName = bool (*)(std::string_view name);
@@ -20,7 +21,8 @@ using IsOwnName = bool (*)(std::string_view name);
 /// destructor removes the partial file or folder.
 class PendingOutput {
   public:
-    /// Creates the folder `partial()` if `kind` is a folder. A link to a file stands for this file.
+    /// Creates the folder `partial()` if `kind` is a folder. A link to a file stands for this file,
+    /// but in place of a managed file it is refused.
     /// \throws InputError if `final_path` exists and not `force`, or if its parent folder is
     /// missing. An empty folder is replaced by a folder. With `force` a regular file is replaced by
     /// a file, and a folder that contains only files with names of this program by a folder; for
@@ -67,6 +69,10 @@ class PendingOutput {
     std::unique_ptr<char[]> listed_;  ///< partial_, for the list, which may outlive this object
     std::size_t place_in_list_;       ///< in the list of partial outputs that no message names
 };
+
+/// \throws InputError if a folder that the program fills holds a link: whoever made it would choose
+/// the file that is read or replaced.
+void refuse_links(const std::filesystem::path& folder);
 
 /// Calls `visit` with the partial path of each output that is neither committed nor removed, nor
 /// named in an exception; only with the first ones if there are more than some dozens. Safe in a

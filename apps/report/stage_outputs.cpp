@@ -22,6 +22,7 @@ StageOutputs::StageOutputs(std::filesystem::path folder, FrameShape shape, bool 
     std::filesystem::create_directories(folder_, error);
     if (error) throw InputError(folder_.string(), "cannot be made: " + error.message());
     sync_to_disk(folder_ / "..");
+    refuse_links(folder_);
     chart_.emplace(folder_ / "convergence.png", force_);
 }
 

@@ -67,6 +67,10 @@ class WindowFolder:
 
     def claim(self) -> None:
         self.folder.mkdir(exist_ok=True)
+        for path in self.folder.iterdir():
+            if path.is_symlink():
+                raise ValueError(f"{path}: is a link, which is neither followed nor replaced in a folder that this program "
+                                 "fills; remove it")
         file = self.folder / IDENTITY
         if not file.exists():
             for path in self.folder.iterdir():

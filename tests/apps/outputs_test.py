@@ -141,6 +141,38 @@ class OutputsTest(ProgramTest):
             self.assertIn("No space left", done.communicate()[1])
         self.assertEqual(done.returncode, DEVICE, PROGRAM)
 
+    def test_a_link_in_a_folder_that_the_program_fills_is_neither_followed_nor_replaced(self):
+        self.write_stream(slots=64)
+        (self.folder / "space.toml").write_text('[axes]\nsensor = ["paper"]\nschedule = ["tiled"]\n'
+                                                'method = ["naive"]\n[clip]\nframes = 12\n')
+        (self.folder / "home").mkdir()
+        explore = ("explore", "space.toml", "-o", "results")
+        runs = {"windows": ("decode", "clip.stipple", "-o", "windows", "--part", "1/1", "--method", "naive"),
+                "pieces": ("emulate", "light.npy", "-o", "pieces", "--part", "1/1"),
+                "results": explore, "results/trials": explore,
+                "stages": ("decode", "clip.stipple", "-o", "out.npy", "--stages", "stages", "--method", "portz2013",
+                           "--force"),
+                "demo": ("demo", "-o", "demo", "--size", "48x40", "--frames", "20", "--force")}
+        for folder, run in runs.items():
+            self.run_program(*run)
+            for path in sorted((self.folder / folder).iterdir()):
+                kept = self.folder / "home" / path.name
+                path.rename(kept)
+                path.symlink_to(kept)
+                home = {file: file.read_bytes() for file in (self.folder / "home").rglob("*") if file.is_file()}
+                for more in (), ("--force",):
+                    if more and "--force" in run:
+                        continue
+                    with self.subTest(path.name, more=more):
+                        self.fails(INPUT, [f"{path.name}: is a link", "remove it"], *run, *more)
+                self.assertTrue(path.is_symlink())
+                self.assertEqual({file: file.read_bytes() for file in home}, home)
+                path.unlink()
+                kept.rename(path)
+        (self.folder / "windows" / "window_000000.npy").rename(self.folder / "home" / "window.npy")
+        (self.folder / "windows" / "window_000000.npy").symlink_to("../home/window.npy")
+        self.fails(INPUT, ["window_000000.npy: is a link"], "join", "windows", "-o", "joined.npy")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -55,6 +55,27 @@ TEST(PendingOutputTest, ForceReplacesAFileOnlyWhenCommitted) {
     EXPECT_EQ(read_text(folder / "clip.npy"), "new");
 }
 
+TEST(PendingOutputTest, AManagedFileReplacesFilesButNoLink) {
+    const TemporaryFolder folder;
+    write_text(folder / "window.npy", "old");
+    PendingOutput window(folder / "window.npy", true, OutputKind::kManagedFile);
+    write_text(window.partial(), "new");
+    window.commit();
+    EXPECT_EQ(read_text(folder / "window.npy"), "new");
+    refuse_links(folder.path());  // none
+    for (const char* target : {"window.npy", "missing"}) {
+        fs::create_symlink(target, folder / "link.npy");
+        const auto expect_refused = [](const std::string& message) {
+            expect_parts(message, {"link.npy: is a link", "remove it"});
+        };
+        expect_refused(message_of<InputError>(
+            [&] { PendingOutput(folder / "link.npy", true, OutputKind::kManagedFile); }));
+        expect_refused(message_of<InputError>([&] { refuse_links(folder.path()); }));
+        fs::remove(folder / "link.npy");
+    }
+    EXPECT_EQ(read_text(folder / "window.npy"), "new");
+}
+
 TEST(PendingOutputTest, ForceReplacesAFolderOfOurFrames) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "out");

@@ -137,6 +137,16 @@ class DaskTest(ProgramTest):
         window.unlink()
         self.assertEqual(decode_to(), 1)
 
+    def test_a_link_is_neither_followed_nor_replaced(self):
+        clip = self.write_clip(10)
+        decode_to = functools.partial(stipple.dask.decode_to, self.folder / "windows", clip, PickledTasks(), "naive")
+        decode_to()
+        window = self.folder / "windows" / "window_000000.npy"
+        window.rename(self.folder / "home.npy")
+        window.symlink_to("../home.npy")
+        with self.assertRaisesRegex(ValueError, "window_000000.npy: is a link"):
+            decode_to()
+
     def test_a_folder_that_holds_something_else_is_refused(self):
         clip = self.write_clip(10)
         (self.folder / "windows").mkdir()
