@@ -138,6 +138,7 @@ void PartRun::decode_windows(const NumberRange& windows, Progress& progress) {
     std::optional<WindowWriter> window;
     const auto take = [&](std::int64_t slot, std::span<const float> frame) {
         if (!window) {
+            folder_.claim();  // only now: the method has accepted the stream
             remove_leftovers(folder_.window(number));
             window.emplace(folder_, number);
         }

@@ -45,26 +45,41 @@ std::string differing(const std::string& key, const nlohmann::ordered_json& ther
 
 }  // namespace
 
-void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
+bool has_identity(const fs::path& folder, const SharedFolderKind& kind,
                   const nlohmann::ordered_json& identity) {
     std::error_code error;
-    if (fs::create_directory(folder, error)) sync_to_disk(folder / "..");
-    if (error) throw InputError(folder.string(), "cannot be made: " + error.message());
+    if (!fs::exists(folder, error)) {
+        const fs::path parent = folder_of(folder.has_filename() ? folder : folder.parent_path());
+        if (fs::is_directory(parent, error)) return false;
+        throw InputError(folder.string(), "cannot be made: there is no folder to make it in");
+    }
+    if (!fs::is_directory(folder, error)) throw InputError(folder.string(), "is not a folder");
     refuse_links(folder);
-    const fs::path file = folder / kind.identity;
-    if (!fs::exists(file)) {
+    if (!fs::exists(folder / kind.identity)) {
         for (const fs::directory_entry& entry : fs::directory_iterator(folder))
             if (!partial_output(entry.path()) && entry.path().filename() != kind.identity)
                 throw InputError(folder.string(),
                                  fmt::format("holds {}, and is no folder of {}; give another name",
                                              entry.path().filename().string(), kind.parts));
-        publish(file, identity.dump(2) + "\n");
+        return false;
     }
     const std::string other = first_difference(read_identity(folder, kind, identity), identity);
     if (!other.empty())
         throw InputError(folder.string(),
                          fmt::format("holds another {}: {}; give another name, or remove it",
                                      kind.result, other));
+    return true;
+}
+
+void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
+                  const nlohmann::ordered_json& identity) {
+    if (has_identity(folder, kind, identity)) return;
+    std::error_code error;
+    if (fs::create_directory(folder, error)) sync_to_disk(folder / "..");
+    if (error) throw InputError(folder.string(), "cannot be made: " + error.message());
+    publish(folder / kind.identity, identity.dump(2) + "\n");
+    static_cast<void>(
+        has_identity(folder, kind, identity));  // that of another run, if it was first
 }
 
 nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderKind& kind,

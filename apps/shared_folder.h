@@ -25,9 +25,14 @@ inline constexpr SharedFolderKind kDecodingFolder{"decoding.json", "a", "decodin
 inline constexpr SharedFolderKind kEmulationFolder{"emulation.json", "an", "emulation", "emulate",
                                                    "pieces"};
 
+/// Whether the folder has the identity. Writes nothing, so that a run that is refused leaves
+/// nothing. \throws InputError if the folder holds parts of another result, or anything else, or
+/// cannot be made.
+[[nodiscard]] bool has_identity(const std::filesystem::path& folder, const SharedFolderKind& kind,
+                                const nlohmann::ordered_json& identity);
+
 /// Makes the folder and writes the identity, unless they are there. Several processes may do so at
-/// the same time. \throws InputError if the folder holds parts of another result, or anything else;
-/// DeviceError if it cannot be written.
+/// the same time. \throws InputError as has_identity; DeviceError if it cannot be written.
 void claim_folder(const std::filesystem::path& folder, const SharedFolderKind& kind,
                   const nlohmann::ordered_json& identity);
 

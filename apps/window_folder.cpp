@@ -59,8 +59,8 @@ WindowIdentity identity_of(const nlohmann::ordered_json& json, const fs::path& f
 
 WindowFolder::WindowFolder(fs::path folder, const WindowIdentity& identity)
     : folder_(std::move(folder)), identity_(identity) {
-    claim_folder(folder_, kDecodingFolder, json_of(identity));
-    crc_ = identity_crc(folder_, kDecodingFolder);
+    if (has_identity(folder_, kDecodingFolder, json_of(identity)))
+        crc_ = identity_crc(folder_, kDecodingFolder);
 }
 
 WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -78,6 +78,12 @@ WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
     crc_ = identity_crc(folder_, kDecodingFolder);
 }
 
+void WindowFolder::claim() {
+    if (crc_) return;
+    claim_folder(folder_, kDecodingFolder, json_of(identity_));
+    crc_ = identity_crc(folder_, kDecodingFolder);
+}
+
 std::int64_t WindowFolder::count() const {
     return block_count(identity_.slots);
 }
@@ -87,7 +93,7 @@ fs::path WindowFolder::window(std::int64_t number) const {
 }
 
 std::string WindowFolder::mark(std::int64_t number) const {
-    return fmt::format("window {} of {:08x}", number, crc_);
+    return fmt::format("window {} of {:08x}", number, crc_.value());
 }
 
 std::int64_t WindowFolder::begin_slot(std::int64_t number) const {
@@ -105,7 +111,7 @@ NumberedParts WindowFolder::windows() const {
 
 bool WindowFolder::holds(std::int64_t number) const {
     const fs::path file = window(number);
-    if (!fs::exists(file)) return false;
+    if (!crc_ || !fs::exists(file)) return false;
     try {
         const NpyReader reader(file);
     } catch (const InputError&) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "apps/shared_folder.h"
@@ -29,19 +30,21 @@ struct WindowIdentity {
 /// decoding is taken for one of this.
 class WindowFolder {
   public:
-    /// Makes the folder if it is missing. Several processes may do so at the same time.
-    /// \throws InputError if it holds the windows of another decoding, or anything else;
-    /// DeviceError if it cannot be written.
+    /// Of a decoding that begins or goes on. \throws InputError if the folder holds the windows of
+    /// another decoding, or anything else.
     WindowFolder(std::filesystem::path folder, const WindowIdentity& identity);
     /// Opens the folder of a decoding. \throws InputError if it is none, or of another version.
     explicit WindowFolder(std::filesystem::path folder);
 
+    /// Makes the folder and decoding.json, unless they are there. Several processes may do so at
+    /// the same time. \throws as claim_folder.
+    void claim();
     [[nodiscard]] const WindowIdentity& identity() const { return identity_; }
     /// Number of windows.
     [[nodiscard]] std::int64_t count() const;
     /// The file of a window, 0..count() - 1.
     [[nodiscard]] std::filesystem::path window(std::int64_t number) const;
-    /// The comment in the header of a window.
+    /// The comment in the header of a window. Precondition: the folder has its decoding.json.
     [[nodiscard]] std::string mark(std::int64_t number) const;
     /// The slots of a window: [begin_slot, end_slot).
     [[nodiscard]] std::int64_t begin_slot(std::int64_t number) const;
@@ -55,7 +58,7 @@ class WindowFolder {
 
     std::filesystem::path folder_;
     WindowIdentity identity_;
-    std::uint32_t crc_ = 0;  ///< of decoding.json
+    std::optional<std::uint32_t> crc_;  ///< of decoding.json, once that is there
 };
 
 }  // namespace stipple

@@ -5,6 +5,7 @@ import importlib
 import json
 import os
 import secrets
+import shutil
 from pathlib import Path
 from typing import Any, Mapping, Protocol, Tuple
 
@@ -22,8 +23,11 @@ Identity = Mapping[str, Any]
 class BlockOutput(Protocol):
     """What is sent to the workers: a name, no open files."""
 
+    def claimed(self) -> bool:
+        """Whether the output is there. Raises ValueError if it holds something else, OSError if it cannot be made."""
+
     def claim(self) -> None:
-        """Makes the output unless it is there. Raises ValueError if it holds something else."""
+        """Makes the output unless it is there: before the first block is written, so a refused call leaves nothing."""
 
     def holds(self, number: int) -> bool:
         """Whether a block is there, with all of its frames. Raises ValueError for one of another decoding."""
@@ -58,6 +62,11 @@ def _require_same(name: object, there: Any, here: Identity) -> None:
                              f"{json.dumps(value)} here; give another name, or remove it")
 
 
+def _require_folder(folder: Path) -> None:
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: there is no such folder; create it first")
+
+
 class WindowFolder:
     """The folder that "stipple decode --part" fills; "stipple join" makes a video of it."""
 
@@ -65,8 +74,10 @@ class WindowFolder:
         self.folder = Path(folder)
         self.identity = dict(identity)
 
-    def claim(self) -> None:
-        self.folder.mkdir(exist_ok=True)
+    def claimed(self) -> bool:
+        _require_folder(self.folder.parent)
+        if not self.folder.exists():
+            return False
         for path in self.folder.iterdir():
             if path.is_symlink():
                 raise ValueError(f"{path}: is a link, which is neither followed nor replaced in a folder that this program "
@@ -77,13 +88,20 @@ class WindowFolder:
                 if not path.name.startswith(".") and path.name != IDENTITY:
                     raise ValueError(f"{self.folder}: holds {path.name}, and is no folder of windows; "
                                      "give another name")
-            text = json.dumps(self.identity, indent=2) + "\n"
-            self._put(file, lambda stream: stream.write(text.encode()))
+            return False
         try:
             there = json.loads(file.read_text(encoding="utf-8"))
         except ValueError:
             there = None
         _require_same(self.folder, there, self.identity)
+        return True
+
+    def claim(self) -> None:
+        if not self.claimed():
+            self.folder.mkdir(exist_ok=True)
+            text = json.dumps(self.identity, indent=2) + "\n"
+            self._put(self.folder / IDENTITY, lambda stream: stream.write(text.encode()))
+            self.claimed()  # by another decoding, if that was first
 
     def window(self, number: int) -> Path:
         return self.folder / f"window_{number:06d}.npy"
@@ -95,11 +113,12 @@ class WindowFolder:
         return _stipple.window_header(number, (end - begin, rows, cols, planes), (self.folder / IDENTITY).read_bytes())
 
     def holds(self, number: int) -> bool:
-        file, header = self.window(number), self._header(number)
+        file = self.window(number)
         try:
             np.load(file, mmap_mode="r")
         except (FileNotFoundError, ValueError, EOFError):
             return False  # absent, or cut off by a power failure
+        header = self._header(number)
         with open(file, "rb") as stream:
             if stream.read(len(header)) != header:
                 raise ValueError(f"{file}: is not this window of the decoding that {IDENTITY} describes: it was copied "
@@ -133,19 +152,36 @@ class ZarrArray:
         self.name = name
         self.identity = dict(identity)
 
-    def _open(self, mode: str) -> Any:
+    def _open(self, mode: str, name: str = "") -> Any:
         zarr: Any = importlib.import_module("zarr")
         slots = self.identity["slots"]
         chunk = _shape(self.identity, self.identity["window_slots"])
-        return zarr.open_array(self.name, mode=mode, shape=_shape(self.identity, slots), chunks=chunk,
+        return zarr.open_array(name or self.name, mode=mode, shape=_shape(self.identity, slots), chunks=chunk,
                                dtype="<f4", write_empty_chunks=True)
 
-    def claim(self) -> None:
+    def claimed(self) -> bool:
+        _require_folder(Path(self.name).parent)
         if not os.path.exists(self.name):
-            self._open("w-").attrs["decoding"] = self.identity
+            return False
         _require_same(self.name, self._open("r").attrs.asdict().get("decoding"), self.identity)
+        return True
+
+    def claim(self) -> None:
+        if self.claimed():
+            return
+        folder, name = os.path.split(self.name)
+        partial = os.path.join(folder, f".{name}.{secrets.token_hex(4)}")
+        self._open("w-", partial).attrs["decoding"] = self.identity
+        try:
+            os.rename(partial, self.name)
+        except OSError:
+            shutil.rmtree(partial)
+            if not self.claimed():  # else another worker was first
+                raise
 
     def holds(self, number: int) -> bool:
+        if not os.path.exists(self.name):
+            return False
         begin, end = slots_of_block(number, self.identity["slots"])
         window = self.identity["window_slots"]
         store, rest = self._open("r").store, ".0" * (len(_shape(self.identity, 0)) - 1)

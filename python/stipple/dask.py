@@ -59,6 +59,7 @@ class _Job(NamedTuple):
         if output.holds(number):
             return None, []
         frames, said = self.decode(number)
+        output.claim()
         output.write(number, frames)
         return None, said
 
@@ -141,7 +142,7 @@ def decode_to(
     more = {"options": options, "fill_gaps": fill_gaps, "calibration": calibration, "threads": threads}
     job = _job(client, stream, method, more)
     store = block_output(path.abspath(fsdecode(output)), _identity(job))
-    store.claim()
+    store.claimed()
     missing = [number for number in range(_stipple.decode_blocks(job.slots)) if not store.holds(number)]
     tasks = [client.submit(_Job.store, job, number, store, pure=False) for number in missing]
     _gather(client, tasks)

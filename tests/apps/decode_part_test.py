@@ -152,6 +152,16 @@ class DecodePartTest(ProgramTest):
             path.rename(self.folder / "windows" / path.name)
         self.expect_bytes_of_one_run()
 
+    def test_a_refused_part_leaves_nothing(self):
+        self.write_stream(slots=100)
+        decode = ("decode", "clip.stipple", "-o", "windows", "--part", "1/1")
+        self.fails(INPUT, ["interpolated"], *decode, "--method", "interpolated")
+        self.fails(INPUT, ["no folder to make it in"], *decode[:3], "none/windows", "--part", "1/1", *NAIVE)
+        (self.folder / "letter").touch()
+        self.fails(INPUT, ["is not a folder"], *decode[:3], "letter", "--part", "1/1", *NAIVE)
+        self.succeed(*decode[:3], "windows/", "--part", "1/1", *NAIVE)
+        self.expect_bytes_of_one_run()
+
     def test_a_folder_that_holds_something_else_is_refused(self):
         self.write_stream()
         (self.folder / "windows").mkdir()

@@ -124,6 +124,15 @@ class DaskTest(ProgramTest):
         self.succeed("join", "windows", "-o", "joined.npy")
         np.testing.assert_array_equal(self.array("joined.npy"), stipple.decode(clip, "naive"))
 
+    def test_a_refused_call_leaves_nothing(self):
+        clip = self.write_clip(10)
+        for name in ("windows", "film.zarr"):
+            with self.assertRaisesRegex(ValueError, "interpolated"):
+                stipple.dask.decode_to(self.folder / name, clip, PickledTasks(), "interpolated")
+            with self.assertRaisesRegex(FileNotFoundError, "none: there is no such folder"):
+                stipple.dask.decode_to(self.folder / "none" / name, clip, PickledTasks())
+        self.assertEqual(self.names(), ["clip.stipple"])
+
     def test_a_window_from_elsewhere_is_refused(self):
         clip = self.write_clip(150)
         decode_to = functools.partial(stipple.dask.decode_to, self.folder / "windows", clip, PickledTasks(), "naive")
