@@ -190,6 +190,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate scene -o tocci --rig tocci2011\n"
         "  stipple emulate film.npy -o pieces --part 3/16");
     set_action(command, action, options, emulate_all_or_part, [command, options] {
+        options->reading.at_their_times = options->resampling.has_value();
         check_rig(command, *options);
         if (options->part.count > 0) check_part(command, *options);
     });

@@ -241,43 +241,44 @@ std::vector<Number> numbers_of_frames(FileBytes& file, const Cine& cine, std::ui
     return {};
 }
 
+double seconds(std::uint64_t ticks) {
+    return static_cast<double>(static_cast<std::int64_t>(ticks)) * kSecondsATick;
+}
+
 /// Of a file saved with decimation, SETUP has the rate of the recording: the time stamps decide.
-void read_time_stamps(const std::vector<std::uint64_t>& stamps, SourceTraits& traits) {
+/// \returns the times of frames in frame periods if they are unequal.
+std::vector<double> read_time_stamps(const std::vector<std::uint64_t>& stamps,
+                                     SourceTraits& traits) {
     constexpr double kStampRoundingS = 1e-6;
     constexpr double kSameRate = 0.01;
-    if (stamps.size() < 2) return;
+    if (stamps.size() < 2) return {};
     std::vector<double> periods_s;
     for (std::size_t i = 1; i < stamps.size(); ++i)
-        periods_s.push_back(
-            static_cast<double>(static_cast<std::int64_t>(stamps[i] - stamps[i - 1])) *
-            kSecondsATick);
+        periods_s.push_back(seconds(stamps[i] - stamps[i - 1]));
     const auto [min_s, max_s] = std::ranges::minmax(periods_s);
     const auto middle = periods_s.begin() + std::ssize(periods_s) / 2;
     std::ranges::nth_element(periods_s, middle);
     const bool equal = max_s - min_s <= std::max(2 * kStampRoundingS, min_s / 2);
     const auto steps = static_cast<double>(periods_s.size());
-    const double period_s =
-        equal ? static_cast<double>(static_cast<std::int64_t>(stamps.back() - stamps.front())) *
-                    kSecondsATick / steps
-              : *middle;
-    if (!equal)
-        traits.warnings.push_back(fmt::format(
-            "its frames are {:.4g} to {:.4g} s apart by their time stamps, but each becomes one "
-            "slot; some may be missing",
-            min_s, max_s));
-    if (!(period_s > 0)) {
+    const double period_s = equal ? seconds(stamps.back() - stamps.front()) / steps : *middle;
+    if (!(min_s > 0)) {
         traits.warnings.emplace_back("its time stamps do not increase; they are left out");
-        return;
+        return {};
     }
+    if (!equal) traits.unequal_times = fmt::format("{:.4g} to {:.4g} s apart", min_s, max_s);
     const double rounding = kSameRate + kStampRoundingS / (equal ? steps * period_s : period_s);
     const double stamped_hz = 1 / period_s;
-    if (traits.frames_hz && std::abs(stamped_hz / *traits.frames_hz - 1) <= rounding) return;
-    if (traits.frames_hz)
+    const bool same = traits.frames_hz && std::abs(stamped_hz / *traits.frames_hz - 1) <= rounding;
+    if (traits.frames_hz && !same)
         traits.warnings.push_back(fmt::format(
             "declares {:.10g} frames per second, but its time stamps are {:.4g} s apart; "
             "{:.5g} per second are taken; --frames-hz sets another rate",
             *traits.frames_hz, period_s, stamped_hz));
-    traits.frames_hz = stamped_hz;
+    if (!same) traits.frames_hz = stamped_hz;
+    std::vector<double> times;
+    for (const std::uint64_t stamp : stamps)
+        if (!equal) times.push_back(seconds(stamp - stamps[0]) * *traits.frames_hz);
+    return times;
 }
 
 void read_exposures(const std::vector<std::uint32_t>& exposures, SourceTraits& traits) {
@@ -322,7 +323,8 @@ RawVideo open_cine(const std::filesystem::path& path) {
                                 video.offsets.size() * sizeof(std::uint64_t)});
     SourceTraits& traits = video.traits;
     warn_of_setup(cine, traits);
-    read_time_stamps(numbers_of_frames<std::uint64_t>(file, cine, kTimeStamps, traits), traits);
+    video.times =
+        read_time_stamps(numbers_of_frames<std::uint64_t>(file, cine, kTimeStamps, traits), traits);
     read_exposures(numbers_of_frames<std::uint32_t>(file, cine, kExposures, traits), traits);
     return video;
 }

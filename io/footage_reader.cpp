@@ -246,6 +246,18 @@ std::optional<double> FootageReader::exposure_us() const {
     return impl_->traits.exposure_us;
 }
 
+bool FootageReader::has_times() const {
+    const auto* const raw = std::get_if<RawVideoReader>(&impl_->source);
+    const bool is_video = std::holds_alternative<VideoReader>(impl_->source);
+    return !impl_->options.frames_hz && (is_video || (raw != nullptr && raw->has_times()));
+}
+
+double FootageReader::frame_time() const {
+    const auto* const video = std::get_if<VideoReader>(&impl_->source);
+    return video != nullptr ? video->frame_time()
+                            : std::get<RawVideoReader>(impl_->source).frame_time();
+}
+
 ColourFilter FootageReader::filter() const {
     return impl_->traits.filter;
 }
@@ -282,8 +294,10 @@ bool FootageReader::Impl::read_whole(std::span<float> frame) {
     };
     if (!std::visit(read, source)) {
         if (const auto* video = std::get_if<VideoReader>(&source);
-            video != nullptr && !std::exchange(at_end, true))
+            video != nullptr && !std::exchange(at_end, true)) {
             for (std::string& text : video->warnings()) warn(std::move(text));
+            warn(unequal_times_warning(video->unequal_times(), options, name));
+        }
         return false;
     }
     ++position;

@@ -29,6 +29,7 @@ struct FootageOptions {
     double scale = 1;                      ///< factor on the light, before it is clipped; above 0
     std::optional<double> frames_hz = {};  ///< frame rate, instead of that of the source
     bool negative = false;                 ///< take negative light, as unbiased estimates have it
+    bool at_their_times = false;           ///< the caller heeds times of frames: no warning of them
     FootagePart part = {};                 ///< of the frames, once they are light
 };
 
@@ -54,6 +55,12 @@ class FootageReader {
 
     /// Frame rate at which a video plays or a camera took the frames, if the source declares it.
     [[nodiscard]] std::optional<double> frames_hz() const;
+    /// Whether frames have times of their own, which may be unequally far apart: not with
+    /// FootageOptions::frames_hz.
+    [[nodiscard]] bool has_times() const;
+    /// When the frame read last begins, in frame periods from the first frame of the source on.
+    /// Precondition: has_times.
+    [[nodiscard]] double frame_time() const;
     /// Exposure time of a frame in microseconds, if the source declares it.
     [[nodiscard]] std::optional<double> exposure_us() const;
     /// Colour filter array of the frames; kNone: they are no mosaic.

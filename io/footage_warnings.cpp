@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <utility>
 
 #include "core/error.h"
 
@@ -54,10 +55,24 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
             fmt::format("{}: declares the primaries {}, which are not converted to those of Rec. "
                         "709; convert it first: ffmpeg -i VIDEO -vf colorspace=bt709 OUT.mkv",
                         name, traits.primaries));
+    if (std::string text = unequal_times_warning(traits.unequal_times, options, name);
+        !text.empty())
+        warnings.push_back(std::move(text));
     for (const std::string& text : traits.warnings)
         warnings.push_back(fmt::format("{}: {}", name, text));
     if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");
     return warnings;
+}
+
+std::string unequal_times_warning(const std::string& apart, const FootageOptions& options,
+                                  const std::string& name) {
+    if (apart.empty() || (options.at_their_times && !options.frames_hz)) return {};
+    return fmt::format(
+        "{}: its frames are {}, but {}", name, apart,
+        options.at_their_times
+            ? "--frames-hz makes them equally long"
+            : "each becomes one slot; \"emulate --resample blend\" puts them at their "
+              "times");
 }
 
 std::string brightness_warning(std::span<const float> light, const std::string& where) {

@@ -20,6 +20,11 @@ namespace stipple {
                                                         const FootageOptions& options,
                                                         const std::string& name);
 
+/// A warning if frames are `apart` unequally and `options` do not heed it; else empty.
+[[nodiscard]] std::string unequal_times_warning(const std::string& apart,
+                                                const FootageOptions& options,
+                                                const std::string& name);
+
 /// A warning if the mean of `light` is far above 1.0, as with digital numbers stored in floating
 /// point; else empty.
 [[nodiscard]] std::string brightness_warning(std::span<const float> light,

@@ -16,9 +16,10 @@ namespace {
 /// Times this close, in frames, are the same: rates such as 29.97 frames/s are rounded.
 constexpr double kSameTime = 1e-6;
 
-/// Of the collected light where frames of the mean light a and b meet.
-float slope(float a, float b) {
-    return std::min((a + b) / 2, 3 * std::min(a, b));
+/// Of the collected light where frames of the mean light a and b meet. `of_a` is the weight of a:
+/// the share that b has in the time of both.
+float slope(float a, float b, float of_a) {
+    return std::min(of_a * a + (1 - of_a) * b, 3 * std::min(a, b));
 }
 
 /// Hermite's basis: the light collected in a frame until its phase s is
@@ -28,11 +29,11 @@ struct CollectedWeights {
     float left;
     float right;
 
-    /// From the phase `begin` to the phase `end`.
-    CollectedWeights(double begin, double end)
-        : middle(static_cast<float>(rise(end) - rise(begin))),
-          left(static_cast<float>(out(end) - out(begin))),
-          right(static_cast<float>(in(end)-in(begin))) {}
+    /// From the phase `begin` to the phase `end` of a frame of this length.
+    CollectedWeights(double begin, double end, double length)
+        : middle(static_cast<float>(length * (rise(end) - rise(begin)))),
+          left(static_cast<float>(length * (out(end) - out(begin)))),
+          right(static_cast<float>(length * (in(end)-in(begin)))) {}
 
     static double rise(double s) { return s * s * (3 - 2 * s); }
     static double out(double s) { return s * (1 - s) * (1 - s); }
@@ -79,24 +80,39 @@ bool FrameResampler::have(std::int64_t index) {
     while (!ended_ && first_ + static_cast<std::int64_t>(frames_.size()) <= index) {
         const auto next = source_();
         ended_ = next.empty();
-        if (!ended_) frames_.emplace_back(next.begin(), next.end());
+        if (ended_) break;
+        const std::int64_t number = first_ + static_cast<std::int64_t>(frames_.size());
+        const double time = options_.time ? options_.time() : static_cast<double>(number);
+        if (number == 0) origin_ = time;
+        frames_.push_back({time - origin_, {next.begin(), next.end()}});
     }
     return index < first_ + static_cast<std::int64_t>(frames_.size());
 }
 
-void FrameResampler::drop_before(std::int64_t index) {
-    for (; first_ < index && !frames_.empty(); ++first_) frames_.pop_front();
-}
-
 const FrameResampler::Frame& FrameResampler::frame(std::int64_t index) const {
-    return frames_[static_cast<std::size_t>(index - first_)];
+    return frames_[static_cast<std::size_t>(index - first_)].light;
 }
 
-bool FrameResampler::reach(std::int64_t index) {
-    for (std::int64_t i = first_; i <= index; ++i) {
-        if (!have(i)) return false;
-        drop_before(i - 1);
-    }
+double FrameResampler::begin_of(std::int64_t index) const {
+    return frames_[static_cast<std::size_t>(index - first_)].begin;
+}
+
+double FrameResampler::end_of(std::int64_t index) {
+    return options_.time && have(index + 1) ? begin_of(index + 1) : begin_of(index) + 1;
+}
+
+bool FrameResampler::advance() {
+    // Unequal frames may be so short that several lie within the half frame by which moments lag.
+    const std::int64_t kept = options_.method == Resampling::kFlow && options_.time ? 8 : 1;
+    for (++at_; first_ < at_ - kept; ++first_) frames_.pop_front();
+    return have(at_);
+}
+
+/// Goes to the frame of this time; false at the end.
+bool FrameResampler::reach(double time) {
+    if (!have(at_)) return false;
+    while (end_of(at_) <= time + kSameTime)
+        if (!advance()) return false;
     return true;
 }
 
@@ -104,55 +120,65 @@ std::span<const float> FrameResampler::next() {
     const double length = options_.frames_per_slot;
     const double begin = static_cast<double>(slot_) * length;
     const double end = static_cast<double>(slot_ + 1) * length;
+    const double within_end = end - 2 * kSameTime;
     ++slot_;
-    const auto first = static_cast<std::int64_t>(std::floor(begin + kSameTime));
-    const auto last = static_cast<std::int64_t>(std::ceil(end - kSameTime)) - 1;
+    if (!reach(begin)) return {};
     if (options_.method == Resampling::kHold) {
-        if (!reach(first)) return {};
-        light_ = frame(first);
+        light_ = frame(at_);
     } else if (options_.method == Resampling::kFlow && length < 1 - kSameTime) {
-        if (!reach(last)) return {};
+        if (!reach(within_end)) return {};
         interpolate((begin + end) / 2 - 0.5);
     } else if (!blend(begin, end)) {
         return {};
     }
-    return reach(last) ? std::span<const float>(light_) : std::span<const float>();
+    return reach(within_end) ? std::span<const float>(light_) : std::span<const float>();
 }
 
 bool FrameResampler::blend(double begin, double end) {
     std::ranges::fill(light_, 0.0F);
-    const auto first = static_cast<std::int64_t>(std::floor(begin + kSameTime));
-    for (auto index = first; static_cast<double>(index) < end - kSameTime; ++index) {
-        if (!reach(index)) return false;
-        add_part(index, begin, end);
-    }
+    for (add_part(begin, end); end_of(at_) < end - kSameTime; add_part(begin, end))
+        if (!advance()) return false;
     const auto scale = static_cast<float>(1 / options_.frames_per_slot);
     if (std::abs(options_.frames_per_slot - 1) > kSameTime)
         for (float& light : light_) light *= scale;
     return true;
 }
 
-void FrameResampler::add_part(std::int64_t index, double begin, double end) {
-    const auto phase = [index](double time) {
-        const double exact = time - static_cast<double>(index);
+/// Adds the light of the frame at hand in a slot.
+void FrameResampler::add_part(double begin, double end) {
+    const double length = end_of(at_) - begin_of(at_);
+    const auto phase = [&](double time) {
+        const double exact = (time - begin_of(at_)) / length;
         if (exact < kSameTime) return 0.0;
         return exact > 1 - kSameTime ? 1.0 : exact;
     };
-    const CollectedWeights weights(phase(begin), phase(end));
-    const bool has_next = have(index + 1);
-    const Frame& own = frame(index);
-    const Frame& before = index > first_ ? frame(index - 1) : own;
-    const Frame& after = has_next ? frame(index + 1) : own;
+    const CollectedWeights weights(phase(begin), phase(end), length);
+    const bool has_before = at_ > first_;
+    const bool has_next = have(at_ + 1);
+    const auto share_in = [&](double neighbour) {
+        return static_cast<float>(neighbour / (length + neighbour));
+    };
+    const float of_before = has_before ? 1 - share_in(begin_of(at_) - begin_of(at_ - 1)) : 0.5F;
+    const float of_own = has_next ? share_in(end_of(at_ + 1) - begin_of(at_ + 1)) : 0.5F;
+    const Frame& own = frame(at_);
+    const Frame& before = has_before ? frame(at_ - 1) : own;
+    const Frame& after = has_next ? frame(at_ + 1) : own;
     for (std::size_t site = 0; site < own.size(); ++site)
-        light_[site] += weights.middle * own[site] + weights.left * slope(before[site], own[site]) +
-                        weights.right * slope(own[site], after[site]);
+        light_[site] += weights.middle * own[site] +
+                        weights.left * slope(before[site], own[site], of_before) +
+                        weights.right * slope(own[site], after[site], of_own);
 }
 
 void FrameResampler::interpolate(double time) {
-    const auto index = static_cast<std::int64_t>(std::floor(std::max(time, 0.0)));
-    const double phase = std::max(time, 0.0) - static_cast<double>(index);
-    const bool has_next = have(index + 1);
-    if (!has_next || phase < kSameTime) {
+    std::int64_t index = at_;
+    while (index > first_ && begin_of(index) > time) --index;
+    if (!have(index + 1)) {
+        light_ = frame(index);
+        return;
+    }
+    const double length = begin_of(index + 1) - begin_of(index);
+    const double phase = std::max(time - begin_of(index), 0.0) / length;
+    if (phase < kSameTime) {
         light_ = frame(index);
         return;
     }

@@ -26,6 +26,7 @@ struct SourceTraits {
     std::optional<double> white_dn = {};
     std::string curve = {};      ///< from light to numbers, declared; undone unless `gamma_coded`
     std::string primaries = {};  ///< of a video, if far from those of Rec. 709
+    std::string unequal_times = {};  ///< how far apart frames are, if unequally: "1 to 2 s apart"
     std::vector<std::string> warnings = {};  ///< what else it declares that users should know
 };
 

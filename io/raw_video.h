@@ -23,6 +23,7 @@ struct RawVideo {
     std::uint64_t first_offset = 0;           ///< bytes before the first of frames in equal steps
     std::uint64_t stride = 0;                 ///< bytes of a step, at least a frame; 0: a frame
     std::vector<std::uint64_t> offsets = {};  ///< of each frame, if they have no equal steps
+    std::vector<double> times = {};  ///< of each frame, in frame periods; empty: equal ones
     bool annotated = false;  ///< before each frame is a block that begins with its length (cine)
     bool bottom_up = false;  ///< the last row comes first
     std::vector<float> light_of_dn;
@@ -43,6 +44,12 @@ class RawVideoReader {
     [[nodiscard]] FrameShape shape() const { return video_.shape; }
     [[nodiscard]] int slots() const { return static_cast<int>(video_.slots); }
     [[nodiscard]] const SourceTraits& traits() const { return video_.traits; }
+    /// Of the frame read last, in frame periods.
+    [[nodiscard]] double frame_time() const {
+        return video_.times.empty() ? static_cast<double>(next_slot_ - 1)
+                                    : video_.times[next_slot_ - 1];
+    }
+    [[nodiscard]] bool has_times() const { return !video_.times.empty(); }
     /// The file and the frame read last, for messages.
     [[nodiscard]] std::string where() const;
 

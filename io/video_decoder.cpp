@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "io/frame_times.h"
 #include "io/late_ffmpeg.h"
 
 extern "C" {
@@ -134,17 +135,14 @@ struct VideoDecoder::Impl {
     double begin_s = std::numeric_limits<double>::max();
     double end_s = std::numeric_limits<double>::lowest();
     std::string shortfall;
-    std::int64_t last_tick = AV_NOPTS_VALUE;  ///< time of a frame, in units of the stream
-    std::int64_t min_ticks = std::numeric_limits<std::int64_t>::max();  ///< between frames
-    std::int64_t max_ticks = 0;
+    FrameTimes times;
 
     void open(const std::filesystem::path& path);
     void send_packet();
     void check_end();
     void count_packet();
     void check_fields() const;
-    void note_time(std::int64_t tick);
-    [[nodiscard]] std::string unequal_times() const;
+    [[nodiscard]] std::optional<double> frames_hz() const;
     [[nodiscard]] double announced_s() const;
     [[noreturn]] void fail(const std::string& problem) const {
         throw InputError(fmt::format("{}: frame {}", name, errors.next_frame),
@@ -166,6 +164,7 @@ void VideoDecoder::Impl::open(const std::filesystem::path& path) {
                                    ? "is coded in a way that FFmpeg here cannot decode"
                                    : "holds no video");
     stream = file->streams[index];
+    times = FrameTimes(av_q2d(stream->time_base), frames_hz());
     const AVCodecParameters& announced = *stream->codecpar;
     if (announced.width > 0 && announced.height > 0)
         check_memory(kBytesAPixel * static_cast<std::uint64_t>(announced.width) *
@@ -255,27 +254,6 @@ void VideoDecoder::Impl::check_fields() const {
                          "of each first: ffmpeg -i VIDEO -vf bwdif OUT.mkv");
 }
 
-void VideoDecoder::Impl::note_time(std::int64_t tick) {
-    if (tick == AV_NOPTS_VALUE) return;
-    if (last_tick != AV_NOPTS_VALUE) {
-        min_ticks = std::min(min_ticks, tick - last_tick);
-        max_ticks = std::max(max_ticks, tick - last_tick);
-    }
-    last_tick = tick;
-}
-
-/// Empty where the frames are equally long but for the rounding of their times.
-std::string VideoDecoder::Impl::unequal_times() const {
-    constexpr std::int64_t kRounding = 2;
-    const std::int64_t allowed = std::max(kRounding, min_ticks / 2);
-    if (max_ticks == 0 || max_ticks - min_ticks <= allowed) return {};
-    const double tick_s = av_q2d(stream->time_base);
-    return fmt::format(
-        "{}: its frames are {:.4g} to {:.4g} s apart, but each becomes one slot; some "
-        "may be missing",
-        name, static_cast<double>(min_ticks) * tick_s, static_cast<double>(max_ticks) * tick_s);
-}
-
 VideoDecoder::VideoDecoder(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
     impl_->open(file);
 }
@@ -299,16 +277,29 @@ const AVFrame* VideoDecoder::next() {
         impl_->fail("is damaged: parts of it are missing or made up");
     impl_->check_fields();
     ++impl_->errors.next_frame;
-    impl_->note_time(frame.best_effort_timestamp);
+    const std::int64_t tick = frame.best_effort_timestamp;
+    impl_->times.add(tick == AV_NOPTS_VALUE ? std::nullopt : std::optional(tick));
     complete_colours(frame, *impl_->stream->codecpar);
     return &frame;
 }
 
-std::optional<double> VideoDecoder::frames_hz() const {
+std::optional<double> VideoDecoder::Impl::frames_hz() const {
     constexpr double kMaxHz = 80'000;  // where a container has no rate: the tick of its time stamps
-    const AVRational rate = impl_->stream->avg_frame_rate;
+    const AVRational rate = stream->avg_frame_rate;
     if (rate.num <= 0 || rate.den <= 0 || av_q2d(rate) >= kMaxHz) return {};
     return av_q2d(rate);
+}
+
+std::optional<double> VideoDecoder::frames_hz() const {
+    return impl_->frames_hz();
+}
+
+double VideoDecoder::frame_time() const {
+    return impl_->times.time();
+}
+
+std::string VideoDecoder::unequal_times() const {
+    return impl_->times.unequal();
 }
 
 int VideoDecoder::quarter_turns() const {
@@ -339,8 +330,7 @@ std::vector<std::string> VideoDecoder::warnings() const {
         texts.push_back(fmt::format(
             "{}: declares pixels {:.4g} times as wide as high; they are taken for square ones",
             impl_->name, av_q2d(pixel)));
-    for (const std::string& text : {impl_->shortfall, impl_->unequal_times()})
-        if (!text.empty()) texts.push_back(text);
+    if (!impl_->shortfall.empty()) texts.push_back(impl_->shortfall);
     return texts;
 }
 

@@ -30,6 +30,10 @@ class VideoDecoder {
     [[nodiscard]] int quarter_turns() const;
     /// Playback rate in frames per second, if the file gives it.
     [[nodiscard]] std::optional<double> frames_hz() const;
+    /// Of the last frame, as FrameTimes::time.
+    [[nodiscard]] double frame_time() const;
+    /// As FrameTimes::unequal, of the frames so far.
+    [[nodiscard]] std::string unequal_times() const;
     /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;
 

@@ -61,6 +61,14 @@ std::optional<double> VideoReader::frames_hz() const {
     return impl_->decoder.frames_hz();
 }
 
+double VideoReader::frame_time() const {
+    return impl_->decoder.frame_time();
+}
+
+std::string VideoReader::unequal_times() const {
+    return impl_->decoder.unequal_times();
+}
+
 std::string VideoReader::where() const {
     return fmt::format("{}: frame {}", impl_->name, impl_->next_slot - 1);
 }

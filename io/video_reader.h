@@ -30,6 +30,10 @@ class VideoReader {
     /// Playback rate in frames per second, if the file gives it.
     [[nodiscard]] std::optional<double> frames_hz() const;
     [[nodiscard]] const SourceTraits& traits() const;
+    /// Of the frame read last, as FrameTimes::time.
+    [[nodiscard]] double frame_time() const;
+    /// As FrameTimes::unequal, of the frames so far.
+    [[nodiscard]] std::string unequal_times() const;
     /// Number of signs of damaged or missing frames so far.
     [[nodiscard]] std::vector<std::string> warnings() const;
     /// The file and the last frame read, for messages.

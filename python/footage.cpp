@@ -76,7 +76,9 @@ void set_raw(Reading& reading, const std::optional<std::string>& text) {
 }
 
 void set_resampling(Reading& reading, const std::optional<std::string>& method) {
-    if (method) reading.resampling = value_in(kResamplings, *method, "resample");
+    if (!method) return;
+    reading.resampling = value_in(kResamplings, *method, "resample");
+    reading.options.at_their_times = true;
 }
 
 /// The flow between frames; OpenCV computes one at a time.
@@ -147,7 +149,11 @@ ResampledFootage Footage::resampled(double slot_us) {
                           .filter = filter(),
                           .frames = slots(),
                           .frames_hz = files_ ? files_->frames_hz() : std::nullopt,
-                          .next = [this] { return next(); }},
+                          .next = [this] { return next(); },
+                          .skip = {},
+                          .time = files_ && files_->has_times()
+                                      ? [this] { return files_->frame_time(); }
+                                      : std::function<double()>()},
             name(),
             {.method = reading_.resampling,
              .frames_hz = reading_.options.frames_hz,

@@ -27,6 +27,8 @@ ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& 
     constexpr std::uint64_t kSiteBytes = 18;  // two frames here, and what works on them
     check_memory(kSiteBytes * shape().sites(), source.string(),
                  fmt::format("frames of {} x {}", shape().cols, shape().rows), input_bytes(source));
+    const auto* const footage = std::get_if<FootageReader>(&reader_);
+    has_times_ = footage != nullptr && footage->has_times();
     current_.resize(shape().sites());
     coming_.resize(shape().sites());
     pass_warnings_on();
@@ -85,6 +87,7 @@ std::span<const float> ReadAhead::next() {
     const bool has_frame = reading_.valid() && reading_.get();
     pass_warnings_on();
     if (!has_frame) return {};
+    if (has_times_) time_ = std::get<FootageReader>(reader_).frame_time();
     std::swap(current_, coming_);
     start_reading();
     return current_;

@@ -29,6 +29,10 @@ class ReadAhead {
     [[nodiscard]] std::optional<int> slots() const;
     /// As FootageReader::frames_hz; the rate of a recording is known at its end.
     [[nodiscard]] std::optional<double> frames_hz() const;
+    /// As FootageReader::has_times; a recording has none.
+    [[nodiscard]] bool has_times() const { return has_times_; }
+    /// As FootageReader::frame_time, of the frame that `next` gave last.
+    [[nodiscard]] double frame_time() const { return time_; }
     /// As FootageReader::exposure_us; unknown for a recording.
     [[nodiscard]] std::optional<double> exposure_us() const;
     /// As FootageReader::traits; empty of a recording.
@@ -57,6 +61,8 @@ class ReadAhead {
 
     std::function<void(const std::string&)> warn_;
     std::variant<FootageReader, RecordingFootage> reader_;
+    bool has_times_ = false;
+    double time_ = 0;
     std::vector<float> current_;
     std::vector<float> coming_;
     std::future<bool> reading_;  ///< last: waits for the reader before its memory goes

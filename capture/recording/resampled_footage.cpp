@@ -15,7 +15,9 @@ ResampledFootage::ResampledFootage(ReadAhead& footage, const std::string& name,
                         .frames = footage.slots(),
                         .frames_hz = footage.frames_hz(),
                         .next = [&footage] { return footage.next(); },
-                        .skip = [&footage](int frames) { footage.skip(frames); }},
+                        .skip = [&footage](int frames) { footage.skip(frames); },
+                        .time = footage.has_times() ? [&footage] { return footage.frame_time(); }
+                                                    : std::function<double()>()},
                        name, options) {}
 
 ResampledFootage::ResampledFootage(FootageSource source, const std::string& name,
@@ -41,12 +43,28 @@ ResampledFootage::ResampledFootage(FootageSource source, const std::string& name
                        ResamplingOptions{.method = *options.method,
                                          .frames_per_slot = frames_per_slot_,
                                          .flow = options.flow,
-                                         .min_flow_side = options.min_flow_side},
-                       source_.next);
+                                         .min_flow_side = options.min_flow_side,
+                                         .time = source_.time},
+                       [this, name] { return next_frame(name); });
+}
+
+/// \throws InputError if its time is not after that of the frame before, or far behind it.
+std::span<const float> ResampledFootage::next_frame(const std::string& name) {
+    constexpr double kMaxPeriods = 1 / kMinFramesPerSlot;
+    const auto frame = source_.next();
+    if (frame.empty() || !source_.time) return frame;
+    const double time = source_.time();
+    if (last_time_ && !(time > *last_time_ && time - *last_time_ <= kMaxPeriods))
+        throw InputError(name, fmt::format("has a frame {:.4g} frame periods after the one before "
+                                           "by its time stamps; --frames-hz leaves them out",
+                                           time - *last_time_));
+    last_time_ = time;
+    return frame;
 }
 
 std::optional<std::int64_t> ResampledFootage::slots() const {
     if (!source_.frames || !resampler_) return source_.frames;
+    if (source_.time) return {};
     return resampled_slots(*source_.frames, frames_per_slot_);
 }
 

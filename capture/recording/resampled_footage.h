@@ -29,6 +29,7 @@ struct FootageSource {
     std::optional<double> frames_hz = {};
     std::function<std::span<const float>()> next;  ///< as ReadAhead::next
     std::function<void(int)> skip = {};            ///< as ReadAhead::skip; none: reads them
+    std::function<double()> time = {};  ///< as ReadAhead::frame_time; none: equally long frames
 };
 
 /// Frames as slots of a sensor.
@@ -40,7 +41,7 @@ class ResampledFootage {
     /// The same of footage or a recording, which must outlive it.
     ResampledFootage(ReadAhead& footage, const std::string& name, const SlotOptions& options);
 
-    /// Number of slots, if the footage declares its number of frames.
+    /// Number of slots, if the footage declares its number of frames and these are equally long.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
     /// The next slot, order (plane, row, col), valid until the next call, or an empty span at the
@@ -50,8 +51,11 @@ class ResampledFootage {
     void skip(int slots);
 
   private:
+    std::span<const float> next_frame(const std::string& name);
+
     FootageSource source_;
     double frames_per_slot_ = 1;
+    std::optional<double> last_time_;          ///< of a frame, in frame periods
     std::optional<FrameResampler> resampler_;  ///< none: each frame is a slot
 };
 

@@ -24,9 +24,9 @@ class VideoTest(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
-    def write_raw(self, name, frames, pixels, *options):
+    def write_raw(self, name, frames, pixels, *options, rate=25):
         """Frames (slot, row, col, ...) of a pixel format of ffmpeg, without loss."""
-        self.ffmpeg("-f", "rawvideo", "-pix_fmt", pixels, "-s",
+        self.ffmpeg("-f", "rawvideo", "-pix_fmt", pixels, "-r", rate, "-s",
                     f"{frames.shape[2]}x{frames.shape[1]}", "-i", "-", "-c:v", "ffv1", *options, name,
                     data=frames.tobytes())
         return name
@@ -224,11 +224,66 @@ class VideoTest(ProgramTest):
         self.write_moving("video.mkv", "-c:v", "ffv1", "-vf", "setpts=N*N/300/TB", "-fps_mode", "vfr")
         light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertGreater(len(light), 20)  # ffmpeg leaves out some that would be shown at once
-        self.assertRegex(said, r"^stipple: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each "
-                         r"becomes one slot; some may be missing\n$")
+        self.assertRegex(said, r'^stipple: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each becomes one '
+                         r'slot; "emulate --resample blend" puts them at their times\n$')
         for rate in (24, 59.94, 240, 700):  # times in whole milliseconds
             self.write_moving("video.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
             self.assertEqual(self.emulate("video.mkv", "--transfer", "srgb")[1], "")
+
+    def write_bar(self, name, kept, *options):
+        """A bar, at column 2 t after t hundredths of a second, of which ffmpeg keeps some frames at their times."""
+        time = np.arange(60)[:, None, None]
+        frames = np.broadcast_to(90 + 160 * (np.arange(160) // 4 == time // 2), (60, 16, 160)).astype(np.uint8)
+        return self.write_raw(name, frames, "gray", "-vf", f"select='{kept}'", "-fps_mode", "vfr", *options,
+                              rate=100)
+
+    def test_resampling_heeds_the_times_of_frames(self):
+        """Slots of a hundredth of a second: the bar is where it was in the last frame that is shown."""
+        every = np.arange(60)
+        for name, options in (("a.mkv", []), ("a.mp4", ["-c:v", "libx264", "-qp", "0"])):
+            for kept, shown in (("1", every), ("not(mod(n,4))+gt(n,30)", np.where(every > 30, every, every // 4 * 4)),
+                                ("lt(n,10)+gt(n,40)", np.where((every > 9) & (every < 41), 9, every))):
+                with self.subTest(name=name, kept=kept):
+                    self.write_bar(name, kept, *options)
+                    light, said = self.emulate(name, "--transfer", "linear", "--luminance", "--resample", "hold",
+                                               "--set", "sensor.slot_us=10000")
+                    self.assertEqual(said, "")
+                    np.testing.assert_array_equal(light[:, 0].argmax(axis=1)[:58], shown[:58] // 2 * 4)
+                    self.assertIn(len(light), (59, 60, 61))
+
+    def test_flow_and_blend_of_unequal_times_move_at_the_speed_of_equal_ones(self):
+        """A wide edge that moves by 2 columns in a hundredth of a second: its place of one half is linear in time."""
+        time, cols = np.arange(60)[:, None, None], np.arange(200)[None, None, :]
+        frames = np.broadcast_to(np.clip(128 + 3 * (30 + 2 * time - cols), 0, 255), (60, 32, 200)).astype(np.uint8)
+        edges = {}
+        for name, kept in (("equal.mkv", "1"), ("unequal.mkv", "eq(mod(n,7),0)+eq(mod(n,7),2)+eq(mod(n,7),3)")):
+            self.write_raw(name, frames, "gray", "-vf", f"select='{kept}'", "-fps_mode", "vfr", rate=100)
+            for method in ("blend", "flow"):
+                light, said = self.emulate(name, "--transfer", "linear", "--resample", method, "--set",
+                                           "sensor.slot_us=5000")
+                self.assertEqual(said, "")
+                edges[name, method] = np.array([np.interp(-0.5, -row, np.arange(200)) for row in light[:, 16]])[12:90]
+        for (name, method), columns in edges.items():
+            with self.subTest(name=name, method=method):
+                speed = np.polyfit(np.arange(78), columns, 1)
+                self.assertAlmostEqual(speed[0], 1, delta=0.02)
+                # Blending holds a frame of up to 4 hundredths of a second, in which the edge moves by 8 columns.
+                self.assertLess(np.abs(columns - np.polyval(speed, np.arange(78))).max(),
+                                0.5 if method == "flow" else 4.5)
+
+    def test_frame_rates_of_the_command_line_make_frames_equally_long(self):
+        self.write_bar("a.mkv", "not(mod(n,4))+gt(n,30)")
+        light, said = self.emulate("a.mkv", "--transfer", "linear", "--resample", "hold", "--frames-hz", 100, "--set",
+                                   "sensor.slot_us=10000")
+        self.assertEqual(len(light), 8 + 29)
+        self.assertEqual(said, "stipple: a.mkv: its frames are 0.01 to 0.04 s apart, but --frames-hz makes them "
+                         "equally long\n")
+
+    def test_a_frame_far_behind_is_refused(self):
+        """An hour of one frame among milliseconds would be millions of slots."""
+        self.write_bar("a.mkv", "1", "-vf", "setpts='if(gt(N,30),N+3600000,N)*0.001/TB'")
+        self.fails(INPUT, ["a.mkv: has a frame ", "frame periods after the one before", "--frames-hz"], "emulate", "a.mkv",
+                   "-o", "x.stipple", "--transfer", "linear", "--resample", "blend")
 
     def test_a_damaged_frame_is_refused_by_its_number(self):
         self.write_moving("video.mkv", "-c:v", "libx264", "-g", "10")

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -87,6 +88,81 @@ TEST(FrameResamplerTest, BlendConservesLightAndIsNeverNegative) {
         }
         EXPECT_NEAR(sum, total, 1e-4 * total) << rate;
     }
+}
+
+/// Light that is linear in time, t: a frame of [a, b) has the mean light (a + b) / 2.
+constexpr double kBegins[] = {0, 1, 2.5, 2.75, 3, 6, 6.5, 8, 9};
+
+/// Slots of `frames_per_slot` of frames that begin at kBegins plus `origin`.
+std::vector<double> of_unequal_frames(Resampling method, double frames_per_slot,
+                                      const std::function<double(std::size_t)>& light,
+                                      double origin = 0) {
+    std::size_t next = 0;
+    Floats frame(1);
+    const ResamplingOptions options{.method = method,
+                                    .frames_per_slot = frames_per_slot,
+                                    .time = [&] { return origin + kBegins[next - 1]; }};
+    FrameResampler resampler({1, 1, 1}, options, [&]() -> std::span<const float> {
+        if (next == std::size(kBegins)) return {};
+        frame[0] = static_cast<float>(light(next++));
+        return frame;
+    });
+    std::vector<double> slots;
+    for (auto slot = resampler.next(); !slot.empty(); slot = resampler.next())
+        slots.push_back(static_cast<double>(slot[0]));
+    EXPECT_EQ(slots.size(), static_cast<std::size_t>(10 / frames_per_slot)) << frames_per_slot;
+    return slots;
+}
+
+double end_of(std::size_t i) {
+    return i + 1 < std::size(kBegins) ? kBegins[i + 1] : 10;
+}
+
+TEST(FrameResamplerTest, UnequalFramesAreHeldUntilTheNext) {
+    for (const double rate : {0.1, 0.4, 1.0, 2.5}) {
+        const auto slots = of_unequal_frames(
+            Resampling::kHold, rate, [](std::size_t i) { return i; }, 7.25);
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            const double begin = static_cast<double>(k) * rate + 1e-9;
+            const auto frame = std::ranges::upper_bound(kBegins, begin) - std::begin(kBegins) - 1;
+            EXPECT_EQ(slots[k], frame) << rate << ", slot " << k;
+        }
+    }
+}
+
+TEST(FrameResamplerTest, LinearLightOfUnequalFramesStaysLinear) {
+    const auto mean = [](std::size_t i) { return 10 + (kBegins[i] + end_of(i)) / 2; };
+    for (const double rate : {0.1, 0.4, 1.0, 2.5}) {
+        const auto slots = of_unequal_frames(Resampling::kBlend, rate, mean);
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            const double middle = (static_cast<double>(k) + 0.5) * rate;
+            if (middle - rate / 2 < 1 || middle + rate / 2 > 9) continue;
+            EXPECT_NEAR(slots[k], 10 + middle, 1e-4) << rate << ", slot " << k;
+        }
+    }
+}
+
+TEST(FrameResamplerTest, BlendOfUnequalFramesConservesLight) {
+    const auto light = [](std::size_t i) { return i % 3 == 1 ? 4.0 : 0.01; };
+    double total = 0;
+    for (std::size_t i = 0; i < std::size(kBegins); ++i)
+        total += light(i) * (end_of(i) - kBegins[i]);
+    for (const double rate : {0.1, 0.5, 1.0, 2.5}) {
+        double sum = 0;
+        for (const double slot : of_unequal_frames(Resampling::kBlend, rate, light)) {
+            EXPECT_GE(slot, -1e-6) << rate;
+            sum += slot * rate;
+        }
+        EXPECT_NEAR(sum, total, 1e-4 * total) << rate;
+    }
+}
+
+// Moments of the light t + 1/2, between which it is linear.
+TEST(FrameResamplerTest, FlowTakesUnequalFramesForMoments) {
+    const auto slots =
+        of_unequal_frames(Resampling::kFlow, 0.25, [](std::size_t i) { return kBegins[i] + 0.5; });
+    for (std::size_t k = 2; k < slots.size() - 2; ++k)
+        EXPECT_NEAR(slots[k], std::min((static_cast<double>(k) + 0.5) * 0.25, 9.5), 1e-6) << k;
 }
 
 TEST(FrameResamplerTest, BlendOfWholeFramesIsTheirMean) {
