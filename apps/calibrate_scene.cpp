@@ -53,7 +53,7 @@ ChipCalibration calibrate_by_scene(const SceneArguments& arguments, const RunOpt
                           });
     if (!calibration) throw Interrupted{};
     if (!undamaged(decoded.report()))
-        say_warning(fmt::format("{}: {}", arguments.stream, damage_text(decoded.report())));
+        say_warning("{}: {}", arguments.stream, damage_text(decoded.report()));
     if (chip.name.size() <= kMaxNameBytes) calibration->chip.name = chip.name;
     calibration->chip.device_id = chip.device_id;
     return std::move(*calibration);

@@ -177,8 +177,7 @@ void add_stream(const std::string& file, const StreamHeader& chip, FieldSamples&
         collector.add(packet);
         progress.advance();
     }
-    if (!undamaged(reader.report()))
-        say_warning(fmt::format("{}: {}", file, damage_text(reader.report())));
+    if (!undamaged(reader.report())) say_warning("{}: {}", file, damage_text(reader.report()));
 }
 
 CalibrationFields read_streams(const SeriesArguments& arguments, const RunOptions& run) {

@@ -143,7 +143,7 @@ std::size_t draw_charts(const CameraReport& camera, const std::string& title,
         for (const auto& [name, content] : photon_transfer_charts(camera.evaluation))
             if (write_result(folder, name, content, failure)) ++drawn;
     } catch (const NoGnuplot& e) {
-        say_error("{}: no charts are drawn: {}", folder.final_path().string(), e.what());
+        say_warning("{}: no charts are drawn: {}", folder.final_path().string(), e.what());
     } catch (const DeviceError& e) {
         failure = e;
     }
@@ -154,9 +154,9 @@ std::size_t draw_charts(const CameraReport& camera, const std::string& title,
 /// Prints the figures, then a message on charts that failed.
 void report(const CameraReport& camera, const std::optional<DeviceError>& failure, JsonFile& json,
             const RunOptions& run) {
+    say_warning(emva1288::bias_warning(camera.evaluation));
     json.write(camera_json(camera));
     run.say(camera_text(camera));
-    say_warning(emva1288::bias_warning(camera.evaluation));
     if (failure) throw DeviceError(*failure);
 }
 

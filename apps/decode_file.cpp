@@ -115,8 +115,9 @@ class DecodeRun {
     [[nodiscard]] nlohmann::ordered_json figures() const;
     [[nodiscard]] std::string summary() const;
     void warn_of_end() const;
-    void tell_faults() const;
-    void tell_faults_of(const StreamReader& reader) const;
+    [[nodiscard]] const std::string& name_of(const StreamReader& reader) const;
+    void warn_of_faults(const StreamReader& reader) const;
+    void refuse_damage(const StreamReader& reader) const;
 
     const DecodeArguments& arguments_;
     const RunOptions& run_;
@@ -192,13 +193,14 @@ DecodeReport DecodeRun::decode_frames() {
 }
 
 void DecodeRun::tell() {
-    json_.write(figures());
     warn_of_end();
     say_warning(
         zero_warning(arguments_.stream, zero_fraction(report_), reader_.header().calibration));
+    for (const StreamReader& reader : input_.readers) warn_of_faults(reader);
+    json_.write(figures());
     run_.say(summary());
     if (const auto levels = writer_.light_levels()) run_.say(light_levels_text(*levels));
-    tell_faults();
+    for (const StreamReader& reader : input_.readers) refuse_damage(reader);
 }
 
 DecodeEnd DecodeRun::found_end() const {
@@ -246,30 +248,33 @@ std::string DecodeRun::summary() const {
 /// Ends that the user may not expect.
 void DecodeRun::warn_of_end() const {
     if (end_ == DecodeEnd::kTimeout)
-        say_error(
+        say_warning(
             "{}: nothing was appended for {:g} s (--timeout), so it was decoded as "
             "if it ended here, after {}",
             arguments_.stream, growing_.timeout_s(), counted(report_.slots, "slot"));
     else if (end_ == DecodeEnd::kStream && arguments_.until > 0)
-        say_error("{}: ends after {}, before --until {}", arguments_.stream,
-                  counted(report_.slots, "slot"), arguments_.until);
+        say_warning("{}: ends after {}, before --until {}", arguments_.stream,
+                    counted(report_.slots, "slot"), arguments_.until);
 }
 
-void DecodeRun::tell_faults() const {
-    for (const StreamReader& reader : input_.readers) tell_faults_of(reader);
+const std::string& DecodeRun::name_of(const StreamReader& reader) const {
+    return arguments_.follow ? arguments_.stream : reader.name();
 }
 
-void DecodeRun::tell_faults_of(const StreamReader& reader) const {
-    StreamReport found = reader.report();
-    const std::string& name = arguments_.follow ? arguments_.stream : reader.name();
+void DecodeRun::warn_of_faults(const StreamReader& reader) const {
+    const StreamReport found = reader.report();
     if (const auto text = no_sample_text(found); !text.empty())
-        say_warning(fmt::format("{}: {}", name, text));
+        say_warning("{}: {}", name_of(reader), text);
     if (const auto text = no_end_text(found); end_ == DecodeEnd::kStream && !text.empty())
-        say_error("{}: {} (--follow)", name, text);
+        say_warning("{}: {} (--follow)", name_of(reader), text);
+}
+
+void DecodeRun::refuse_damage(const StreamReader& reader) const {
+    StreamReport found = reader.report();
     if (end_ == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
     if (const auto text = decoded_damage_text(found, schedule_hint(found)); !text.empty())
-        throw InputError(name, text);
+        throw InputError(name_of(reader), text);
 }
 
 }  // namespace

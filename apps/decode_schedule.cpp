@@ -54,7 +54,7 @@ ScheduleCheck checked_schedule(StreamReader& reader, const DecodeArguments& argu
             run.say(fmt::format("{}: the samples follow the schedule ({})", arguments.stream, why));
             break;
         case Verdict::kCannotTell:
-            say_error(
+            say_warning(
                 "{}: cannot tell whether the samples follow the schedule, decoding "
                 "as the header says ({})",
                 arguments.stream, why);

@@ -86,7 +86,6 @@ void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& js
           const std::list<RigRecorder>& runs, double slots_per_second) {
     RigTotals totals;
     for (const RigRecorder& sensor : runs) totals.add(sensor.recorder(), sensor.sensor().share);
-    json.write(rig_json(runs, totals, slots_per_second));
     for (const RigRecorder& sensor : runs) {
         const StreamRecorder& recorder = sensor.recorder();
         const std::string file = (fs::path(arguments.output) / sensor.sensor().file()).string();
@@ -95,6 +94,7 @@ void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& js
         run.say(fmt::format("{}: {}", file, emulation_text(recorder, slots_per_second)));
     }
     run.say(totals_text(totals));
+    json.write(rig_json(runs, totals, slots_per_second));
 }
 
 }  // namespace

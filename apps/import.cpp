@@ -75,15 +75,15 @@ void import(const ImportOptions& options, const RunOptions& run) {
     const MeasuredArrays arrays = read_arrays(options);
     const ImportedStream stream = import_measurements(arrays, options.output, run.force);
     const ExposureSchedule& schedule = stream.header.schedule;
-    json.write(json_of(stream));
     run.say(fmt::format("{}: {} of {} x {} pixels, {} {} masks, light 1.0 is {:g}", options.output,
                         counted(stream.measurements, "measurement"), stream.header.shape.cols,
                         stream.header.shape.rows, schedule.period_slots(),
                         schedule.weighted() ? "grey" : "binary", stream.light));
     if (stream.unread_pixels > 0)
-        say_warning(fmt::format(
-            "{}: the masks of {} are 0 in all slots; their measurements are left out",
-            arrays.mask_file, counted(static_cast<std::int64_t>(stream.unread_pixels), "pixel")));
+        say_warning("{}: the masks of {} are 0 in all slots; their measurements are left out",
+                    arrays.mask_file,
+                    counted(static_cast<std::int64_t>(stream.unread_pixels), "pixel"));
+    json.write(json_of(stream));
 }
 
 void add_units(Command& command, ImportOptions& options) {

@@ -54,7 +54,7 @@ void say_what_is_left() {
 }
 
 int fail(ExitCode code, std::string_view message) {
-    say_error(message);
+    say_failure(message);
     say_what_is_left();
     return code;
 }
@@ -67,8 +67,11 @@ int fail(ExitCode code, std::string_view message) {
     std::_Exit(fail(kDevice, kNoMemory));
 }
 
-ExitCode signal_code() {
-    return static_cast<ExitCode>(kSignal + stop_signal());
+/// The end of a run that a signal has stopped.
+int stop(std::string_view message) {
+    say_error(message);
+    say_what_is_left();
+    return kSignal + stop_signal();
 }
 
 void run(const Action& action) {
@@ -112,9 +115,9 @@ int main(int argc, char** argv) {
         if (run(argc, argv) == CommandLine::Parsed::kWrong) return kUsage;
     } catch (const InputError& e) {
         // A signal cuts inputs short: then the input is not to blame.
-        return stop_signal() == 0 ? fail(kInput, e.what()) : fail(signal_code(), "stopped");
+        return stop_signal() == 0 ? fail(kInput, e.what()) : stop("stopped");
     } catch (const Interrupted& e) {
-        return fail(signal_code(), e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
+        return stop(e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
     } catch (const std::bad_alloc&) {
         return fail(kDevice, kNoMemory);
     } catch (const std::system_error& e) {
@@ -129,7 +132,7 @@ int main(int argc, char** argv) {
         return fail(kDevice, e.what());
     }
     if (stop_signal() == 0) return kOk;
-    return fail(signal_code(), "stopped; the output is shorter");
+    return stop("stopped; the output is shorter");
 }
 
 }  // namespace

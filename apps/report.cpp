@@ -198,6 +198,8 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
     const auto data = nlohmann::ordered_json::parse(report.json());
     const std::string page = report.page();
     write_text(output, page);
+    for (const std::string& note : report.notes()) say_warning(note);
+    say_warning(chart_warning());
     json.write({{"file", arguments.output},
                 {"bytes", page.size()},
                 {"slots", data["slots"]},
@@ -206,8 +208,6 @@ void make_report(const ReportArguments& arguments, const RunOptions& run) {
                 {"quality_options", data["quality_options"]},
                 {"videos", data["videos"]},
                 {"notes", report.notes()}});
-    for (const std::string& note : report.notes()) say_warning(note);
-    say_warning(chart_warning());
     run.say(fmt::format("{}: {} of {}, {:.1f} MB", arguments.output,
                         counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
                         1e-6 * static_cast<double>(page.size())));

@@ -2,9 +2,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <string>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
 
 #include "stream/plain_text.h"
 
@@ -13,8 +16,41 @@ namespace {
 
 constexpr std::string_view kClearLine = "\r\x1b[K";
 std::atomic<bool> bar_is_shown{false};
+std::mutex warnings_mutex;
+std::vector<std::string> warnings;
+
+constexpr std::string_view kRed = "\x1b[1;31m";
+constexpr std::string_view kYellow = "\x1b[1;33m";
+
+/// "error: ", on a terminal in its colour.
+std::string level_text(std::string_view level, std::string_view colour) {
+    const char* const no_color = std::getenv("NO_COLOR");
+    const bool plain = (no_color != nullptr && *no_color != '\0') || !error_is_terminal();
+    return plain ? fmt::format("{}: ", level) : fmt::format("{}{}:\x1b[0m ", colour, level);
+}
+
+void say(std::string_view level, std::string_view colour, std::string_view text) noexcept {
+    try {
+        std::string line(bar_is_shown.exchange(false) ? kClearLine : "");
+        line += "stipple: ";
+        if (!level.empty()) line += level_text(level, colour);
+        write_error_text(line.append(terminal_text(text)).append("\n"));
+    } catch (...) {  // no memory for it
+        write_error_text("stipple: ");
+        write_error_text(level);
+        write_error_text(level.empty() ? "" : ": ");
+        write_error_text(kNoMemory);
+        write_error_text("\n");
+    }
+}
 
 }  // namespace
+
+bool error_is_terminal() noexcept {
+    const char* const terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) != 0 &&
+           (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
+}
 
 void write_error_text(std::string_view text) noexcept {
     while (!text.empty()) {
@@ -40,14 +76,26 @@ bool clear_bar() noexcept {
 }
 
 void say_error(std::string_view text) noexcept {
+    say({}, {}, text);
+}
+
+void say_failure(std::string_view text) noexcept {
+    say("error", kRed, text);
+}
+
+void say_warning(std::string_view text) noexcept {
+    if (text.empty()) return;
+    say("warning", kYellow, text);
     try {
-        std::string line(bar_is_shown.exchange(false) ? kClearLine : "");
-        write_error_text(line.append("stipple: ").append(terminal_text(text)).append("\n"));
-    } catch (...) {  // no memory for it
-        write_error_text("stipple: ");
-        write_error_text(kNoMemory);
-        write_error_text("\n");
+        const std::lock_guard lock(warnings_mutex);
+        if (std::ranges::find(warnings, text) == warnings.end()) warnings.emplace_back(text);
+    } catch (...) {  // no memory: it was at least said
     }
+}
+
+std::vector<std::string> said_warnings() {
+    const std::lock_guard lock(warnings_mutex);
+    return warnings;
 }
 
 }  // namespace stipple

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "stream/plain_text.h"
 
@@ -15,6 +17,9 @@ namespace stipple {
 
 constexpr std::string_view kNoMemory =
     "not enough memory; end other programs, or give smaller or fewer frames";
+
+/// Whether it is a terminal that knows more than lines.
+[[nodiscard]] bool error_is_terminal() noexcept;
 
 /// Writes `text` as it is.
 void write_error_text(std::string_view text) noexcept;
@@ -27,19 +32,30 @@ void show_bar(std::string_view line) noexcept;
 /// handler. Returns whether there was one.
 bool clear_bar() noexcept;
 
-/// A line of its own, "stipple: " before it, as `terminal_text`.
+/// A line of its own, "stipple: " before it, as `terminal_text`: what is no warning and no error.
 void say_error(std::string_view text) noexcept;
 
-/// The same, formatted.
+/// The same for the error that ends the run: "stipple: error: ". On a terminal the level is
+/// coloured, unless the variable NO_COLOR is set.
+void say_failure(std::string_view text) noexcept;
+
+/// The same for a warning, "stipple: warning: "; nothing if it is empty.
+void say_warning(std::string_view text) noexcept;
+
+/// The warnings so far, each once.
+[[nodiscard]] std::vector<std::string> said_warnings();
+
+/// Formatted.
 template <typename... Arguments>
 requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments...> format,
                                                   Arguments&&... arguments) {
     say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
-/// The same for a warning; nothing if it is empty.
-inline void say_warning(std::string_view warning) noexcept {
-    if (!warning.empty()) say_error(warning);
+template <typename... Arguments>
+requires(sizeof...(Arguments) > 0) void say_warning(fmt::format_string<Arguments...> format,
+                                                    Arguments&&... arguments) {
+    say_warning(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
 constexpr auto kAllBefore = [] { return "what was written before is"; };

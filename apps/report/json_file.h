@@ -14,9 +14,9 @@ class JsonFile {
   public:
     /// \throws InputError as PendingOutput.
     explicit JsonFile(const RunOptions& run);
-    /// Writes `figures`, if the user wants them. Infinite values and NaN become null.
-    /// \throws DeviceError.
-    void write(const nlohmann::ordered_json& figures);
+    /// Writes `figures`, if the user wants them, with the warnings so far as `warnings`. Infinite
+    /// values and NaN become null. \throws DeviceError.
+    void write(nlohmann::ordered_json figures);
 
   private:
     bool to_stdout_;

@@ -18,8 +18,8 @@ void say_leftover(const fs::path& output) {
     const fs::path folder = folder_of(name);
     for (const PartialOutput& partial : partial_outputs(folder)) {
         if (partial.final_path.filename() != name.filename() || partial.running()) continue;
-        say_error("{}: a run that was killed left {}; `stipple recover {}` says what can be kept",
-                  output.string(), partial.path.filename().string(), folder.string());
+        say_warning("{}: a run that was killed left {}; `stipple recover {}` says what can be kept",
+                    output.string(), partial.path.filename().string(), folder.string());
         return;
     }
 }

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdlib>
-#include <cstring>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -24,13 +22,6 @@ constexpr std::chrono::seconds kLineEvery{5};
 constexpr std::size_t kShortestBar = 8;
 constexpr std::size_t kMaxBarCols = 24;
 
-/// Whether standard error is a terminal on which a line can be written over.
-bool can_show_bar() {
-    const char* const terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) != 0 &&
-           (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
-}
-
 /// Characters that a line of the terminal takes without a break.
 std::size_t terminal_columns() {
     winsize size{};
@@ -45,7 +36,7 @@ Progress::Progress(const RunOptions& run, std::string task, std::optional<std::i
     : task_(std::move(task)),
       unit_(std::move(unit)),
       total_(total),
-      terminal_(can_show_bar()),
+      terminal_(error_is_terminal()),
       start_(Clock::now()) {
     if (!run.quiet) display_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
 }

@@ -58,7 +58,7 @@ void StageOutputs::finish() {
     try {
         write_text(*chart_, chart());
     } catch (const NoGnuplot& e) {
-        say_error("{} is not drawn: {}", chart_->final_path().string(), e.what());
+        say_warning("{} is not drawn: {}", chart_->final_path().string(), e.what());
     }
 }
 

@@ -38,4 +38,4 @@ class CameraFilesTest(ProgramTest):
         np.testing.assert_allclose(self.light(footage, *options), np.asarray(expected), rtol=1e-6, atol=1e-9)
 
     def refuse(self, parts, footage, *options):
-        self.fails(INPUT, [f"stipple: {footage}: ", *parts], "emulate", footage, "-o", "x.stipple", *options)
+        self.fails(INPUT, [f"stipple: error: {footage}: ", *parts], "emulate", footage, "-o", "x.stipple", *options)

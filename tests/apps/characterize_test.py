@@ -212,7 +212,7 @@ class CharacterizeTest(ProgramTest):
             self.assertTrue(path.read_bytes().rstrip().endswith((b"\xaeB`\x82", b"</svg>")), path)
 
     def test_a_full_disk_is_told_by_the_name_of_the_output(self):
-        said = self.fails(DEVICE, ["stipple: series/image_0001.png: cannot be written"], "characterize", "--sensor",
+        said = self.fails(DEVICE, ["stipple: error: series/image_0001.png: cannot be written"], "characterize", "--sensor",
                           "t6", "-o", "series", preexec_fn=small_files)
         self.assertNotIn("partial", said)
 

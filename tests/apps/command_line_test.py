@@ -1,6 +1,7 @@
 """Help, figures, progress, exit codes."""
 
 import fcntl
+import json
 import os
 import pty
 import signal
@@ -62,7 +63,8 @@ class CommandLineTest(ProgramTest):
         for line in (["--help"], ["--version"], ["list", "keys"], ["list", "keys", "--json", "-"], ["completion", "bash"]):
             with open("/dev/full", "w", encoding="utf-8") as full:
                 done = self.start_program(*line, stdout=full)
-                self.assertEqual(done.communicate()[1], "stipple: standard output: No space left on device\n", line)
+                self.assertEqual(done.communicate()[1], "stipple: error: standard output: No space left on device\n",
+                                 line)
             self.assertEqual(done.returncode, DEVICE)
 
     def test_a_reader_that_has_gone_ends_it_quietly(self):
@@ -105,7 +107,7 @@ class CommandLineTest(ProgramTest):
             self.fails(USAGE, ['there is no subcommand "dance"; known are ', "--help"], *line)
 
     def test_unusable_inputs_exit_with_1_and_say_which(self):
-        self.fails(INPUT, ["stipple: missing.stipple: "], "info", "missing.stipple")
+        self.fails(INPUT, ["stipple: error: missing.stipple: "], "info", "missing.stipple")
 
     def test_quiet_says_nothing(self):
         done = self.run_program(*SYNTH, "-o", "out.npy", "--quiet")
@@ -121,7 +123,14 @@ class CommandLineTest(ProgramTest):
         self.assertIn("2 frames of 32 x 24", text)
         self.assertIn('"slots": 2', (self.folder / "figures.json").read_text())
 
-    def on_a_terminal(self, *line, columns=80, term="xterm", stdout=False):
+    def test_json_holds_the_warnings_of_the_run(self):
+        self.assertNotIn("warnings", self.figures("emulate", self.write_flat("good.npy"), "-o", "good.stipple"))
+        done = self.run_program("emulate", self.write_flat("dark.npy", light=1e-5), "-o", "clip.stipple", "--json", "-")
+        warnings = json.loads(done.stdout)["warnings"]
+        self.assertEqual(len(warnings), 1)
+        self.assertEqual(done.stderr, f"stipple: warning: {warnings[0]}\n")
+
+    def on_a_terminal(self, *line, columns=80, term="xterm", stdout=False, code=OK, **variables):
         """What a terminal shows of a run."""
         screen, terminal = pty.openpty()
         self.addCleanup(os.close, screen)
@@ -129,9 +138,10 @@ class CommandLineTest(ProgramTest):
         with ThreadPoolExecutor() as reader:
             shown = reader.submit(read_to_the_end, screen)
             with os.fdopen(terminal, "w") as stderr:
-                subprocess.run([PROGRAM, *line], cwd=self.folder, timeout=60, check=True,
-                               stdout=stderr if stdout else subprocess.DEVNULL, stderr=stderr,
-                               env=dict(os.environ, TERM=term))
+                done = subprocess.run([PROGRAM, *line], cwd=self.folder, timeout=60, check=False,
+                                      stdout=stderr if stdout else subprocess.DEVNULL, stderr=stderr,
+                                      env=dict(os.environ, TERM=term, **variables))
+            self.assertEqual(done.returncode, code)
         return shown.result().decode()
 
     def test_progress_is_a_bar_on_a_terminal_only(self):
@@ -159,7 +169,16 @@ class CommandLineTest(ProgramTest):
         cut = self.folder / "cut.strec"
         cut.write_bytes(cut.read_bytes()[:-10])
         text = self.on_a_terminal("capture", "record", "replay:cut.strec", "-o", "again.strec")
-        self.assertRegex(text, r"recording \d+ frames[^\n]*\r\x1b\[Kstipple: cut\.strec: was cut off[^\n\x1b]*\r\n")
+        self.assertRegex(text, r"recording \d+ frames[^\n]*\r\x1b\[Kstipple: [^:]*warning:\S* cut\.strec: was cut off[^\n\x1b]*\r\n")
+
+    def test_levels_have_colours_on_a_terminal_unless_told_otherwise(self):
+        failing = ["info", "none.stipple"]
+        self.assertIn("stipple: \x1b[1;31merror:\x1b[0m none.stipple: ", self.on_a_terminal(*failing, code=INPUT))
+        warning = ["emulate", self.write_flat("dark.npy", light=1e-5), "--force", "-o", "clip.stipple"]
+        self.assertIn("stipple: \x1b[1;33mwarning:\x1b[0m clip.stipple: ", self.on_a_terminal(*warning))
+        for plain in ({"NO_COLOR": "1"}, {"term": "dumb"}):
+            self.assertIn("stipple: error: none.stipple: ", self.on_a_terminal(*failing, code=INPUT, **plain))
+        self.assertIn("\x1b[1;31m", self.on_a_terminal(*failing, code=INPUT, NO_COLOR=""))
 
     def test_losses_are_shown_while_it_records(self):
         self.succeed("capture", "record", f"replay:{self.write_flat('light.npy', 100)}", "-o", "clip.strec",

@@ -44,10 +44,13 @@ class CompareTest(ProgramTest):
         self.write_array("short.npy", self.noisy[:4])
         done = self.run_program("compare", "short.npy", "light.npy", "--json", "a.json")
         self.assertEqual(done.returncode, OK)
-        self.assertIn('short.npy: ends after 4 frames, before "light.npy" does; these are compared', done.stderr)
-        self.assertEqual(self.figures("compare", "short.npy", "light.npy"), same | {"longer": "reference"})
+        warning = 'short.npy: ends after 4 frames, before "light.npy" does; these are compared'
+        self.assertEqual(done.stderr, f"stipple: warning: {warning}\n")
+        self.assertEqual(self.figures("compare", "short.npy", "light.npy"),
+                         same | {"longer": "reference", "warnings": [warning]})
         self.write_array("short.npy", self.light[:4])
-        self.assertEqual(self.figures("compare", "noisy.npy", "short.npy"), same | {"longer": "result"})
+        self.assertEqual(self.figures("compare", "noisy.npy", "short.npy"),
+                         same | {"longer": "result", "warnings": [warning.replace("light", "noisy")]})
         self.fails(INPUT, ["short.npy: ends after 4 frames, before --until 5"], "compare", "noisy.npy", "short.npy",
                    "--until", 5)
         self.fails(INPUT, ["margin", "none of 4"], "compare", "noisy.npy", "short.npy", "--margin", 2)
@@ -121,7 +124,7 @@ class CompareTest(ProgramTest):
                                delta=0.5 / 255)
         self.fails(INPUT, ["d.npy", "--force"], *line, "d.npy")
         self.fails(USAGE, ["--difference", "a difference is"], *line, "d.mp4")
-        self.fails(DEVICE, ["stipple: full.png: cannot be written"], *line, "full.png",
+        self.fails(DEVICE, ["stipple: error: full.png: cannot be written"], *line, "full.png",
                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
 
     def test_the_chart_is_a_picture(self):

@@ -125,7 +125,7 @@ class FaultyRuns(ProgramTest):
         kept = [line for line in lines if re.search(r"(kept|left beside the outputs: \S+)$", line)]
         told = [line for line in lines if line not in kept]
         self.assertEqual(len(told), 1, outcome.said)
-        self.assertRegex(told[0], rf"^stipple: (({self.output}|light\.npy|frames|clip\.stipple|/)\S*: .|"
+        self.assertRegex(told[0], rf"^stipple: error: (({self.output}|light\.npy|frames|clip\.stipple|/)\S*: .|"
                                   rf"{NO_MEMORY}$|{NO_THREAD}|{NO_WORKER})")
         self.assertNotIn("damaged", outcome.said)
         for path in hidden:

@@ -23,7 +23,7 @@ class FootageWarningsTest(ProgramTest):
         grey = np.full((8, 8), 99)
         gamma = [(b"gAMA", struct.pack(">I", 45455))]
         linear = [(b"gAMA", struct.pack(">I", 100000))]
-        line = f"stipple: f.png: {CODED}\n"
+        line = f"stipple: warning: f.png: {CODED}\n"
         self.assertEqual(self.said_of_png(grey), "")
         self.assertEqual(self.said_of_png(grey, gamma), line)
         self.assertEqual(self.said_of_png(grey, [(b"sRGB", b"\0")]), line)
@@ -31,7 +31,7 @@ class FootageWarningsTest(ProgramTest):
 
     def test_colour_of_8_bits_unless_the_transfer_is_given(self):
         colour = np.full((8, 8, 3), 99)
-        self.assertEqual(self.said_of_png(colour), f"stipple: f.png: {CODED}\n")
+        self.assertEqual(self.said_of_png(colour), f"stipple: warning: f.png: {CODED}\n")
         for transfer in ("linear", "srgb", "gamma22"):
             self.assertEqual(self.said_of_png(colour, (), "--transfer", transfer), "")
         self.assertEqual(self.said_of_png(colour, [(b"gAMA", struct.pack(">I", 100000))]), "")
@@ -45,12 +45,12 @@ class FootageWarningsTest(ProgramTest):
 
         colour = self.write_png("f.png", np.full((8, 8, 3), 99))
         for verb in ("record", "live"):
-            self.assertIn("stipple: f.png: looks gamma-coded, and is played as linear light; \"emulate\" and "
+            self.assertIn("stipple: warning: f.png: looks gamma-coded, and is played as linear light; \"emulate\" and "
                           "\"capture serve\" have --transfer\n", said(colour, verb))
         self.assertIn("its alpha channel is left out", said(self.write_png("a.png", np.full((8, 8, 2), 99))))
         for number in (0, 1, 3):
             self.write_png(f"gap/f{number}.png", np.zeros((8, 8)))
-        self.assertEqual(said("gap"), "stipple: gap/f2.png is missing: the frames after it move one slot "
+        self.assertEqual(said("gap"), "stipple: warning: gap/f2.png is missing: the frames after it move one slot "
                          "forward\n")
         dn = self.write_array("dn.npy", np.full((4, 8, 8), 117.0))
         self.assertEqual(said(dn).count("the mean light is 117"), 1)
@@ -59,7 +59,7 @@ class FootageWarningsTest(ProgramTest):
     def test_alpha(self):
         for channels in (2, 4):
             self.assertEqual(self.said_of_png(np.full((8, 8, channels), 99), (), "--transfer", "srgb"),
-                             "stipple: f.png: its alpha channel is left out\n")
+                             "stipple: warning: f.png: its alpha channel is left out\n")
 
     def test_a_transfer_of_floating_point_images(self):
         self.succeed("synth", "pan", "-o", "scene", "--frames", "2", "--size", "32x32")
@@ -76,7 +76,7 @@ class FootageWarningsTest(ProgramTest):
     def test_missing_numbers_of_a_folder(self):
         for number in (0, 1, 2, 4, 5):
             self.write_png(f"gap/f{number:03}.png", np.full((8, 8), 99))
-        self.assertEqual(self.said("gap"), "stipple: gap/f003.png is missing: the frames after it move "
+        self.assertEqual(self.said("gap"), "stipple: warning: gap/f003.png is missing: the frames after it move "
                          "one slot forward\n")
         self.fails(INPUT, ["gap/f003.png: is missing"], "emulate", "gap/f%03d.png", "-o", "x.stipple")
 

@@ -19,7 +19,7 @@ class UsageTest(ProgramTest):
                 ("SRGB", '"srgb"', ["emulate", "a", "-o", "x", "--transfer", "SRGB"]),
                 ("sensor", '"sensors"', ["list", "sensor"])):
             said = self.fails(USAGE, [f'"{wrong}"', f"did you mean {meant}?"], *line)
-            self.assertRegex(said, r'^stipple: .*\n"stipple[a-z ]* --help" says more\n$')
+            self.assertRegex(said, r'^stipple: error: .*\n"stipple[a-z ]* --help" says more\n$')
         light = self.write_flat("light.npy")
         for option, wrong, meant in (("--sensor", "papre", "paper"), ("--schedule", "randm", "random")):
             self.fails(INPUT, [f'"{wrong}"', f'did you mean "{meant}"?'], "emulate", light, "-o", "x",
@@ -32,7 +32,7 @@ class UsageTest(ProgramTest):
                 ("--lum", "--luminance", ["emulate", "a", "--lum=1"]),
                 ("--Frames", "--frames", ["capture", "record", "a", "--Frames", "3"])):
             command = " ".join(["stipple", *line[:2 if line[0] == "capture" else 1]])
-            said = self.fails(USAGE, [f"stipple: {wrong} is no option of {command}; did you mean {meant}?"],
+            said = self.fails(USAGE, [f"stipple: error: {wrong} is no option of {command}; did you mean {meant}?"],
                               *line)
             self.assertNotIn("required", said)
         self.fails(USAGE, ["-v is no option of stipple; did you mean -V?"], "-v")

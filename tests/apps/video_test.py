@@ -224,8 +224,8 @@ class VideoTest(ProgramTest):
         self.write_moving("video.mkv", "-c:v", "ffv1", "-vf", "setpts=N*N/300/TB", "-fps_mode", "vfr")
         light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertGreater(len(light), 20)  # ffmpeg leaves out some that would be shown at once
-        self.assertRegex(said, r'^stipple: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each becomes one '
-                         r'slot; "emulate --resample blend" puts them at their times\n$')
+        self.assertRegex(said, r'^stipple: warning: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each '
+                         r'becomes one slot; "emulate --resample blend" puts them at their times\n$')
         for rate in (24, 59.94, 240, 700):  # times in whole milliseconds
             self.write_moving("video.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
             self.assertEqual(self.emulate("video.mkv", "--transfer", "srgb")[1], "")

@@ -152,7 +152,7 @@ class RecordTest(CameraTest):
             options = options if "-o" in options else [*options, "-o", output]
             done = self.run_program("capture", "record", source, *options)
             self.assertNotEqual(done.returncode, 0)
-            text = (done.stderr.splitlines()[-1].removeprefix("stipple: ").replace("--set camera.", "camera setting ")
+            text = (done.stderr.splitlines()[-1].removeprefix("stipple: error: ").replace("--set camera.", "camera setting ")
                     .replace("--force", "force=True"))
             with self.subTest(source, **arguments), self.assertRaises(error) as raised:
                 where = os.getcwd()
