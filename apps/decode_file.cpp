@@ -24,6 +24,7 @@
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "decoder/decode_cost.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
@@ -95,6 +96,13 @@ nlohmann::ordered_json light_levels_json(const LightLevels& levels) {
 std::string light_levels_text(const LightLevels& levels) {
     return fmt::format("PQ: MaxCLL {:.0f}, MaxFALL {:.0f} cd/m2, {:.2g} % of the values clipped",
                        levels.max_cll, levels.max_fall, 100 * levels.clipped_fraction);
+}
+
+/// Tells what to expect of a run of more than a minute.
+void say_cost(const DecodeCost& cost, const RunOptions& run) {
+    if (cost.seconds < 60 || run.quiet) return;
+    say_error("decoding takes about {} and {:.0f} MB of memory", rough_time(cost.seconds),
+              1e-6 * static_cast<double>(cost.bytes));
 }
 
 /// A run of the command: opened by the constructor, then `run`, then `tell`.
@@ -176,9 +184,14 @@ DecodeReport DecodeRun::decode_frames() {
     std::optional<std::int64_t> total = reader_.slots();
     const std::int64_t until = arguments_.until;
     if (until > 0) total = std::min(total.value_or(until), until);
-    Progress progress(run_, "decoding", total);
     std::int64_t written = 0;
     const std::vector<RigStream> streams = input_.streams();
+    Progress progress(run_, "decoding", total);
+    if (const auto slots = reader_.slots()) {
+        const std::int64_t computed = computed_slots(*total, *slots);
+        progress.set_work(static_cast<double>(computed));
+        say_cost(expected_cost(streams, options_.method, computed), run_);
+    }
     return decode_rig(
         streams, options_,
         [&](std::int64_t slot, std::span<const float> frame) {

@@ -47,26 +47,46 @@ std::string name_of(const Exploration& exploration, std::uint64_t number) {
 void run_point(Exploration& exploration, std::uint64_t number, Progress& progress) {
     const Trial* const trial = exploration.begin(number);
     for (const std::string& warning : exploration.take_warnings()) say_warning(warning);
-    if (trial == nullptr) return progress.skip();
+    const double work = exploration.work_of(number);
+    if (trial == nullptr) return progress.skip(work);
+    const double before = progress.work_done();
     progress.note("now " + name_of(exploration, number));
     try {
         const auto stream = exploration.store().stream_of(trial->identity);
-        exploration.put(number, run_trial(*trial, exploration.light(), stream, keep_going));
+        exploration.put(
+            number, run_trial(*trial, exploration.light(), stream, keep_going, [&](double part) {
+                progress.reach(before + part * work, progress.done());
+            }));
     } catch (const InputError& e) {
         if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
         exploration.fail(number, e.what());
     }
-    progress.advance();
+    progress.reach(before + work, progress.done() + 1);
+}
+
+/// Of the present rung and, with half of its points each, the later ones.
+double work_of_rungs(const Exploration& exploration) {
+    double work = 0;
+    for (const std::uint64_t number : exploration.due()) work += exploration.work_of(number);
+    double all = 0;
+    for (const int slots : exploration.rungs()) {
+        if (slots < exploration.slots()) continue;
+        all += work * slots / exploration.slots();
+        work /= 2;
+    }
+    return all;
 }
 
 /// Until all is done, or a signal asks to stop.
 void run_points(Exploration& exploration, Progress& progress) {
     try {
-        while (exploration.next_rung())
+        while (exploration.next_rung()) {
+            progress.set_work(progress.work_done() + work_of_rungs(exploration));
             for (const std::uint64_t number : exploration.due()) {
                 if (!keep_going()) return;
                 run_point(exploration, number, progress);
             }
+        }
     } catch (const TrialStopped&) {
         // What is done stays done.
     }

@@ -35,9 +35,13 @@ void synth(const SynthOptions& options, const RunOptions& run) {
     std::vector<float> frame(shape.sites());
     Progress progress(run, "rendering", options.rendering.slots);
     for (int slot = 0; slot < options.rendering.slots && stop_signal() == 0; ++slot) {
-        scene.render(slot, frame);
+        const bool complete = scene.render(slot, frame, [&](double part) {
+            progress.reach(slot + part);
+            return stop_signal() == 0;
+        });
+        if (!complete) break;
         writer.write(frame);
-        progress.advance();
+        progress.reach(slot + 1);
     }
     if (progress.done() == 0) throw_if_stopped();
     writer.finish();

@@ -15,6 +15,7 @@
 #include "core/memory_limit.h"
 #include "decoder/block_partition.h"
 #include "decoder/block_task.h"
+#include "decoder/decode_cost.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/saturated_samples.h"
@@ -259,24 +260,13 @@ void check_proportion(const StreamReader& reader, const DecodeOptions& options, 
 void check_block(std::span<const RigStream> rig, const DecodeOptions& options,
                  const HaloRange& slots) {
     constexpr std::uint64_t kVoxelsAByte = 32;
-    constexpr std::uint64_t kSensorBytes = 46;  // a voxel of a further sensor, at its most
     const StreamReader& reader = rig.front().reader;
     const FrameShape shape = decoded_shape(reader.header());
-    std::uint64_t tile_pixels = 0;
-    for (const auto& [rows, cols] : frame_tiles(shape, named(options.method).max_tile_sites))
-        tile_pixels = std::max(tile_pixels, static_cast<std::uint64_t>((rows.end - rows.begin) *
-                                                                       (cols.end - cols.begin)));
-    const auto block_slots = static_cast<std::uint64_t>(slots.end - slots.begin);
-    const auto core_slots = static_cast<std::uint64_t>(slots.core_end - slots.core_begin);
-    const std::uint64_t voxels =
-        block_slots * tile_pixels * static_cast<std::uint64_t>(shape.planes);
-    const bool small = voxels / kVoxelsAByte > reader.input_bytes();
-    std::uint64_t more_bytes = (rig.size() - 1) * kSensorBytes;
-    for (const RigStream& stream : rig)
-        if (stream.reader.header().schedule.weighted()) more_bytes += sizeof(float);
-    check_memory(core_slots * shape.sites() * sizeof(float) +
-                     voxels * (named(options.method).voxel_bytes + more_bytes),
-                 reader.name(),
+    const std::int64_t block_slots = slots.end - slots.begin;
+    const BlockCost cost =
+        block_cost(rig, options.method, block_slots, slots.core_end - slots.core_begin);
+    const bool small = cost.voxels / kVoxelsAByte > reader.input_bytes();
+    check_memory(cost.bytes, reader.name(),
                  fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
                              shape.rows, named(options.method).name),
                  small ? reader.input_bytes() : kEndlessInput);

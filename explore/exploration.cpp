@@ -299,6 +299,19 @@ ExploreCounts Exploration::counts() const {
     return counts;
 }
 
+double Exploration::work_of(std::uint64_t number) const {
+    constexpr double kEmulation = 1;  // of a voxel, with what else is not the method's
+    try {
+        const SpacePoint point = space_.point(number / seed_count());
+        const PointView view = view_of(space_, point);
+        const DecodeMethod method = decode_method_from_name(space_.value(point, "method"));
+        return slots() * view.rows / (view.binning * view.binning) *
+               (named(method).voxel_us + kEmulation);
+    } catch (const InputError&) {
+        return 1;
+    }
+}
+
 std::uint64_t Exploration::most_trials() const {
     std::uint64_t trials = 0;
     std::uint64_t points = points_.size();

@@ -123,6 +123,9 @@ class Exploration {
     [[nodiscard]] double spent() const { return spent_; }
     /// Trials of all rungs, at most.
     [[nodiscard]] std::uint64_t most_trials() const;
+    /// About the work of a trial of the present rung, in a unit that all share: slots, pixels and
+    /// the cost of its method. 1 for a point that cannot be set up.
+    [[nodiscard]] double work_of(std::uint64_t number) const;
     /// Whether the footage of a point has no more slots than these.
     [[nodiscard]] bool is_whole(std::uint64_t point, int slots) const;
     /// Numbers of the points with figures, best ones first.

@@ -184,23 +184,21 @@ void record(const Trial& trial, const FluxVideo& light, const TrialStreams& stre
 /// returns false.
 DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
                             const DecodeOptions& options, const FrameSink& take,
-                            const KeepGoing& keep_going) {
+                            const ProgressCallback& progress) {
     std::deque<StreamReader> readers;
     std::vector<RigStream> streams;
     for (const RigSensor& sensor : trial.rig.sensors) {
         readers.emplace_back(files.files()[readers.size()]);
         streams.push_back({readers.back(), {sensor.from_reference, sensor.phase_slots}});
     }
-    const DecodeReport report = decode_rig(
+    return decode_rig(
         streams, options,
         [&](std::int64_t slot, std::span<const float> frame) {
-            if (trial.view.binning == 1) return take(slot, frame) && keep_going();
+            if (trial.view.binning == 1) return take(slot, frame);
             const FrameShape shape = trial.setups.front().footage;
-            return take(slot, enlarged_frame(frame, shape, trial.view.binning)) && keep_going();
+            return take(slot, enlarged_frame(frame, shape, trial.view.binning));
         },
-        [&](double) { return keep_going(); });
-    check(keep_going);
-    return report;
+        progress);
 }
 
 /// The method and its options; `keys` gets what identifies them: the given keys as lines of TOML, a
@@ -292,7 +290,7 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
 }
 
 TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::path& stream,
-                       const KeepGoing& keep_going) {
+                       const KeepGoing& keep_going, const std::function<void(double)>& progress) {
     const PointView& view = trial.view;
     const FluxVideo window = view.rows < 1 ? window_light(light.video, view) : FluxVideo();
     const FluxVideo& truth = view.rows < 1 ? window : light.video;
@@ -322,13 +320,19 @@ TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::pa
         return true;
     };
     figures.decode_seconds =
-        decode_streams(trial, streams, trial.decoding, take, keep_going).seconds;
+        decode_streams(trial, streams, trial.decoding, take, [&](double slots) {
+            progress(slots / trial.slots);
+            return keep_going();
+        }).seconds;
+    check(keep_going);
     const auto take_naive = [&](std::int64_t slot, std::span<const float> frame) {
         if (slot == shown) picture.put(TrialPicture::kNaive, frame);
         return slot < shown;
     };
     if (!is_naive)
-        decode_streams(trial, streams, {.method = DecodeMethod::kNaive}, take_naive, keep_going);
+        decode_streams(trial, streams, {.method = DecodeMethod::kNaive}, take_naive,
+                       [&](double) { return keep_going(); });
+    check(keep_going);
     const VideoQuality quality = meter.quality();
     figures.psnr_db = quality.psnr_db;
     figures.psnr_gamma_db = quality.psnr_gamma_db;

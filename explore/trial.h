@@ -79,9 +79,10 @@ struct TrialOutcome {
 };
 
 /// Records the light as `stream`, those of further sensors beside it, decodes them to one video,
-/// and removes them. \throws InputError, DeviceError, TrialStopped.
-[[nodiscard]] TrialOutcome run_trial(const Trial& trial, const TrialLight& light,
-                                     const std::filesystem::path& stream,
-                                     const KeepGoing& keep_going);
+/// and removes them. `progress` receives the part of the slots that is decoded, 0..1. \throws
+/// InputError, DeviceError, TrialStopped.
+[[nodiscard]] TrialOutcome run_trial(
+    const Trial& trial, const TrialLight& light, const std::filesystem::path& stream,
+    const KeepGoing& keep_going, const std::function<void(double)>& progress = [](double) {});
 
 }  // namespace stipple

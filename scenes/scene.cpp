@@ -157,20 +157,21 @@ const SceneOptions& Scene::options() const {
     return impl_->options;
 }
 
-void Scene::render(int slot, std::span<float> frame) const {
+bool Scene::render(int slot, std::span<float> frame,
+                   const std::function<bool(double)>& progress) const {
     const SceneOptions& options = impl_->options;
     const SamplePlan& plan = impl_->plan;
     const FrameShape shape = options.shape;
     assert(slot >= 0 && slot < options.slots && frame.size() == shape.sites());
     const float pixel_size = 1 / static_cast<float>(shape.rows);
-    std::visit(
+    return std::visit(
         [&](const auto& model) {
             std::vector<decltype(model.at(0.0))> instants;
             instants.reserve(static_cast<std::size_t>(plan.instants));
             for (int i = 0; i < plan.instants; ++i)
                 instants.push_back(
                     model.at((slot + (i + 0.5) / plan.instants) * options.slot_duration));
-            parallel_for(0, shape.rows, [&](int row) {
+            const auto render_row = [&](int row) {
                 for (int col = 0; col < shape.cols; ++col) {
                     const Vec2 corner{
                         static_cast<float>(col) - 0.5F * static_cast<float>(shape.cols),
@@ -178,7 +179,14 @@ void Scene::render(int slot, std::span<float> frame) const {
                     const Rgb light = integrate_pixel(instants, plan, corner, pixel_size);
                     store(light, shape, row_major(row, col, shape.cols), frame);
                 }
-            });
+            };
+            constexpr int kBand = 16;  // rows; of 4096 columns in about a second
+            for (int row = 0; row < shape.rows; row += kBand) {
+                const int end = std::min(row + kBand, shape.rows);
+                parallel_for(row, end, render_row);
+                if (!progress(static_cast<double>(end) / shape.rows)) return false;
+            }
+            return true;
         },
         impl_->model);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -56,9 +57,12 @@ class Scene {
     [[nodiscard]] const SceneOptions& options() const;
 
     /// Writes the light of one slot, order (plane, row, col), into `frame` (shape.sites() floats).
-    /// The same bits for any thread count, in any order of slots, with any compiler.
-    /// Precondition: 0 <= slot < options().slots.
-    void render(int slot, std::span<float> frame) const;
+    /// The same bits for any thread count, in any order of slots, with any compiler. `progress`
+    /// receives the part of the frame that is done, 0..1, and returns false to stop; then the frame
+    /// is incomplete. Returns whether it is complete. Precondition: 0 <= slot < options().slots.
+    bool render(
+        int slot, std::span<float> frame,
+        const std::function<bool(double)>& progress = [](double) { return true; }) const;
 
   private:
     struct Impl;

@@ -20,4 +20,11 @@ namespace stipple {
                                                : fmt::format("{:.{}g}", value, digits);
 }
 
+/// "40 s", "5 min", "2.5 h".
+[[nodiscard]] inline std::string rough_time(double seconds) {
+    if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+    return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60)
+                          : fmt::format("{} h", rounded(seconds / 3600, 2));
+}
+
 }  // namespace stipple

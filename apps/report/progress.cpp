@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <new>
 #include <string_view>
@@ -22,6 +23,11 @@ constexpr std::chrono::seconds kLineEvery{5};
 constexpr std::size_t kShortestBar = 8;
 constexpr std::size_t kMaxBarCols = 24;
 
+std::string bar(double part, std::size_t width) {
+    const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
+    return fmt::format("{:-<{}}", std::string(filled, '#'), width);
+}
+
 /// Characters that a line of the terminal takes without a break.
 std::size_t terminal_columns() {
     winsize size{};
@@ -37,7 +43,8 @@ Progress::Progress(const RunOptions& run, std::string task, std::optional<std::i
       unit_(std::move(unit)),
       total_(total),
       terminal_(error_is_terminal()),
-      start_(Clock::now()) {
+      start_(Clock::now()),
+      work_(static_cast<double>(total.value_or(0))) {
     if (!run.quiet) display_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
 }
 
@@ -52,15 +59,14 @@ double Progress::seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-void Progress::reach(double frames, std::int64_t complete) {
-    done_ = frames;
+void Progress::reach(double work, std::int64_t complete) {
+    done_ = work;
     complete_ = complete;
     done_at_s_ = seconds();
 }
 
-void Progress::skip() {
-    ++skipped_;
-    done_ = static_cast<double>(done_) + 1;
+void Progress::skip(double work) {
+    work_ = work_ - work;
     ++complete_;
 }
 
@@ -85,16 +91,17 @@ void Progress::show(const std::stop_token& stop) const {
 
 std::string Progress::line(std::size_t columns) const {
     const std::int64_t complete = complete_;
-    const bool known = total_ && *total_ >= complete;
+    const std::optional<double> done = part();
     const std::string counter =
-        known ? fmt::format("{}/{} {}s", complete, *total_, unit_) : counted(complete, unit_);
+        done ? fmt::format("{:.0f} %, {}/{} {}s", std::floor(100 * *done), complete, *total_, unit_)
+             : counted(complete, unit_);
     const std::string noted = counter + note_behind();
     const std::string text = noted + pace();
     const std::size_t length = task_.size() + 1 + text.size();
     if (length > columns) return (noted.size() <= columns ? noted : counter).substr(0, columns);
     const std::size_t room = columns - length;
-    if (!terminal_ || !known || room < kShortestBar + 3) return task_ + ' ' + text;
-    return fmt::format("{} [{}] {}", task_, bar(std::min(room - 3, kMaxBarCols)), text);
+    if (!terminal_ || !done || room < kShortestBar + 3) return task_ + ' ' + text;
+    return fmt::format("{} [{}] {}", task_, bar(*done, std::min(room - 3, kMaxBarCols)), text);
 }
 
 std::string Progress::note_behind() const {
@@ -102,23 +109,24 @@ std::string Progress::note_behind() const {
     return note_.empty() ? "" : ", " + note_;
 }
 
-std::string Progress::bar(std::size_t width) const {
-    const double part = std::min(done_ / static_cast<double>(*total_), 1.0);
-    const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
-    return fmt::format("{:-<{}}", std::string(filled, '#'), width);
+std::optional<double> Progress::part() const {
+    if (!total_ || *total_ < complete_) return {};
+    return work_ > 0 ? std::clamp(done_ / work_, 0.0, 1.0) : 1.0;
 }
 
 std::string Progress::pace() const {
     const double done = done_;
-    const double worked = done - static_cast<double>(skipped_);
-    if (worked <= 0) return {};
-    const double rate = worked / done_at_s_;
-    std::string text = fmt::format(", {} {}s/s", rounded(rate), unit_);
-    if (!total_) return text;
-    const double left_s = done_at_s_ + (static_cast<double>(*total_) - done) / rate - seconds();
-    if (left_s < 0) return text;  // this step takes longer than those before it
-    return text +
-           fmt::format(", {:%T} left", std::chrono::seconds(static_cast<std::int64_t>(left_s)));
+    if (done <= 0) return {};
+    const std::optional<double> done_part = part();
+    const bool counts_units = done == static_cast<double>(complete_);
+    const std::string rate =
+        counts_units ? fmt::format(", {} {}s/s", rounded(done / done_at_s_), unit_) : "";
+    if (!done_part) return rate;
+    const double now_s = seconds();
+    const double rest = (1 - *done_part) / *done_part;
+    double left_s = done_at_s_ * (1 + rest) - now_s;
+    if (left_s < 0) left_s = now_s * rest;  // this step takes longer than those before it
+    return rate + fmt::format(", {:%T} left", std::chrono::seconds(std::llround(left_s)));
 }
 
 }  // namespace stipple

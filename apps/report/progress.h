@@ -12,9 +12,9 @@
 
 namespace stipple {
 
-/// Shows on standard error how far a run has come: on a terminal a bar with rate and time left,
-/// else a line every few seconds, when quiet nothing. It shows it by itself: frames may come in
-/// bursts, with long work between them.
+/// Shows on standard error how far a run has come: on a terminal a bar with percentage and time
+/// left, else a line every few seconds, when quiet nothing. It shows it by itself: frames may come
+/// in bursts, with long work between them.
 class Progress {
   public:
     /// `task` as in "emulating". `total` frames or what else `unit` names, if known.
@@ -25,18 +25,21 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    /// All work, in the unit of `reach`, if it is not the number of frames.
+    void set_work(double work) { work_ = work; }
     /// One more frame is done.
     void advance() { reach(static_cast<double>(done_) + 1); }
-    /// One more frame is there without work: it tells nothing of the time that others take.
-    void skip();
-    /// So much work is done, in frames; `complete` of them are, and would be kept if it ended now.
-    void reach(double frames, std::int64_t complete);
+    /// One more frame is there, and its work need not be done.
+    void skip(double work = 1);
+    /// So much work is done; `complete` frames are, and would be kept if it ended now.
+    void reach(double work, std::int64_t complete);
     void reach(double frames) { reach(frames, static_cast<std::int64_t>(frames)); }
 
     /// The remark behind the counter from now on, as "3 lost"; empty: none.
     void note(std::string text);
 
     [[nodiscard]] std::int64_t done() const { return complete_; }
+    [[nodiscard]] double work_done() const { return done_; }
     /// Since the construction.
     [[nodiscard]] double seconds() const;
 
@@ -47,8 +50,9 @@ class Progress {
     [[nodiscard]] std::string line(std::size_t columns) const;
     /// The note with a comma before it.
     [[nodiscard]] std::string note_behind() const;
-    [[nodiscard]] std::string bar(std::size_t width) const;
-    /// Rate and time left, as far as they are known.
+    /// The part of the work that is done, 0..1; none: all work is unknown.
+    [[nodiscard]] std::optional<double> part() const;
+    /// The rate, if work is counted in frames, and the time left, if all work is known.
     [[nodiscard]] std::string pace() const;
 
     std::string task_;
@@ -56,9 +60,9 @@ class Progress {
     std::optional<std::int64_t> total_;
     bool terminal_;
     Clock::time_point start_;
+    std::atomic<double> work_;  ///< all of it, if `total_` is known
     std::atomic<double> done_ = 0;
     std::atomic<std::int64_t> complete_ = 0;
-    std::atomic<std::int64_t> skipped_ = 0;
     std::atomic<double> done_at_s_ = 0;  ///< when `done_` was last set
     mutable std::mutex note_mutex_;
     std::string note_;

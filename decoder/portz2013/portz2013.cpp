@@ -69,8 +69,8 @@ class Decoder {
         double begin;
         double end;
     };
-    static constexpr Share kSearch1{0, 0.2}, kSolve1{0.2, 0.3}, kFlow{0.3, 0.5},
-        kSearch2{0.5, 0.55}, kSolve2{0.55, 1};
+    static constexpr Share kSearch1{0, 0.22}, kSolve1{0.22, 0.45}, kFlow{0.45, 0.55},
+        kSearch2{0.55, 0.57}, kSolve2{0.57, 1};
 
     bool reach(const Share& share, double fraction) {
         stopped_ = stopped_ || !progress_(share.begin + fraction * (share.end - share.begin));

@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 import pty
+import re
 import signal
 import struct
 import subprocess
@@ -147,8 +148,28 @@ class CommandLineTest(ProgramTest):
     def test_progress_is_a_bar_on_a_terminal_only(self):
         self.assertNotIn("[#", self.run_program(*SYNTH, "-o", "plain.npy").stderr)
         text = self.on_a_terminal(*LONGER, "-o", "out.npy")
-        self.assertRegex(text, r"\[#+-*\] \d/9 frames, [\d.]+ frames/s, \d\d:\d\d:\d\d left")
+        self.assertRegex(text, r"\[#+-*\] \d+ %, \d/9 frames, [\d.]+ frames/s, \d\d:\d\d:\d\d left")
+        for percent, frames in re.findall(r"(\d+) %, (\d)/9 frames", text):
+            self.assertEqual(int(frames), (int(percent) + 1) * 9 // 100)  # the percentage is cut
         self.assertTrue(text.endswith(CLEAR), "the bar is taken away at the end")
+
+    def test_the_percentage_is_that_of_the_work_which_frames_need(self):
+        # Four frames are delivered when their block of 48 slots has been computed.
+        stream = self.write_stream(slots=96, rows=64, cols=96)
+        text = self.on_a_terminal("decode", stream, "-o", "out.npy", "--method", "best", "--until", "4")
+        shown = [int(percent) for percent in re.findall(r"\] (\d+) %, 0/4 frames, \d\d:\d\d:\d\d left", text)]
+        self.assertGreater(len(set(shown)), 3)
+        self.assertEqual(shown, sorted(shown))
+        self.assertLess(shown[len(shown) // 2], 90)
+
+    def test_a_long_decoding_says_first_what_it_takes(self):
+        stream = self.write_stream(slots=96, rows=160, cols=160)  # 800 us a voxel: 33 min of one core
+        self.addCleanup((program := self.start_program("decode", stream, "-o", "out.npy", "--method", "portz2013",
+                                                       "--threads", "1")).kill)
+        self.assertRegex(program.stderr.readline(),
+                         r"^stipple: decoding takes about 33 min and \d{3,} MB of memory$")
+        program.kill()
+        program.communicate()
 
     def test_the_bar_fits_the_terminal(self):
         for columns in (120, 62, 50, 42, 12, 5):

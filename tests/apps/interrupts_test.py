@@ -50,6 +50,10 @@ class InterruptsTest(ProgramTest):
         self.succeed("synth", "roll", "-o", "again.npy", "--frames", slots, "--size", "64x48")
         np.testing.assert_array_equal(self.array("again.npy"), self.array("out.npy"))
 
+    def test_synth_stops_within_a_frame(self):
+        self.interrupt("synth", "pan", "-o", "out.npy", "--frames", 1, "--size", "4096x4096", "--threads", 1)
+        self.assertEqual(self.names(), [])
+
     def test_emulate_leaves_a_stream_of_the_slots_that_are_done(self):
         np.lib.format.open_memmap(self.folder / "light.npy", "w+", np.uint8, (1000000, 32, 32))
         self.interrupt("emulate", "light.npy", "-o", "clip.stipple",
@@ -114,8 +118,9 @@ class InterruptsTest(ProgramTest):
 
     def test_a_second_signal_ends_the_run_and_says_where_its_data_are(self):
         # One frame takes seconds, and only between frames does the run look for a signal.
-        program = self.start_program("synth", "roll", "-o", "out.npy", "--frames", 100, "--size",
-                                     "1600x1200")
+        np.lib.format.open_memmap(self.folder / "light.npy", "w+", np.uint8, (4, 8000, 8000))
+        program = self.start_program("emulate", "light.npy", "-o", "out.stipple", "--schedule", "full1x", "--set",
+                                     "schedule.period_slots=1", "--threads", 1, "--max-memory", "8G")
         self.addCleanup(program.kill)
         deadline = time.monotonic() + 60
         while not (catches_interrupts(program) and list(self.folder.glob(".out.*"))):
@@ -127,7 +132,7 @@ class InterruptsTest(ProgramTest):
         program.send_signal(signal.SIGINT)
         message = program.communicate(timeout=60)[1]
         self.assertEqual(program.returncode, -signal.SIGINT, message)
-        partial = next(self.folder.glob(".out.*.partial.npy")).name
+        partial = next(self.folder.glob(".out.*.partial.stipple")).name
         self.assertIn(f"what was written so far: {partial}", message.replace("./", ""))
 
     def test_standard_error_that_cannot_be_written_ends_no_run(self):

@@ -160,6 +160,19 @@ TEST_F(ExplorationTest, APointIsARowWhenAllItsSeedsAreKnown) {
     EXPECT_EQ(exploration.counts().failed, 1);
 }
 
+TEST_F(ExplorationTest, WorkIsThatOfTheMethodOnThePixelsThatAreLeft) {
+    write_space("binning = [1, 2]\n");
+    ExploreOptions options;
+    options.replaced = {{"method", {"naive", "best"}}};
+    Exploration exploration = begun(options);
+    exploration.next_rung();
+    // Points: naive, naive of half the rows and columns, best, best of these.
+    EXPECT_DOUBLE_EQ(exploration.work_of(0), 4 * exploration.work_of(1));
+    EXPECT_DOUBLE_EQ(exploration.work_of(2), 4 * exploration.work_of(3));
+    const double costs = named(DecodeMethod::kBest).voxel_us - named(DecodeMethod::kNaive).voxel_us;
+    EXPECT_DOUBLE_EQ(exploration.work_of(2) - exploration.work_of(0), costs * exploration.slots());
+}
+
 TEST_F(ExplorationTest, SeedsCountInTheBudget) {
     write_space(kNoise);
     // Two points of two seeds with half a clip, then one point of two seeds with a whole one.

@@ -233,6 +233,22 @@ TEST(SceneTest, NamesAreTheFiveOfTheCommandLine) {
     }
 }
 
+TEST(SceneTest, TellsThePartOfAFrameAndStopsWhenTold) {
+    const Scene scene(SceneName::kPan, {.slots = 1, .shape = {100, 8, 1}});
+    std::vector<float> frame(800, -1), whole(800);
+    std::vector<double> told;
+    EXPECT_TRUE(scene.render(0, whole, [&](double part) {
+        told.push_back(part);
+        return true;
+    }));
+    EXPECT_GT(told.size(), 2U);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_FALSE(scene.render(0, frame, [](double) { return false; }));
+    EXPECT_EQ(frame.front(), whole.front());
+    EXPECT_EQ(frame.back(), -1);
+}
+
 TEST(SceneTest, RefusesOptionsOutOfRange) {
     const auto refused = [](const SceneOptions& options) {
         EXPECT_THROW(Scene(SceneName::kPan, options), InputError);
