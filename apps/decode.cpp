@@ -96,9 +96,10 @@ void add_decode(Command& app, Action& action) {
         .output(kVideoName);
     add_method(command, *options);
     command
-        .add_option("--stages", options->stages,
-                    "keep the estimate of each stage of portz2013 as DIR/start.npy, "
-                    "DIR/stage1.npy, DIR/stage2.npy, and draw DIR/convergence.png")
+        .add_option(
+            "--stages", options->stages,
+            "keep the estimate of each stage of portz2013 or reddy2011 as DIR/start.npy and "
+            "the like; of portz2013 draw DIR/convergence.png")
         .type_name("DIR")
         .output();
     command

@@ -4,22 +4,35 @@
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/fixed_pattern.h"
 #include "apps/standard_error.h"
 #include "calibration/calibration_file.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "core/joined.h"
 #include "explore/dictionary_file.h"
 
 namespace stipple {
+namespace {
+
+std::vector<std::string> methods_with_stages() {
+    std::vector<std::string> names;
+    for (const NamedDecodeMethod& method : decode_methods())
+        if (method.has_stages) names.emplace_back(method.name);
+    return names;
+}
+
+}  // namespace
 
 DecodeSetup read_decode_setup(const DecodeArguments& arguments) {
     const DecodeMethod method = decode_method_from_name(arguments.method);
-    if (!arguments.stages.empty() && method != DecodeMethod::kPortz2013)
-        throw InputError("--stages",
-                         fmt::format("method {} has none; portz2013 has", arguments.method));
+    if (!arguments.stages.empty() && !named(method).has_stages)
+        throw InputError("--stages", fmt::format("method {} has none; {} have", arguments.method,
+                                                 joined(methods_with_stages())));
     Config config = arguments.options.empty()
                         ? Config(arguments.settings, "decoder")
                         : Config(arguments.options, arguments.settings, "decoder");

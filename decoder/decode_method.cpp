@@ -60,7 +60,8 @@ constexpr NamedDecodeMethod kMethods[] = {
      [](const BlockTask& block) {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
                                  block.progress);
-     }},
+     },
+     nullptr, true},
     {"reddy2011", DecodeMethod::kReddy2011,
      "P2C2 (Reddy, Veeraraghavan, Chellappa, CVPR 2011): wavelets and optical flow", kMaxCoreSites,
      64, 16,
@@ -68,7 +69,8 @@ constexpr NamedDecodeMethod kMethods[] = {
      [](const BlockTask& block) {
          return decode_reddy2011(block.measurements, block.options.reddy2011, block.observer,
                                  block.progress);
-     }},
+     },
+     nullptr, true},
     {"hitomi2011", DecodeMethod::kHitomi2011,
      "patches of a learned dictionary (Hitomi et al., ICCV 2011); needs one", kMaxCoreSites, 64, 34,
      [](Config& config, DecodeOptions& options) { read_options(config, options.hitomi2011); },

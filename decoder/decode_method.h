@@ -48,6 +48,8 @@ struct NamedDecodeMethod {
     /// method does not take.
     void (*check_schedule)(const ExposureSchedule& schedule, std::string_view stream,
                            std::string_view method) = nullptr;
+    /// Whether it calls the StageObserver of the block.
+    bool has_stages = false;
 };
 
 /// All methods, the simplest first.

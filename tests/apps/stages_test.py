@@ -51,8 +51,16 @@ class StagesTest(ProgramTest):
         self.fails(INPUT, ["stages/convergence.png", "exists already"], "decode", stream, "-o", "out.npy",
                    *QUICK, "--stages", "stages")
 
+    def test_the_stages_of_reddy2011(self):
+        self.succeed("decode", self.write_stream(slots=10, rows=16, cols=16), "-o", "out.npy", "--method", "reddy2011",
+                     "--stages", "stages")
+        names = [name for name in self.names() if name.startswith("stages/")]
+        self.assertLess({"stages/start.npy", "stages/without_flow.npy", "stages/round1.npy"}, set(names) | {""})
+        last = max(name for name in names if "round" in name)
+        np.testing.assert_array_equal(self.array(last), self.array("out.npy"))
+
     def test_a_method_without_stages_is_refused(self):
-        self.fails(INPUT, ["--stages", "method naive has none", "portz2013"], "decode",
+        self.fails(INPUT, ["--stages", "method naive has none; portz2013, reddy2011 have"], "decode",
                    self.write_stream(), "-o", "out.npy", "--method", "naive", "--stages", "stages")
 
 
