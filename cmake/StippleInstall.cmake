@@ -45,6 +45,8 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake 
 install(FILES ${CMAKE_BINARY_DIR}/stippleConfig.cmake ${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake
               cmake/FindOpenCV.cmake
         DESTINATION ${package_dir} COMPONENT libraries)
+install(FILES cmake/package_config_dir.cpp.in DESTINATION ${package_dir} RENAME package_config_dir.cpp
+        COMPONENT libraries)
 
 # What stipple.pc.in names: libraries, users before used, and the way from its folder to the prefix.
 list(TRANSFORM STIPPLE_MODULES PREPEND "-lstipple_" OUTPUT_VARIABLE stipple_libraries)

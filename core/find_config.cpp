@@ -6,8 +6,13 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/joined.h"
 #include "core/own_folders.h"
 #include "core/suggestion.h"
+
+/// The folder of the package that a program was built with: stippleConfig.cmake gives it the source
+/// that defines this.
+extern "C" [[gnu::weak]] const char* stipple_package_config_dir();
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -21,8 +26,16 @@ std::vector<fs::path> config_folders() {
         folders.push_back((own / "../share/stipple/config").lexically_normal());
         folders.push_back(own / "config");  // a build folder, the Python package
     }
+    if (&stipple_package_config_dir != nullptr) folders.emplace_back(stipple_package_config_dir());
     folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);
     return folders;
+}
+
+/// "A, B and C" of the folders.
+std::string searched() {
+    std::vector<std::string> names;
+    for (const fs::path& folder : config_folders()) names.push_back(folder.string());
+    return joined(names);
 }
 
 }  // namespace
@@ -64,9 +77,12 @@ fs::path find_config(ConfigKind kind, std::string_view name) {
     const auto names = config_names(kind);
     throw InputError(
         fmt::format("\"{}\"", name),
-        names.empty() ? fmt::format("there is no {}/ in any configuration folder", folder_of(kind))
-                      : fmt::format("is neither a file nor one of the {}; {}", folder_of(kind),
-                                    suggestion(name, names)));
+        names.empty()
+            ? fmt::format("there is no {}/ in {}; set STIPPLE_CONFIG_DIR to a folder that "
+                          "has it, as PREFIX/share/stipple/config",
+                          folder_of(kind), searched())
+            : fmt::format("is neither a file nor one of the {}; {}", folder_of(kind),
+                          suggestion(name, names)));
 }
 
 }  // namespace stipple

@@ -19,7 +19,6 @@ class ExamplesTest(unittest.TestCase):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
         cls.run_command(os.environ["CMAKE"], "--install", os.environ["BUILD"], "--prefix", cls.folder / "first")
         cls.prefix = (cls.folder / "first").rename(cls.folder / "moved")
-        cls.environment = os.environ | {"STIPPLE_CONFIG_DIR": str(cls.prefix / "share/stipple/config")}
         cls.configure(EXAMPLES, cls.folder / "build")
         cls.run_command(os.environ["CMAKE"], "--build", cls.folder / "build")
         cls.clip = (np.arange(40 * 24 * 32).reshape(40, 24, 32) % 97 / 97).astype(np.float32)
@@ -39,7 +38,7 @@ class ExamplesTest(unittest.TestCase):
                                "-DCMAKE_BUILD_TYPE=Release", code=code)
 
     def example(self, name, *arguments):
-        return self.run_command(self.folder / "build" / name, *arguments, env=self.environment)
+        return self.run_command(self.folder / "build" / name, *arguments)
 
     def program(self, *arguments):
         return self.run_command(self.prefix / "bin/stipple", *arguments)
@@ -90,6 +89,14 @@ class ExamplesTest(unittest.TestCase):
         flags = shlex.split(self.run_command("pkg-config", "--cflags", "--libs", "stipple", env=environment))
         self.run_command(os.environ["CXX"], EXAMPLES / "read_stream.cpp", "-o", "by_hand", *flags)
         self.read_stream(self.folder / "by_hand", "by_hand.stipple")
+        # Such a program does not know the folder of the configurations, and says where it has looked.
+        self.run_command(os.environ["CXX"], EXAMPLES / "own_schedule.cpp", "-o", "own_by_hand", *flags)
+        configs = self.run_command("pkg-config", "--variable=configdir", "stipple", env=environment).strip()
+        program = self.folder / "own_by_hand"
+        self.run_command(program, "own.stipple", env=os.environ | {"STIPPLE_CONFIG_DIR": configs})
+        said = self.run_command(program, "own.stipple", code=1, env=os.environ | {"STIPPLE_CONFIG_DIR": "nowhere"})
+        self.assertRegex(said, rf'"ideal": there is no sensors/ in nowhere, .*{self.folder}/config.*; '
+                               "set STIPPLE_CONFIG_DIR")
 
     def project(self, name, *lines):
         """A folder with a project of these lines of CMake."""
