@@ -197,7 +197,7 @@ class LiveTest(LiveSourceTest):
         with self.assertWarnsRegex(UserWarning, "sends 200 frames/s, but .*2000 a second"):
             stream = self.live(sensor, "tiled", 5, black_level_dn=64, output=self.folder / "python.stipple")
         self.assertEqual((self.folder / "python.stipple").read_bytes(), wanted)
-        self.assertEqual(set(stream.figures), set(told))
+        self.assertEqual(set(stream.figures), set(told) - {"warnings"})
         for key in ("slots", "samples", "payload_bits", "frames", "slots_hz", "incomplete", "lost", "transport",
                     "held_slots", "unheld_slots", "readout", "light_read", "compression_ratio"):
             self.assertEqual(stream.figures[key], told[key], key)
