@@ -276,8 +276,8 @@ class VideoTest(ProgramTest):
         light, said = self.emulate("a.mkv", "--transfer", "linear", "--resample", "hold", "--frames-hz", 100, "--set",
                                    "sensor.slot_us=10000")
         self.assertEqual(len(light), 8 + 29)
-        self.assertEqual(said, "stipple: warning: a.mkv: its frames are 0.01 to 0.04 s apart, but --frames-hz makes them "
-                         "equally long\n")
+        self.assertEqual(said, "stipple: warning: a.mkv: its frames are 0.01 to 0.04 s apart, but --frames-hz makes "
+                         "them equally long\n")
 
     def test_a_frame_far_behind_is_refused(self):
         """An hour of one frame among milliseconds would be millions of slots."""
