@@ -80,13 +80,13 @@ LivePreviewOptions show_in(const std::string& file) {
                 },
             .tell =
                 [](const std::string& failure) {
-                    say_error("no preview: {}; the recording goes on", failure);
+                    say_note("no preview: {}; the recording goes on", failure);
                 },
             .keep_going = [] { return stop_signal() == 0; }};
 }
 
 void say_slow_preview() {
-    say_error(
+    say_note(
         "the recording is complete; its preview ends slowly, as the machine is busy. Ctrl-C twice "
         "does not wait");
 }

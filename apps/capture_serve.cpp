@@ -53,8 +53,8 @@ class ClientReport {
         if (now == client_) return;
         const std::uint64_t frames = server_->counts().frames;
         if (!client_.empty())
-            say_error("{} has gone, {} sent", client_, counted(frames - frames_before_, "frame"));
-        if (!now.empty()) say_error("{} controls the camera", now);
+            say_note("{} has gone, {} sent", client_, counted(frames - frames_before_, "frame"));
+        if (!now.empty()) say_note("{} controls the camera", now);
         client_ = now;
         frames_before_ = frames;
     }

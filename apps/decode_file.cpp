@@ -101,8 +101,8 @@ std::string light_levels_text(const LightLevels& levels) {
 /// Tells what to expect of a run of more than a minute.
 void say_cost(const DecodeCost& cost, const RunOptions& run) {
     if (cost.seconds < 60 || run.quiet) return;
-    say_error("decoding takes about {} and {:.0f} MB of memory", rough_time(cost.seconds),
-              1e-6 * static_cast<double>(cost.bytes));
+    say_note("decoding takes about {} and {:.0f} MB of memory", rough_time(cost.seconds),
+             1e-6 * static_cast<double>(cost.bytes));
 }
 
 /// A run of the command: opened by the constructor, then `run`, then `tell`.

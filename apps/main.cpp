@@ -54,7 +54,7 @@ void say_what_is_left() {
 }
 
 int fail(ExitCode code, std::string_view message) {
-    say_failure(message);
+    say_error(message);
     say_what_is_left();
     return code;
 }
@@ -69,7 +69,7 @@ int fail(ExitCode code, std::string_view message) {
 
 /// The end of a run that a signal has stopped.
 int stop(std::string_view message) {
-    say_error(message);
+    say_note(message);
     say_what_is_left();
     return kSignal + stop_signal();
 }

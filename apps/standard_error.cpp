@@ -75,11 +75,11 @@ bool clear_bar() noexcept {
     return shown;
 }
 
-void say_error(std::string_view text) noexcept {
+void say_note(std::string_view text) noexcept {
     say({}, {}, text);
 }
 
-void say_failure(std::string_view text) noexcept {
+void say_error(std::string_view text) noexcept {
     say("error", kRed, text);
 }
 

@@ -33,11 +33,11 @@ void show_bar(std::string_view line) noexcept;
 bool clear_bar() noexcept;
 
 /// A line of its own, "stipple: " before it, as `terminal_text`: what is no warning and no error.
-void say_error(std::string_view text) noexcept;
+void say_note(std::string_view text) noexcept;
 
 /// The same for the error that ends the run: "stipple: error: ". On a terminal the level is
 /// coloured, unless the variable NO_COLOR is set.
-void say_failure(std::string_view text) noexcept;
+void say_error(std::string_view text) noexcept;
 
 /// The same for a warning, "stipple: warning: "; nothing if it is empty.
 void say_warning(std::string_view text) noexcept;
@@ -47,9 +47,9 @@ void say_warning(std::string_view text) noexcept;
 
 /// Formatted.
 template <typename... Arguments>
-requires(sizeof...(Arguments) > 0) void say_error(fmt::format_string<Arguments...> format,
-                                                  Arguments&&... arguments) {
-    say_error(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
+requires(sizeof...(Arguments) > 0) void say_note(fmt::format_string<Arguments...> format,
+                                                 Arguments&&... arguments) {
+    say_note(std::string_view(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
 template <typename... Arguments>

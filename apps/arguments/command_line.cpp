@@ -331,7 +331,7 @@ CommandLine::Parsed CommandLine::parse(int argc, char** argv) {
     } catch (const CLI::CallForVersion& version) {
         print_text(version.what() + std::string("\n"));
     } catch (const CLI::ParseError& e) {
-        say_failure(usage_problem(*app_, words, e));
+        say_error(usage_problem(*app_, words, e));
         return Parsed::kWrong;
     }
     return Parsed::kHelp;

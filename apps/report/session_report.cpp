@@ -38,7 +38,7 @@ void say_event(const SessionEvent& event) {
     if (const auto* const outage = std::get_if<Outage>(&event))
         say_warning("camera lost ({}); reopening it", outage->reason);
     if (const auto* const recovery = std::get_if<Recovery>(&event))
-        say_error("the camera is back after {:.1f} s", recovery->gone_s);
+        say_note("the camera is back after {:.1f} s", recovery->gone_s);
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) say_warning(lost->warning);
 }
 
