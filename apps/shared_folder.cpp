@@ -15,7 +15,6 @@
 #include "io/disk_sync.h"
 #include "io/partial_output.h"
 #include "io/pending_output.h"
-#include "stream/crc32c.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -90,7 +89,7 @@ nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderK
         throw InputError(folder.string(),
                          fmt::format("has no {}: it is no folder that `stipple {} --part` wrote",
                                      kind.identity, kind.verb));
-    auto json = nlohmann::ordered_json::parse(text_of(file), nullptr, false);
+    auto json = nlohmann::ordered_json::parse(identity_text(folder, kind), nullptr, false);
     bool whole = json.is_object();
     for (const auto& [key, value] : pattern.items())
         whole = whole && json.contains(key) &&
@@ -115,9 +114,8 @@ std::string first_difference(const nlohmann::ordered_json& there,
     return {};
 }
 
-std::uint32_t identity_crc(const fs::path& folder, const SharedFolderKind& kind) {
-    const std::string text = text_of(folder / kind.identity);
-    return crc32c({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+std::string identity_text(const fs::path& folder, const SharedFolderKind& kind) {
+    return text_of(folder / kind.identity);
 }
 
 void remove_leftovers(const fs::path& file) {

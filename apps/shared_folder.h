@@ -46,9 +46,9 @@ void claim_folder(const std::filesystem::path& folder, const SharedFolderKind& k
 [[nodiscard]] std::string first_difference(const nlohmann::ordered_json& there,
                                            const nlohmann::ordered_json& here);
 
-/// The CRC-32C of the identity as the folder has it, which tells parts of another result.
-[[nodiscard]] std::uint32_t identity_crc(const std::filesystem::path& folder,
-                                         const SharedFolderKind& kind);
+/// The identity as the folder has it.
+[[nodiscard]] std::string identity_text(const std::filesystem::path& folder,
+                                        const SharedFolderKind& kind);
 
 /// Removes what killed runs have left of a file.
 void remove_leftovers(const std::filesystem::path& file);

@@ -12,6 +12,7 @@
 #include "decoder/block_partition.h"
 #include "io/npy_header.h"
 #include "io/npy_reader.h"
+#include "stream/stream_identity.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -60,7 +61,7 @@ WindowIdentity identity_of(const nlohmann::ordered_json& json, const fs::path& f
 WindowFolder::WindowFolder(fs::path folder, const WindowIdentity& identity)
     : folder_(std::move(folder)), identity_(identity) {
     if (has_identity(folder_, kDecodingFolder, json_of(identity)))
-        crc_ = identity_crc(folder_, kDecodingFolder);
+        decoding_ = identity_text(folder_, kDecodingFolder);
 }
 
 WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -75,13 +76,13 @@ WindowFolder::WindowFolder(fs::path folder) : folder_(std::move(folder)) {
     if (!other.empty())
         throw InputError(folder_.string(),
                          fmt::format("is of another version of this program: {}", other));
-    crc_ = identity_crc(folder_, kDecodingFolder);
+    decoding_ = identity_text(folder_, kDecodingFolder);
 }
 
 void WindowFolder::claim() {
-    if (crc_) return;
+    if (decoding_) return;
     claim_folder(folder_, kDecodingFolder, json_of(identity_));
-    crc_ = identity_crc(folder_, kDecodingFolder);
+    decoding_ = identity_text(folder_, kDecodingFolder);
 }
 
 std::int64_t WindowFolder::count() const {
@@ -93,7 +94,7 @@ fs::path WindowFolder::window(std::int64_t number) const {
 }
 
 std::string WindowFolder::mark(std::int64_t number) const {
-    return fmt::format("window {} of {:08x}", number, crc_.value());
+    return window_mark(number, decoding_.value());
 }
 
 std::int64_t WindowFolder::begin_slot(std::int64_t number) const {
@@ -111,7 +112,7 @@ NumberedParts WindowFolder::windows() const {
 
 bool WindowFolder::holds(std::int64_t number) const {
     const fs::path file = window(number);
-    if (!crc_ || !fs::exists(file)) return false;
+    if (!decoding_ || !fs::exists(file)) return false;
     try {
         const NpyReader reader(file);
     } catch (const InputError&) {

@@ -58,7 +58,7 @@ class WindowFolder {
 
     std::filesystem::path folder_;
     WindowIdentity identity_;
-    std::optional<std::uint32_t> crc_;  ///< of decoding.json, once that is there
+    std::optional<std::string> decoding_;  ///< the text of decoding.json, once that is there
 };
 
 }  // namespace stipple

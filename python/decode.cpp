@@ -28,7 +28,6 @@
 #include "python/sensor.h"
 #include "python/stream.h"
 #include "readout/provenance.h"
-#include "stream/crc32c.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_identity.h"
 
@@ -125,11 +124,8 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
 /// planes, and the text of decoding.json.
 py::bytes window_header(std::int64_t number, const std::array<int, 4>& sizes,
                         const std::string& identity) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(identity.data());
     const auto& [slots, rows, cols, planes] = sizes;
-    return format_npy_header(
-        slots, {rows, cols, planes},
-        fmt::format("window {} of {:08x}", number, crc32c({bytes, identity.size()})));
+    return format_npy_header(slots, {rows, cols, planes}, window_mark(number, identity));
 }
 
 }  // namespace

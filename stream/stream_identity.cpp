@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "stream/crc32c.h"
 #include "stream/file_window.h"
 #include "stream/header_codec.h"
 #include "stream/trailing_index.h"
@@ -19,6 +20,11 @@ std::optional<std::string> stream_identity(const std::filesystem::path& file) {
     const auto index = read_trailing_index(window, framing);
     if (!index || !index->checksum) return std::nullopt;
     return fmt::format("crc {:08x} {:08x}", framing.seed, *index->checksum);
+}
+
+std::string window_mark(std::int64_t number, std::string_view decoding) {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(decoding.data());
+    return fmt::format("window {} of {:08x}", number, crc32c({bytes, decoding.size()}));
 }
 
 }  // namespace stipple

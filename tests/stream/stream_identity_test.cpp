@@ -40,5 +40,9 @@ TEST_F(StreamIdentityTest, NeedsTheEndOfTheStream) {
     EXPECT_THROW(identity("no stream, but long enough"), InputError);
 }
 
+TEST(WindowMarkTest, HasTheChecksumOfTheDecoding) {
+    EXPECT_EQ(window_mark(3, "123456789"), "window 3 of e3069283");  // check value of CRC-32C
+}
+
 }  // namespace
 }  // namespace stipple
