@@ -44,12 +44,9 @@ class RawVideoReader {
     [[nodiscard]] FrameShape shape() const { return video_.shape; }
     [[nodiscard]] int slots() const { return static_cast<int>(video_.slots); }
     [[nodiscard]] const SourceTraits& traits() const { return video_.traits; }
-    /// Of the frame read last, in frame periods.
-    [[nodiscard]] double frame_time() const {
-        return video_.times.empty() ? static_cast<double>(next_slot_ - 1)
-                                    : video_.times[next_slot_ - 1];
-    }
     [[nodiscard]] bool has_times() const { return !video_.times.empty(); }
+    /// Of the frame read last, in frame periods. Precondition: has_times.
+    [[nodiscard]] double frame_time() const { return video_.times[next_slot_ - 1]; }
     /// The file and the frame read last, for messages.
     [[nodiscard]] std::string where() const;
 

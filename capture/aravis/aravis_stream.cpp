@@ -119,7 +119,6 @@ void AravisStream::Impl::create(std::optional<int> packet_bytes) {
 }
 
 void AravisStream::Impl::open_stream() {
-    g_clear_object(&stream);
     // The thread that receives calls this before it reads the socket.
     const ArvStreamCallback prepare = [](void* self, ArvStreamCallbackType type, ArvBuffer*) {
         if (type == ARV_STREAM_CALLBACK_TYPE_INIT) static_cast<Impl*>(self)->prepare_socket();
