@@ -26,7 +26,7 @@ TEST(DescriptionZipTest, BytesBeforeAndBehindTheZipFileDoNotMatter) {
 TEST(DescriptionZipTest, ALargeFileIsRefusedBeforeMemoryIsTaken) {
     EXPECT_FALSE(unzipped_description(zip_of(kXml, true), kXml.size() - 1));
     Bytes zip = zip_of(kXml, true);
-    zip[zip.size() - 22 - 52 + 24 + 3] = 0xFF;  // the unpacked size in the directory
+    zip[zip.size() - 22 - 51 + 24 + 3] = 0xFF;  // the unpacked size in the directory
     EXPECT_FALSE(unzipped_description(zip, 1U << 24U));
 }
 

@@ -87,6 +87,17 @@ TEST(RecordingFormatTest, ValuesLieWhereTheDocumentSays) {
 }
 
 // Unsigned in the file; no region of a sensor begins there.
+TEST(RecordingFormatTest, AnEndThatKnowsFewerCausesIsRead) {
+    RecordingEnd end;
+    end.lost = {0, 1, 2, 3, 4, 5};
+    std::string text = encode_end(end);
+    const std::string layout = ",\n  \"layout\": 0";
+    const auto at = text.find(layout);
+    ASSERT_NE(at, std::string::npos);
+    text.erase(at, layout.size());  // as earlier versions wrote it
+    EXPECT_EQ(decode_end(text, "end").lost, end.lost);
+}
+
 TEST(RecordingFormatTest, AnOffsetBeyondTheRangeOfIntIsItsMaximum) {
     CapturedFrame frame = test_frame(7);
     auto bytes = encode_frame_record(frame);

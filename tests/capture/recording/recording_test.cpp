@@ -59,14 +59,14 @@ TEST(RecordingTest, TheEndHoldsTotalsLossesAndClock) {
     writer.write(frame_with_everything());
     EXPECT_EQ(writer.totals().lost[5], 12U);
     writer.finish({.reason = "camera lost",
-                   .lost = {0, 1, 2, 3, 4, 12},
+                   .lost = {0, 1, 2, 3, 4, 12, 13},
                    .transport = {.underruns = 5, .packets_resent = 6}});
     RecordingReader reader(folder / "a");
     EXPECT_EQ(read_frames(reader).size(), 11U);
     ASSERT_TRUE(reader.end());
     const RecordingEnd& end = *reader.end();
     EXPECT_EQ(end.reason, "camera lost");
-    EXPECT_EQ(end.lost, (std::array<std::uint64_t, kGapCauseNames.size()>{0, 1, 2, 3, 4, 12}));
+    EXPECT_EQ(end.lost, (std::array<std::uint64_t, kGapCauseNames.size()>{0, 1, 2, 3, 4, 12, 13}));
     EXPECT_EQ(end.transport.underruns, 5U);
     EXPECT_EQ(end.transport.packets_resent, 6U);
     EXPECT_EQ(end.frames, 11U);
