@@ -275,7 +275,7 @@ const std::string& DecodeRun::name_of(const StreamReader& reader) const {
 }
 
 void DecodeRun::warn_of_faults(const StreamReader& reader) const {
-    const StreamReport found = reader.report();
+    const StreamReport& found = reader.report();
     if (const auto text = no_sample_text(found); !text.empty())
         say_warning("{}: {}", name_of(reader), text);
     if (const auto text = no_end_text(found); end_ == DecodeEnd::kStream && !text.empty())

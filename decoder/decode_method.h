@@ -35,6 +35,7 @@ enum class DecodeMethod {
 struct NamedDecodeMethod {
     std::string_view name;
     DecodeMethod method;
+    bool has_stages;              ///< it calls the StageObserver of the block
     std::string_view text;        ///< description and cost, for users
     std::int64_t max_tile_sites;  ///< larger frames are decoded in tiles
     std::uint64_t voxel_bytes;    ///< memory of all arrays of the method, bytes a voxel
@@ -48,8 +49,6 @@ struct NamedDecodeMethod {
     /// method does not take.
     void (*check_schedule)(const ExposureSchedule& schedule, std::string_view stream,
                            std::string_view method) = nullptr;
-    /// Whether it calls the StageObserver of the block.
-    bool has_stages = false;
 };
 
 /// All methods, the simplest first.

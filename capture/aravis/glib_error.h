@@ -2,7 +2,7 @@
 
 #include <string>
 
-struct _GError;
+struct _GError;  // the name that GLib gives it. NOLINT(bugprone-reserved-identifier)
 
 namespace stipple {
 
