@@ -119,7 +119,7 @@ std::string Progress::pace() const {
     if (done <= 0) return {};
     const std::optional<double> done_part = part();
     const bool counts_units = done == static_cast<double>(complete_);
-    const std::string rate =
+    std::string rate =
         counts_units ? fmt::format(", {} {}s/s", rounded(done / done_at_s_), unit_) : "";
     if (!done_part) return rate;
     const double now_s = seconds();
