@@ -71,6 +71,9 @@ class ImageSequence {
                                          shape_.cols, shape_.rows, shape_.planes));
         if (image_.traits.filter != traits_.filter)
             throw InputError(where(), "has another colour filter array than the first frame");
+        if (image_.traits.gamma_coded != traits_.gamma_coded ||
+            image_.traits.curve != traits_.curve)
+            throw InputError(where(), "declares another transfer function than the first frame");
         std::copy(image_.values.begin(), image_.values.end(), frame.begin());
         return true;
     }

@@ -13,7 +13,7 @@ Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits, 
                      const std::string& name) {
     if (options.transfer != Transfer::kAuto) return options.transfer.value_or(Transfer::kLinear);
     if (traits.declared) return *traits.declared;
-    if (is_video && traits.gamma_coded)
+    if (traits.gamma_coded && (is_video || !traits.curve.empty()))
         throw InputError(name, traits.curve.empty()
                                    ? "declares no transfer function, so --transfer auto has none; "
                                      "name it, as --transfer bt709 of most cameras"
@@ -29,7 +29,7 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
     const Transfer transfer = options.transfer.value_or(Transfer::kLinear);
     const bool hdr = traits.declared == Transfer::kPq || traits.declared == Transfer::kHlg;
     if (hdr && transfer != Transfer::kAuto && transfer != traits.declared)
-        warnings.push_back(fmt::format("{}: is HDR video in the curve {}: add --transfer {}", name,
+        warnings.push_back(fmt::format("{}: is HDR in the curve {}: add --transfer {}", name,
                                        traits.curve, name_of(*traits.declared)));
     else if (traits.gamma_coded && !options.transfer)
         warnings.push_back(
@@ -53,7 +53,7 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
     if (!traits.primaries.empty() && !converted)
         warnings.push_back(
             fmt::format("{}: declares the primaries {}, which are not converted to those of Rec. "
-                        "709; convert it first: ffmpeg -i VIDEO -vf colorspace=bt709 OUT.mkv",
+                        "709; convert it first, as video by ffmpeg -vf colorspace=bt709",
                         name, traits.primaries));
     if (std::string text = unequal_times_warning(traits.unequal_times, options, name);
         !text.empty())

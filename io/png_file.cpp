@@ -18,12 +18,12 @@
 #include "core/light.h"
 #include "core/memory_limit.h"
 #include "io/output_file.h"
+#include "io/png_declarations.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::size_t kSignatureBytes = 8;
-constexpr png_fixed_point kLinear = PNG_FP_1;  // in a gAMA chunk
 
 /// What libpng gave up for. No string, for libpng leaves by a jump, which skips destructors.
 struct Problem {
@@ -103,25 +103,17 @@ struct Png {
     }
 };
 
-/// What is read is what makes up the pixels, transparency and the curve; of all else, CRCs alone.
+/// What is read is what makes up the pixels and transparency; of all else, CRCs alone.
 void read_header(png_structp png, png_infop info, Source& source) {
-    constexpr png_byte kCurves[] = "gAMA\0sRGB";
     png_set_read_fn(png, &source, read_bytes);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_chunk_malloc_max(png, 0);  // or a long chunk that is left out would be refused
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, kCurves, 2);
     png_read_info(png, info);
 }
 
 SourceTraits traits_of(png_structp png, png_infop info, bool grey) {
     SourceTraits traits{.gamma_coded = !grey && png_get_bit_depth(png, info) <= 8};
-    png_fixed_point gamma = 0;  // that of sRGB too
-    if (png_get_gAMA_fixed(png, info, &gamma) != 0) {
-        traits.gamma_coded = gamma != kLinear;
-        traits.curve = traits.gamma_coded ? fmt::format("power {:.4g}", gamma / 1e5) : "linear";
-    }
-    if (png_get_valid(png, info, PNG_INFO_sRGB) != 0) traits.curve = "srgb";
     traits.bits = png_get_bit_depth(png, info);
     traits.has_alpha = (png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                        png_get_valid(png, info, PNG_INFO_tRNS) != 0;
@@ -205,6 +197,7 @@ PngImage decode_png(std::span<const std::uint8_t> file, const std::string& where
         png_read_image(png, rows.data());
         png_read_end(png, nullptr);
     }));
+    add_png_declarations(file, image.pixels.channels == 3, where, image.traits);
     return image;
 }
 

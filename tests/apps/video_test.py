@@ -318,7 +318,7 @@ class VideoTest(ProgramTest):
         declared = self.write_raw("video.mkv", (grey // 257).astype(np.uint8), "gray", "-color_trc", "linear")
         self.assertEqual(self.emulate(declared)[1], "")
         _, said = self.emulate(self.write_raw("hdr.mkv", grey, "gray16le", "-color_trc", "smpte2084"))
-        self.assertIn("hdr.mkv: is HDR video in the curve smpte2084", said)
+        self.assertIn("hdr.mkv: is HDR in the curve smpte2084", said)
 
 
 if __name__ == "__main__":
