@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cctype>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -74,8 +75,22 @@ class ImageSequence {
         if (image_.traits.gamma_coded != traits_.gamma_coded ||
             image_.traits.curve != traits_.curve)
             throw InputError(where(), "declares another transfer function than the first frame");
+        if (const double us = image_.traits.exposure_us.value_or(0); us > 0) {
+            min_exposure_us_ = std::min(min_exposure_us_, us);
+            max_exposure_us_ = std::max(max_exposure_us_, us);
+        }
         std::copy(image_.values.begin(), image_.values.end(), frame.begin());
         return true;
+    }
+
+    /// That images were exposed unequally long, so far; else empty.
+    [[nodiscard]] std::string exposure_warning() const {
+        constexpr double kSameExposure = 0.01;
+        if (max_exposure_us_ * (1 - kSameExposure) <= min_exposure_us_) return {};
+        return fmt::format(
+            "its frames were exposed for {:.4g} to {:.4g} us, for which their light is not "
+            "corrected",
+            min_exposure_us_, max_exposure_us_);
     }
 
     void skip(int frames) { next_ += std::min(frames, slots() - next_); }
@@ -91,6 +106,8 @@ class ImageSequence {
     std::optional<TiffFile> tiff_;
     TiffPixels page_;
     int next_ = 0;
+    double min_exposure_us_ = std::numeric_limits<double>::max();
+    double max_exposure_us_ = 0;
     Image image_;
     SourceTraits traits_;
     FrameShape shape_;
@@ -296,8 +313,11 @@ bool FootageReader::Impl::read_whole(std::span<float> frame) {
         return true;
     };
     if (!std::visit(read, source)) {
-        if (const auto* video = std::get_if<VideoReader>(&source);
-            video != nullptr && !std::exchange(at_end, true)) {
+        if (std::exchange(at_end, true)) return false;
+        if (const auto* images = std::get_if<ImageSequence>(&source))
+            if (const std::string text = images->exposure_warning(); !text.empty())
+                warn(fmt::format("{}: {}", name, text));
+        if (const auto* video = std::get_if<VideoReader>(&source)) {
             for (std::string& text : video->warnings()) warn(std::move(text));
             warn(unequal_times_warning(video->unequal_times(), options, name));
         }

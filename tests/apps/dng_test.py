@@ -10,9 +10,43 @@ import numpy as np
 from camera_files import MOSAIC, CameraFilesTest, msb_packed
 from program import INPUT
 
-SHORT, LONG, RATIONAL, BYTE, SRATIONAL = 3, 4, 5, 1, 10
-SIZES = {SHORT: "H", LONG: "I", RATIONAL: "2I", BYTE: "B", SRATIONAL: "2i"}
+SHORT, LONG, RATIONAL, BYTE, SRATIONAL, UNDEFINED = 3, 4, 5, 1, 10, 7
+SIZES = {SHORT: "H", LONG: "I", RATIONAL: "2I", BYTE: "B", SRATIONAL: "2i", UNDEFINED: "B"}
+JPEG = {259: (SHORT, [7])}
 GRBG = {33421: (SHORT, [2, 2]), 33422: (BYTE, [1, 0, 2, 1])}
+
+
+def lossless_jpeg(values, bits, components=2, predictor=1, shift=0):
+    """A lossless JPEG file (ITU-T T.81, annex H) of samples (row, col), of which `components` neighbours are a pixel."""
+    rows, cols = values.shape[0], values.shape[1] // components
+    samples = (np.asarray(values, np.int64) >> shift).reshape(rows, cols, components)
+    string = ""
+    for row in range(rows):
+        for col in range(cols):
+            for part in range(components):
+                at = lambda y, x: int(samples[y, x, part])
+                if row == 0 and col == 0:
+                    guess = 1 << (bits - shift - 1)
+                elif row == 0:
+                    guess = at(0, col - 1)
+                elif col == 0:
+                    guess = at(row - 1, 0)
+                else:
+                    a, b, c = at(row, col - 1), at(row - 1, col), at(row - 1, col - 1)
+                    guess = (a, b, c, a + b - c, a + (b - c >> 1), b + (a - c >> 1), a + b >> 1)[predictor - 1]
+                difference = (at(row, col) - guess + 32768) % 65536 - 32768
+                category = abs(difference).bit_length()
+                # Of the Huffman table below: codes of 5 bits, in order.
+                string += f"{category:05b}"
+                if 0 < category < 16:
+                    string += f"{difference if difference > 0 else difference + 2 ** category - 1:0{category}b}"
+    string += "1" * (-len(string) % 8)
+    data = bytes(int(string[i:i + 8], 2) for i in range(0, len(string), 8)).replace(b"\xff", b"\xff\0")
+    segment = lambda kind, content: struct.pack(">BBH", 255, kind, 2 + len(content)) + content
+    table = b"\0" + bytes([0, 0, 0, 0, 17] + 11 * [0]) + bytes(range(17))
+    frame = struct.pack(">BHHB", bits, rows, cols, components) + b"".join(bytes([i, 0x11, 0]) for i in range(components))
+    scan = bytes([components]) + b"".join(bytes([i, 0]) for i in range(components)) + bytes([predictor, 0, shift])
+    return b"\xff\xd8" + segment(0xC4, table) + segment(0xC3, frame) + segment(0xDA, scan) + data + b"\xff\xd9"
 
 
 class Dng:
@@ -57,6 +91,8 @@ def dng(values, bits=16, tags=None, order="<", below=False, exif=None, tile=None
             msb_packed(piece, bits) for piece in pieces]
     if tags.get(259, (SHORT, [1]))[1] == [8]:
         data = [packed(part) for part in data]
+    if tags.get(259, (SHORT, [1]))[1] == [7]:
+        data = [packed(piece) for piece in pieces]
     offsets = [file.add(part) for part in data]
     where = {322: (SHORT, [tile]), 323: (SHORT, [tile]), 324: (LONG, offsets), 325: (LONG, [len(part) for part in data])} \
         if tile else {273: (LONG, offsets), 278: (LONG, [rows]), 279: (LONG, [len(data[0])])}
@@ -104,6 +140,65 @@ class DngTest(CameraFilesTest):
         table = {50712: (SHORT, list(range(0, 3000, 3))), 50717: (SHORT, [2997])}
         self.assert_light([np.minimum(MOSAIC[0] // 10 * 3, 2997) / 2997], self.dng(MOSAIC[0] // 10, 12, table))
 
+    def test_black_levels_of_rows_and_columns(self):
+        dn, rows, cols = MOSAIC[1], np.array([5, 0, -3, 9, 1, 2]), np.arange(8) * 1.5
+        levels = {50713: (SHORT, [1, 2]), 50714: (SHORT, [100, 50]), 50717: (SHORT, [4000]),
+                  50715: (SRATIONAL, [value for col in cols for value in (int(2 * col), 2)]),
+                  50716: (SRATIONAL, [value for row in rows for value in (int(row), 1)])}
+        black = np.tile([100, 50], (6, 4)) + rows[:, None] + cols
+        self.assert_light([np.maximum(dn - black, 0) / (4000 - black)], self.dng(dn, 12, levels))
+
+    def test_lossless_jpeg(self):
+        """Of each predictor, as tiles and strips, with one and two components, as cameras and PiDNG write it."""
+        values = np.random.default_rng(3).integers(0, 4096, (20, 26)) // np.array([[1], [64]] * 10)
+        for predictor in range(1, 8):
+            for tile, components in ((None, 1), (16, 2)):
+                with self.subTest(predictor=predictor, tile=tile):
+                    packed = lambda piece: lossless_jpeg(piece, 12, components, predictor)
+                    self.assert_light([values / 4095], self.dng(values, 12, {**JPEG, **GRBG}, tile=tile, packed=packed))
+        for bits in (8, 10, 14, 16):
+            values = np.random.default_rng(bits).integers(0, 2 ** bits, (12, 16))
+            values[0, :4] = 0, 2 ** bits - 1, 0, 2 ** (bits - 1)
+            packed = lambda piece: lossless_jpeg(piece, bits)
+            self.assert_light([values / (2 ** bits - 1)], self.dng(values, bits, JPEG, packed=packed))
+        packed = lambda piece: lossless_jpeg(piece, 12, shift=2)
+        self.assert_light([(MOSAIC[0] >> 2 << 2) / 4095], self.dng(MOSAIC[0], 12, JPEG, packed=packed))
+
+    def test_damaged_lossless_jpeg(self):
+        whole = lossless_jpeg(MOSAIC[0], 12)
+        for length in (0, 1, 3, 20, 60, len(whole) - 20):
+            with self.subTest(length=length):
+                self.refuse(["damaged"], self.dng(MOSAIC[0], 12, JPEG, packed=lambda piece: whole[:length]))
+        for part, old, new in (("not lossless", b"\xff\xc3", b"\xff\xc0"), ("in place of 48", b"\0\6\0\4", b"\0\6\0\3"),
+                               ("restart intervals", b"\xff\xda", b"\xff\xdd\0\4\0\1\xff\xda"),
+                               ("subsampled", b"\2\0\x11", b"\2\0\x21"), ("damaged", b"\0\0\0\0\x11", b"\xff\0\0\0\x11"),
+                               ("damaged", b"\1\0\1\0\0", b"\1\0\0\0\0")):
+            with self.subTest(part=part, new=new):
+                self.assertEqual(whole.count(old), 1)
+                changed = whole.replace(old, new)
+                self.refuse([part], self.dng(MOSAIC[0], 12, JPEG, packed=lambda piece: changed))
+
+    def test_corrections_that_are_not_applied_are_told(self):
+        opcodes = lambda *codes: (UNDEFINED, list(struct.pack(">I", len(codes)) + b"".join(
+            struct.pack(">IIII", code, 0x01030000, 1, 8) + bytes(8) for code in codes)))
+        for tags, part in (({51009: opcodes(9, 9, 9, 9), 51022: opcodes(1)}, "not applied: GainMap, WarpRectilinear"),
+                           ({51008: opcodes(99)}, "not applied: opcode 99"),
+                           ({50718: (RATIONAL, [2, 1, 1, 1])}, "pixels 2 times as wide as high"),
+                           ({50830: (LONG, [0, 0, 6, 2])}, "masked areas, but declares no black level")):
+            with self.subTest(part=part):
+                self.light(self.dng(MOSAIC[0], 12, tags))
+                self.assertIn(part, self.said)
+        for tags in ({51009: opcodes()}, {50718: (RATIONAL, [1, 1, 1, 1])},
+                     {50830: (LONG, [0, 0, 6, 2]), 50714: (SHORT, [4])}, {51009: (UNDEFINED, [0, 0, 0, 1, 0, 0])}):
+            self.light(self.dng(MOSAIC[0], 12, tags))
+            self.assertEqual(self.said, "")
+
+    def test_unequal_exposures_are_told(self):
+        for slot in range(4):
+            self.dng(MOSAIC[slot], 12, {33434: (RATIONAL, [slot + 1, 1000])}, name=f"clip/{slot}.dng")
+        self.light("clip")
+        self.assertIn("clip: its frames were exposed for 1000 to 4000 us, for which their light is not corrected", self.said)
+
     def test_rate_exposure_and_mosaic(self):
         camera = {**GRBG, 51044: (SRATIONAL, [1000, 1])}
         for options in ({"tags": {**camera, 33434: (RATIONAL, [1, 4000])}},
@@ -123,16 +218,23 @@ class DngTest(CameraFilesTest):
 
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
     def test_ffmpeg_reads_the_same_light(self):
+        self.assert_as_ffmpeg()
+        self.assert_as_ffmpeg(JPEG, tile=16, packed=lambda piece: lossless_jpeg(piece, 16))
+
+    def assert_as_ffmpeg(self, tags=None, **options):
         levels = {**GRBG, 50706: (BYTE, [1, 4, 0, 0]), 50714: (SHORT, [64]), 50717: (SHORT, [4000])}
         values = np.tile(MOSAIC[2], (8, 8))
-        name = self.dng(values, 16, levels)
+        name = self.dng(values, 16, {**levels, **(tags or {})}, **options)
         frame = subprocess.run(["ffmpeg", "-v", "error", "-i", name, "-f", "rawvideo", "-pix_fmt", "bayer_grbg16le",
                                 "-"], cwd=self.folder, capture_output=True, check=True).stdout
         light = np.minimum(self.light(name)[0], 1)
         np.testing.assert_allclose(light, np.frombuffer(frame, "<u2").reshape(light.shape) / 65535, atol=2 / 65535)
 
     def test_kinds_that_are_not_read(self):
-        for part, bits, tags in (("is compressed (kind 7)", 16, {259: (SHORT, [7])}),
+        for part, bits, tags in (("is compressed (kind 34892)", 16, {259: (SHORT, [34892])}),
+                                 ("rows or columns in another order (tag 50975)", 16, {50975: (SHORT, [2])}),
+                                 ("rows or columns in another order (tag 50974)", 16, {50974: (LONG, [2, 2])}),
+                                 ("other colours than red", 16, {**GRBG, 50710: (BYTE, [3, 4, 5])}),
                                  ("1 samples of 4 bits", 4, {}), ("2 samples of 16", 16, {277: (SHORT, [2])}),
                                  ("(format 2)", 16, {339: (SHORT, [2])}),
                                  ("orientation 6", 16, {274: (SHORT, [6])}),
@@ -142,7 +244,9 @@ class DngTest(CameraFilesTest):
                                  ("neither grey", 16, {262: (SHORT, [2])}),
                                  ("black levels that do not suit", 16, {50714: (SHORT, [70]), 50717: (SHORT, [70])}),
                                  ("black levels that do not suit", 16, {50713: (SHORT, [2, 2]), 50714: (SHORT, [7])}),
-                                 ("for each row or column", 16, {50716: (SRATIONAL, [1, 1] * 6)}),
+                                 ("do not suit its area", 16, {50716: (SRATIONAL, [1, 1] * 5)}),
+                                 ("black levels that do not suit", 16, {50716: (SRATIONAL, [1, 1] * 5 + [70, 1]),
+                                                                        50717: (SHORT, [70])}),
                                  ("active area outside", 16, {50829: (LONG, [0, 0, 7, 8])})):
             with self.subTest(part=part):
                 self.refuse([part], self.dng(MOSAIC[0] % 16 if bits == 4 else MOSAIC[0], bits, tags))
