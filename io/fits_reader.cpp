@@ -143,12 +143,17 @@ std::optional<std::uint64_t> Header::data_bytes(std::uint64_t max) const {
                                                                      : std::nullopt;
 }
 
-bool begins_extension(FileBytes& file, std::uint64_t at) {
-    constexpr std::string_view kStart = "XTENSION";
-    std::array<std::uint8_t, kStart.size()> start{};
+/// In whole blocks.
+std::uint64_t padded(std::uint64_t bytes) {
+    return (bytes + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
+}
+
+/// Whether an extension begins there, of which `start` is the beginning of the header.
+bool begins_extension(FileBytes& file, std::uint64_t at, std::string_view start = "XTENSION") {
+    std::vector<std::uint8_t> found(start.size());
     if (at > file.size() || file.size() - at < kBlockBytes) return false;
-    file.read(at, start);
-    return std::ranges::equal(start, kStart);
+    file.read(at, found);
+    return std::ranges::equal(found, start);
 }
 
 /// The header of the primary array; where that is empty, of the image extension of 2 axes or more.
@@ -169,7 +174,7 @@ Header image_header(FileBytes& file, const Header& primary) {
             names.push_back(fmt::format("{} \"{}\"", extension, header.text("EXTNAME")));
         }
         if (!bytes) break;
-        at = header.end() + (*bytes + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
+        at = header.end() + padded(*bytes);
     }
     if (names.size() > 1) {
         constexpr std::size_t kMaxNames = 8;
@@ -183,6 +188,37 @@ Header image_header(FileBytes& file, const Header& primary) {
     if (!image && compressed)
         throw InputError(file.name(), "holds a compressed image; unpack it with funpack");
     return image ? *image : primary;
+}
+
+/// \throws InputError unless the third axis is time, or not named.
+void add_frames(const Header& header, int frames, const std::string& name, SourceTraits& traits) {
+    constexpr std::array<std::string_view, 9> kTimes{"TIME", "UTC", "TAI", "TT", "TDB",
+                                                     "TCG",  "TCB", "UT1", "GPS"};
+    const std::string axis = header.text("CTYPE3");
+    const std::string unit = header.text("CUNIT3");
+    const double step_s = finite_number(header.text("CDELT3")).value_or(0);
+    if (frames == 1) return;
+    if (axis.empty() && frames == 3)
+        traits.warnings.emplace_back(
+            "has 3 frames; if they are red, green and blue, convert it to PNG or TIFF");
+    if (axis.empty()) return;
+    if (std::ranges::find(kTimes, axis) == kTimes.end())
+        throw InputError(name,
+                         fmt::format("its third axis is \"{}\", not time; write each plane to "
+                                     "a file of its own",
+                                     axis));
+    if ((unit.empty() || unit == "s") && step_s > 0) traits.frames_hz = 1 / step_s;
+}
+
+/// What else the header declares of its numbers.
+void add_numbers(const Header& header, SourceTraits& traits) {
+    traits.sample_format = fmt::format("BITPIX {}", header.text("BITPIX"));
+    if (const std::string unit = header.text("BUNIT"); !unit.empty())
+        traits.sample_format += ", " + unit;
+    const double pedestal = finite_number(header.text("PEDESTAL")).value_or(0);
+    if (pedestal != 0)
+        traits.warnings.push_back(fmt::format(
+            "declares a pedestal of {:g}, which is not subtracted from its numbers", pedestal));
 }
 
 /// The number of big-endian bytes.
@@ -273,12 +309,21 @@ FitsReader::FitsReader(const std::filesystem::path& path) : file_(path) {
     const double one = full_scale(bits_, zero_, scale_);
     zero_ /= one;
     scale_ /= one;
-    top_down_ = inherited("ROWORDER") == "TOP-DOWN";
+    const std::string order = inherited("ROWORDER");
+    top_down_ = order == "TOP-DOWN";
+    if (!top_down_ && !order.empty() && order != "BOTTOM-UP")
+        throw InputError(file_.name(), fmt::format("ROWORDER is \"{}\", which is unknown", order));
     traits_.exposure_us = header.exposure_us();
     if (!traits_.exposure_us) traits_.exposure_us = primary.exposure_us();
     traits_.floating = bits_ < 0;
-    traits_.sample_format = fmt::format("BITPIX {}", bits_);
+    add_numbers(header, traits_);
+    add_frames(header, slots_, file_.name(), traits_);
+    if (bits_ > 0) blank_ = header.number("BLANK");
     traits_.bits = std::max(bits_, 0);
+    const std::uint64_t data_end =
+        data_offset_ + padded(static_cast<std::uint64_t>(slots_) * frame_bytes);
+    if (header.is_primary() && begins_extension(file_, data_end, "XTENSION= 'IMAGE"))
+        traits_.warnings.emplace_back("the images in its extensions are left out");
 }
 
 std::string FitsReader::where() const {
@@ -295,8 +340,14 @@ bool FitsReader::read(std::span<float> frame) {
     for (std::size_t row = 0; row < rows; ++row) {
         const std::uint8_t* stored =
             &bytes_[(top_down_ ? row : rows - 1 - row) * cols * number_bytes];
-        for (std::size_t col = 0; col < cols; ++col, stored += number_bytes)
-            frame[row * cols + col] = static_cast<float>(zero_ + scale_ * number(stored));
+        for (std::size_t col = 0; col < cols; ++col, stored += number_bytes) {
+            const double value = number(stored);
+            if (value == blank_)
+                throw InputError(where(), fmt::format("row {}, column {}: has no value (BLANK); "
+                                                      "repair the footage first",
+                                                      row, col));
+            frame[row * cols + col] = static_cast<float>(zero_ + scale_ * value);
+        }
     }
     return true;
 }

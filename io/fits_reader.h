@@ -45,6 +45,7 @@ class FitsReader {
     int bits_ = 0;     ///< of a number: 8, 16, 32, 64; negative of floating-point ones
     double zero_ = 0;  ///< light = zero_ + scale_ * number
     double scale_ = 1;
+    std::optional<double> blank_;  ///< number without a value
     bool top_down_ = false;
     int slots_ = 0;
     int next_slot_ = 0;

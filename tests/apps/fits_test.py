@@ -101,6 +101,7 @@ class FitsTest(CameraFilesTest):
                               ("BZERO is \"many\", no number", fits(MOSAIC, 16, "BZERO   = many")),
                               ("NAXIS1 is \"0\"", fits(MOSAIC[:, :, :0], 16)),
                               ("does not begin with SIMPLE", bytes(2880)),
+                              ("ROWORDER is ", fits(MOSAIC, 16, "ROWORDER= 'LEFT'")),
                               ("header without an end", b"SIMPLE  = T" + b" " * (2880 * 1001))):
             with self.subTest(part=part):
                 self.refuse([part], self.write("clip.fits", content))
@@ -124,6 +125,36 @@ class FitsTest(CameraFilesTest):
         self.assert_light(MOSAIC / 32767, self.write("clip.fits", content))
         # A primary array that is an image is the footage.
         self.assert_light(MOSAIC / 32767, self.write("clip.fits", fits(MOSAIC[:, ::-1], 16) + image))
+        self.assertEqual(self.said, "stipple: clip.fits: the images in its extensions are left out\n")
+        self.light(self.write("clip.fits", fits(MOSAIC[:, ::-1], 16) + table))
+        self.assertEqual(self.said, "")
+
+    def test_the_third_axis_is_time(self):
+        for cards, hz in ((("CTYPE3  = 'TIME    '", "CDELT3  = 0.005", "CUNIT3  = 's'"), 200),
+                          (("CTYPE3  = 'UTC'", "CDELT3  = 0.005"), 200), (("CTYPE3  = 'TIME'", "CUNIT3  = 'd'"), None)):
+            name = self.fits(MOSAIC, 16, *cards)
+            self.light(name)
+            self.assertEqual((self.said, self.figures("info", name)["frames_hz"]), ("", hz))
+        for axis in ("WAVE", "FREQ", "STOKES", "VRAD", "RGB"):
+            self.refuse([f'its third axis is "{axis}", not time'], self.fits(MOSAIC, 16, f"CTYPE3  = '{axis}'"))
+            self.light(self.fits(MOSAIC[:1], 16, f"CTYPE3  = '{axis}'"))
+        self.light(self.fits(MOSAIC[:3], 16))
+        self.assertIn("has 3 frames; if they are red, green and blue", self.said)
+
+    def test_numbers_without_a_value_are_refused(self):
+        dn = MOSAIC[:, ::-1].copy()
+        self.light(self.fits(dn, 16, "BLANK   = -32768"))
+        dn[1, 5, 3] = -32768  # the first row is the last
+        self.fails(INPUT, ["clip.fits: frame 1: row 0, column 3: has no value (BLANK)"], "emulate",
+                   self.fits(dn, 16, "BLANK   = -32768", "BSCALE  = 0.5", "BZERO   = 16384."), "-o", "x.stipple")
+        self.light(self.fits(MOSAIC / 4096, -32, "BLANK   = 0"))  # of integers alone
+
+    def test_units_and_pedestals_are_told(self):
+        name = self.fits(MOSAIC, 16, "BUNIT   = 'adu     '", "PEDESTAL= -100")
+        self.light(name)
+        self.assertEqual(self.said, "stipple: clip.fits: declares a pedestal of -100, which is not subtracted from its "
+                         "numbers\n")
+        self.assertEqual(self.figures("info", name)["sample_format"], "BITPIX 16, adu")
 
     def test_extensions_that_are_not_read(self):
         empty = fits(np.zeros(()), 8)
