@@ -117,19 +117,45 @@ void copy(const matvar_t& variable, NpyVolume& volume, const std::string& where)
             return copy<std::uint32_t>(variable.data, volume);
         case MAT_T_INT32:
             return copy<std::int32_t>(variable.data, volume);
+        case MAT_T_UINT64:
+            return copy<std::uint64_t>(variable.data, volume);
+        case MAT_T_INT64:
+            return copy<std::int64_t>(variable.data, volume);
         default:
             throw InputError(where, "holds no numbers of 8 to 64 bits");
     }
 }
 
+/// \throws InputError unless it is an array of real numbers.
+void check_class(const matvar_t& variable, const std::string& where) {
+    if (variable.isComplex != 0)
+        throw InputError(where, "holds complex numbers; save real ones, as abs(x)");
+    switch (variable.class_type) {
+        case MAT_C_SPARSE:
+            throw InputError(where, "is a sparse array; save full(x)");
+        case MAT_C_CHAR:
+        case MAT_C_CELL:
+        case MAT_C_STRUCT:
+        case MAT_C_OBJECT:
+        case MAT_C_FUNCTION:
+        case MAT_C_OPAQUE:
+            throw InputError(where,
+                             "is text, a cell, a structure or an object; save an array of "
+                             "numbers");
+        default:
+            break;
+    }
+}
+
 NpyVolume volume_of(const matvar_t& variable, const std::string& where) {
+    check_class(variable, where);
     const std::span dims(variable.dims, static_cast<std::size_t>(std::max(variable.rank, 0)));
     std::size_t values = 1;
     for (const std::size_t side : dims) {
         if (side < 1 || side > kMaxFrameSide) throw InputError(where, "has a side not in 1..65535");
         values = std::min(values * side, kMaxValues + 1);
     }
-    if (dims.size() < 2 || dims.size() > 3 || values > kMaxValues || variable.isComplex != 0)
+    if (dims.size() < 2 || dims.size() > 3 || values > kMaxValues)
         throw InputError(where,
                          "needs real numbers (rows, columns) or (rows, columns, layers), at most "
                          "2^26 of them");

@@ -24,12 +24,21 @@ constexpr TypeName kTypes[] = {{"|u1", NpyType::kUint8},  {"<u1", NpyType::kUint
                                {"<u2", NpyType::kUint16}, {"<f2", NpyType::kHalf},
                                {"<f4", NpyType::kFloat},  {"<f8", NpyType::kDouble}};
 
+/// A type that can be read, with the same numbers as far as it has them. Light is positive.
+std::string type_for(std::string_view name) {
+    const std::string_view kind = name.substr(std::min<std::size_t>(1, name.size()));
+    if (name.starts_with('>') && (kind == "u2" || kind.starts_with('f')))
+        return "<" + std::string(kind);
+    return kind == "b1" || kind == "i1" ? "u1" : kind == "i2" ? "u2" : "f4";
+}
+
 NpyType type_of(std::string_view name, std::string_view where) {
     for (const TypeName& known : kTypes)
         if (known.name == name) return known.type;
     throw InputError(where, fmt::format("values of type \"{}\" cannot be read; save as "
-                                        "little-endian u1, u2, f2, f4 or f8",
-                                        name));
+                                        "little-endian u1, u2, f2, f4 or f8, as "
+                                        "video.astype(\"{}\")",
+                                        name, type_for(name)));
 }
 
 void take_shape(std::vector<std::uint64_t> shape, std::string_view where, NpyHeader& header) {
@@ -39,7 +48,10 @@ void take_shape(std::vector<std::uint64_t> shape, std::string_view where, NpyHea
         std::transform(shape.begin(), shape.end(), sizes.begin(),
                        [](std::uint64_t size) { return std::to_string(size); });
         throw InputError(
-            where, fmt::format("shape ({}) is not (T,H,W), (T,H,W,3) or (H,W)", joined(sizes)));
+            where,
+            fmt::format(
+                "shape ({}) is not (T,H,W), (T,H,W,3) or (H,W){}", joined(sizes),
+                shape.size() == 4 && shape[1] == 3 ? "; save video.transpose(0, 2, 3, 1)" : ""));
     }
     if (shape[0] == 0) throw InputError(where, "holds no frames");
     if (shape[0] > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/geometry.h"
+#include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
 #include "io/npy_fields.h"
@@ -73,6 +74,17 @@ void check_shape(const std::vector<std::uint64_t>& shape, std::string_view where
                                             shape[0], shape[1], shape[2]));
 }
 
+/// From the first index fastest to the last.
+void reorder(NpyVolume& volume) {
+    const auto layers = index(volume.layers), rows = index(volume.rows), cols = index(volume.cols);
+    const std::vector<double> stored = volume.values;
+    auto* value = volume.values.data();
+    for (std::size_t layer = 0; layer < layers; ++layer)
+        for (std::size_t row = 0; row < rows; ++row)
+            for (std::size_t col = 0; col < cols; ++col)
+                *value++ = stored[layer + layers * (row + rows * col)];
+}
+
 }  // namespace
 
 NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view where,
@@ -84,11 +96,9 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view wh
     if (images == NpyImages::kOneLayer && fields.shape.size() == 2)
         fields.shape.insert(fields.shape.begin(), 1);
     check_shape(fields.shape, where);
-    check_memory(
-        bytes.size() + sizeof(double) * fields.shape[0] * fields.shape[1] * fields.shape[2], where,
-        "the volume");
-    if (fields.fortran_order)
-        throw InputError(where, "is in Fortran order; save numpy.ascontiguousarray(volume)");
+    check_memory(bytes.size() + (fields.fortran_order ? 2 : 1) * sizeof(double) * fields.shape[0] *
+                                    fields.shape[1] * fields.shape[2],
+                 where, "the volume");
     NpyVolume volume{.layers = static_cast<int>(fields.shape[0]),
                      .rows = static_cast<int>(fields.shape[1]),
                      .cols = static_cast<int>(fields.shape[2]),
@@ -101,6 +111,7 @@ NpyVolume parse_npy_volume(std::span<const std::byte> bytes, std::string_view wh
                                             count, count * type.bytes, data.size()));
     volume.values.resize(count);
     type.convert(data, volume.values);
+    if (fields.fortran_order) reorder(volume);
     return volume;
 }
 

@@ -47,8 +47,10 @@ constexpr Key kShutter{"Shutter Speed(s)", {"recordInfo", "shutterSpeed"}};
 constexpr Key kCamera{"Camera Type", {"deviceInfo", "deviceName"}};
 constexpr Key kShutterNs{"Shutter Type2(nsec)", {"recordInfo", "shutterSpeedNsec"}};
 constexpr Key kProcessed{"Apply Image Proc", {"imageDataInfo", "applyImageProc"}};
-constexpr std::array kKeys{kFormat, kFrames, kWidth, kHeight,  kColour,    kStoredBits, kDepth,
-                           kSide,   kRate,   kStep,  kShutter, kShutterNs, kProcessed,  kCamera};
+constexpr Key kAutoExposure{"Auto Exposure", {"recordInfo", "autoExposure"}};
+constexpr std::array kKeys{kAutoExposure, kFormat,     kFrames,    kWidth,     kHeight,
+                           kColour,       kStoredBits, kDepth,     kSide,      kRate,
+                           kStep,         kShutter,    kShutterNs, kProcessed, kCamera};
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r\n";
@@ -293,6 +295,11 @@ RawVideo open_photron(const fs::path& file) {
     if (header.number(kProcessed))
         video.traits.warnings.emplace_back(
             "was saved with image processing, after which its numbers may not be linear light");
+    if (header.has(kAutoExposure) && header.text(kAutoExposure) != "0" &&
+        !same_letters(header.text(kAutoExposure), "off"))
+        video.traits.warnings.emplace_back(
+            "was recorded with automatic exposure: its frames may differ in exposure, for which "
+            "their light is not corrected");
     return video;
 }
 

@@ -33,6 +33,8 @@ class Parser {
             begin_group(words, key == "d");
         else if (key == "i")
             read_image(words);
+        else if (key == "dc")
+            fail("dark-current images (dc) are not evaluated; take their lines out");
         else
             fail(fmt::format("\"{}\" is none of v, n, b, d, i", key));
         std::string rest;

@@ -12,17 +12,19 @@ def element(kind, content):
     return struct.pack("<II", kind, len(content)) + content + b"\0" * (-len(content) % 8)
 
 
-def matrix(name, values):
-    """A variable of doubles: array flags, dimensions, name and values with the first dimension fastest."""
+def matrix(name, values, flags=6, kind=9, form="<f8", more=()):
+    """A variable: array flags with its class, dimensions, name and values with the first dimension fastest."""
     dims = struct.pack(f"<{values.ndim}i", *values.shape)
-    parts = (element(6, struct.pack("<II", 6, 0)), element(5, dims), element(1, name.encode()),
-             element(9, values.astype("<f8").tobytes(order="F")))
+    parts = (element(6, struct.pack("<II", flags, 1)), element(5, dims), element(1, name.encode()), *more,
+             element(kind, values.astype(form).tobytes(order="F")))
     return element(14, b"".join(parts))
 
 
+MAT_HEAD = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
+
+
 def mat_file(**arrays):
-    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
-    return head + b"".join(matrix(name, values) for name, values in arrays.items())
+    return MAT_HEAD + b"".join(matrix(name, values) for name, values in arrays.items())
 
 
 class ImportTest(ProgramTest):
@@ -155,6 +157,23 @@ class ImportTest(ProgramTest):
         self.succeed("decode", "mat.stipple", "-o", "mat.npy", "--method", "naive")
         np.testing.assert_array_equal(self.array("mat.npy"), self.decoded())
         self.fails(INPUT, ['variable "orig": is missing', 'holds "meas", "mask"'], "import", "clip.mat", "-o", "x.stipple", "--variable", "orig")
+        masks = np.moveaxis(self.masks > 0.1, 0, 2)
+        for flags, kind, form in ((6, 9, "<f8"), (9 | 0x200, 2, "u1"), (10, 3, "<i2"), (14, 12, "<i8"), (15, 13, "<u8"), (7, 7, "<f4")):
+            with self.subTest(form=form):  # double, logical, int16, int64, uint64, single
+                (self.folder / "clip.mat").write_bytes(mat_file(meas=np.moveaxis(self.measurements, 0, 2)) +
+                                                       matrix("mask", masks, flags, kind, form))
+                self.succeed("import", "clip.mat", "-o", "mat.stipple", "--noise-free", "--force")
+                self.succeed("decode", "mat.stipple", "-o", "kind.npy", "--method", "naive", "--force")
+                of_doubles = self.array("kind.npy") if flags == 6 else of_doubles
+                np.testing.assert_array_equal(self.array("kind.npy"), of_doubles)
+        ones = np.ones((4, 4))
+        sparse = [element(5, struct.pack("<4i", *range(4))), element(5, struct.pack("<5i", *range(5)))]
+        for part, variable in (("complex numbers", matrix("meas", ones, 6 | 0x800, more=[element(9, bytes(128))])),
+                               ("sparse array; save full(x)", matrix("meas", ones[0, None].T * ones[0], 5, more=sparse)),
+                               ("is text, a cell", matrix("meas", ones, 4, 4, "<u2"))):
+            with self.subTest(part=part):
+                (self.folder / "kind.mat").write_bytes(MAT_HEAD + variable)
+                self.fails(INPUT, ['kind.mat: variable "meas"', part], "import", "kind.mat", "-o", "x.stipple")
         for length in (0, 60, 128, 200, len(content) - 200):
             (self.folder / "cut.mat").write_bytes(content[:length])
             self.fails(INPUT, ["cut.mat"], "import", "cut.mat", "-o", "x.stipple")

@@ -9,7 +9,7 @@ from program import INPUT
 def photron_header(kind="cihx", **changed):
     """A header in the forms of Photron's viewer: `shutter` is the N of 1/N s, `ns` the same in nanoseconds."""
     values = {"format": "MRaw", "frames": 4, "width": 8, "height": 6, "colour": "Mono", "bits": 12, "depth": 12,
-              "side": "Lower", "rate": 5000, "shutter": 5263, "ns": 190000, "step": 1, "processed": 0,
+              "side": "Lower", "rate": 5000, "shutter": 5263, "ns": 190000, "step": 1, "processed": 0, "automatic": ("0" if kind == "cihx" else "Off"),
               "camera": "FASTCAM SA-Z type 2100K-C-64GB"} | changed
     text = """#Camera Information Header
 Camera Type : {camera}
@@ -25,6 +25,7 @@ File Format : {format}
 EffectiveBit Depth : {depth}
 EffectiveBit Side : {side}
 Shutter Type2(nsec) : {ns}
+Auto Exposure : {automatic}
 Comment Text : a : b
 """ if kind == "cih" else """\x7f\x05\x01<cih>
 <fileInfo><date>2020/1/1</date></fileInfo>
@@ -32,7 +33,7 @@ Comment Text : a : b
 <deviceInfo><deviceName>{camera}</deviceName></deviceInfo>
 <frameInfo><totalFrame>{frames}</totalFrame><skipFrame>{step}</skipFrame></frameInfo>
 <recordInfo><recordRate>{rate}</recordRate><shutterSpeed>{shutter}</shutterSpeed>
-<shutterSpeedNsec>{ns}</shutterSpeedNsec></recordInfo>
+<shutterSpeedNsec>{ns}</shutterSpeedNsec><autoExposure>{automatic}</autoExposure></recordInfo>
 <imageDataInfo><resolution><width>{width}</width><height>{height}</height></resolution>
 <colorInfo><type>{colour}</type><bit>{bits}</bit></colorInfo>
 <effectiveBit><depth>{depth}</depth><side>{side}</side></effectiveBit>
@@ -119,6 +120,13 @@ class PhotronTest(CameraFilesTest):
                 self.assertAlmostEqual(self.figures("info", name)["frames_hz"], 60000 / 36)
                 self.light(name)
                 self.assertIn("has one in 36 of the 60000 frames per second recorded, so 1666.66", self.said)
+
+    def test_automatic_exposure_is_told(self):
+        for kind, on in (("cih", "On"), ("cihx", "1")):
+            self.light(self.photron(kind=kind, automatic=on))
+            self.assertIn("was recorded with automatic exposure: its frames may differ in exposure", self.said)
+            self.light(self.photron(kind=kind))
+            self.assertNotIn("automatic", self.said)
 
     def test_image_processing_is_said(self):
         self.light(self.photron(processed=1))

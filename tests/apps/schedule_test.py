@@ -229,7 +229,6 @@ class ImportTest(ProgramTest):
     def test_what_is_no_volume_is_refused(self):
         self.refuse(["2 dimensions"], np.ones((2, 2)))
         self.refuse(["sides"], np.ones((2, 0, 2)))
-        self.refuse(["Fortran"], np.asfortranarray(np.ones((2, 3, 4))))
         self.refuse(["type"], np.ones((2, 3, 4)), dtype=np.complex64)
         self.write_array("masks.npy", np.ones((2, 3, 4)))
         self.fails(INPUT, ["--period", "--lengths"], "schedule", "import", "masks.npy", "-o",

@@ -111,6 +111,14 @@ TEST(NpyHeaderTest, RefusesTypesThatItWouldMisread) {
     for (const char* descr : {">u2", ">f4", "<i2", "|b1", "<c8", "|O", "<u4", "|S4"})
         expect_parts(problem_of(npy_file(descr, "(1, 1, 1)", "abcd")),
                      {std::string("type \"") + descr + '"', "little-endian"});
+    for (const auto& [descr, type] : {std::pair(">u2", "<u2"),
+                                      {">f8", "<f8"},
+                                      {"|b1", "u1"},
+                                      {"<i2", "u2"},
+                                      {"<i4", "f4"},
+                                      {"", "f4"}})
+        expect_parts(problem_of(npy_file(descr, "(1, 1, 1)", "abcd")),
+                     {std::string("video.astype(\"") + type + "\")"});
     expect_parts(problem_of(npy_with_dictionary(
                      "{'descr': '<f4', 'fortran_order': True, 'shape': (1, 1, 1), }", "abcd")),
                  {"Fortran order"});
@@ -120,6 +128,7 @@ TEST(NpyHeaderTest, RefusesWrongAndOverflowingShapes) {
     expect_parts(problem_of_shape("(5,)"), {"shape (5) is not (T,H,W), (T,H,W,3) or (H,W)"});
     expect_parts(problem_of_shape("(0, 5)"), {"a frame of 0 rows and 5 columns is outside"});
     expect_parts(problem_of_shape("()"), {"shape () is not"});
+    expect_parts(problem_of_shape("(9, 3, 5, 4)"), {"is not", "video.transpose(0, 2, 3, 1)"});
     expect_parts(problem_of_shape("(1, 2, 3, 4)"), {"shape (1, 2, 3, 4) is not"});
     expect_parts(problem_of_shape("(1, 2, 3, 3, 3)"), {"is not (T,H,W)"});
     expect_parts(problem_of_shape("(0, 5, 5)"), {"holds no frames"});

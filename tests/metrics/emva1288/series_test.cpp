@@ -84,6 +84,7 @@ TEST(SeriesTest, NamesTheLineThatIsWrong) {
     refuse(start + "d 1\ni a.png\nd 1\n", {"a.txt:5", "fewer than the two"});
     refuse(start + "d 1\ni a.png\n", {"fewer than the two"});
     refuse(start + "d 1\ni\n", {"a.txt:4", "the name of the image is missing"});
+    refuse(start + "dc 1e6\n", {"a.txt:3", "dark-current images (dc) are not evaluated"});
     refuse(start + "x 1\n", {"a.txt:3", "\"x\" is none of v, n, b, d, i"});
 }
 
