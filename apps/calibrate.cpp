@@ -87,7 +87,7 @@ std::string text_of(const std::string& file, const ChipEstimate& estimate, doubl
     const ChipCalibration& c = estimate.calibration;
     return fmt::format(
         "{}: {} x {} pixels from {} and {} of each\n"
-        "  gain          1 +- {}, known to {}\n"
+        "  gain          1 +- {}, uncertainty {}\n"
         "  offset        {} +- {} DN\n"
         "  dark current  {} +- {} DN/s\n"
         "  readout noise {} DN\n"

@@ -109,16 +109,17 @@ void info(const InfoOptions& options, const RunOptions& run) {
     if (options.raw || (!ours && is_footage(file)))
         return info_footage(file, options.raw, options.header_only, run);
     if (is_chip_calibration(file)) return info_calibration(file, run);
-    if (options.header_only) throw InputError(file, "is no footage, of which --header is");
+    if (options.header_only) throw InputError(file, "--header applies to footage only");
     if (ours) return is_stream(file) ? info_stream(file, run) : info_recording(file, run);
     if (const SettingsKind kind = settings_kind(file); kind != SettingsKind::kNone)
         return info_settings(kind, file, run);
     if (may_be_stream(file)) return info_stream(file, run);
     throw InputError(
-        file, fmt::format("is nothing that stipple reads: it is {}, no sample stream, recording, "
-                          "calibration, footage, sensor, schedule, rig, space or scene; frames "
-                          "without a header need --raw",
-                          kind_by_start(file)));
+        file,
+        fmt::format("is not a file type stipple can read: it is {}, no sample stream, recording, "
+                    "calibration, footage, sensor, schedule, rig, space or scene; frames "
+                    "without a header need --raw",
+                    kind_by_start(file)));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void info_calibration(const std::string& file, const RunOptions& run) {
     run.say(fmt::format(
         "calibration  {} x {} pixels, {} of {} bits{}{}\n"
         "frames       {}, {}\n"
-        "gain         1 +- {}, known to {}\n"
+        "gain         1 +- {}, uncertainty {}\n"
         "offset       {} +- {} DN\n"
         "dark current {} +- {} DN/s\n"
         "noise        {} DN without light\n"

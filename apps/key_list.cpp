@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "apps/arguments/command_line.h"
+#include "core/config.h"
 #include "core/suggestion.h"
 #include "decoder/decode_options.h"
 #include "readout/schedules/schedule_catalogue.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/readout_timing.h"
 #include "sensor_model/sensor_config.h"
 
@@ -48,6 +50,14 @@ std::vector<KeyList> all_key_lists() {
     return lists;
 }
 
+/// The lists of keys that a sensor takes; for another name that itself.
+std::vector<std::string> lists_of(const std::string& of) {
+    const auto sensors = config_names(ConfigKind::kSensors);
+    if (std::ranges::find(sensors, of) == sensors.end()) return {of};
+    if (set_up_params({.sensor = of}).mode == SensorMode::kPaper) return {"paper", "timing"};
+    return {"paper", "physical", "timing"};
+}
+
 }  // namespace
 
 std::vector<KeyList> key_lists(const std::string& section, const std::string& of) {
@@ -57,7 +67,13 @@ std::vector<KeyList> key_lists(const std::string& section, const std::string& of
     std::vector<std::string> names;
     names.reserve(lists.size());
     for (const KeyList& list : lists) names.push_back(list.of);
-    std::erase_if(lists, [&](const KeyList& list) { return !of.empty() && list.of != of; });
+    if (!of.empty()) {
+        const bool is_list = std::ranges::find(names, of) != names.end();
+        const auto wanted = is_list ? std::vector{of} : lists_of(of);
+        std::erase_if(lists, [&](const KeyList& list) {
+            return std::ranges::find(wanted, list.of) == wanted.end();
+        });
+    }
     if (lists.empty())
         throw UsageError("OF", fmt::format("\"{}\" is unknown; {}", of, suggestion(of, names)));
     return lists;

@@ -151,7 +151,7 @@ void add_list(Command& app, Action& action) {
         .one_of({"sensor", "schedule", "decoder"});
     command
         .add_option("OF", options->of,
-                    "of these keys: mode of the sensor or timing, kind of schedule, or method")
+                    "of these keys: a sensor, its mode or timing, kind of schedule, or method")
         .default_text("all");
     command.footer(
         "Examples:\n"

@@ -36,7 +36,7 @@ constexpr auto kExamples =
     "  stipple emulate scene -o clip.stipple             through the sensor\n"
     "  stipple decode clip.stipple -o decoded            back to video\n"
     "  stipple compare decoded scene --max-value 2       how good it is\n"
-    "\"stipple help SUBCOMMAND\" says more. Exit codes: 0 done, 1 an input cannot be used,\n"
+    "See \"stipple help SUBCOMMAND\" for details. Exit codes: 0 done, 1 an input cannot be used,\n"
     "2 wrong command line, 3 an output or device failed, 130 and 143 stopped by Ctrl-C or SIGTERM\n"
     "(outputs are then complete files of fewer frames), 141 nobody reads standard output.";
 

@@ -60,6 +60,7 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
         "Examples:\n"
         "  stipple manual man1\n"
         "  man man1/stipple-emulate.1\n"
+        "  stipple manual capture record                   shows the options of a command\n"
         "  stipple manual pages --markdown");
     set_action(manual, action, options, write_manual);
 

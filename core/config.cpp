@@ -340,8 +340,8 @@ void Config::reject_unknown_keys() const {
     for (const auto& [key, known] : impl_->asked) asked.push_back(key);
     for (const auto& [key, entry] : impl_->entries) {
         if (entry.known) continue;
-        throw InputError(where(key),
-                         asked.empty() ? "is unknown" : "is unknown; " + suggestion(key, asked));
+        throw InputError(where(key), asked.empty() ? "is unknown; there are no keys to set"
+                                                   : "is unknown; " + suggestion(key, asked));
     }
 }
 

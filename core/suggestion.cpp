@@ -40,7 +40,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
     const std::string wanted = lower_case(name);
     std::string nearest;
-    std::size_t fewest = (wanted.size() + 1) / 2;
+    std::size_t fewest = 1 + wanted.size() / 3;  // a third of them is near enough
     for (const std::string& candidate : known) {
         const std::string text = lower_case(candidate);
         const std::size_t edits = text.starts_with(wanted) ? 0 : edit_distance(wanted, text);

@@ -7,7 +7,7 @@
 namespace stipple {
 
 /// The name of `known` that a misspelt `name` probably means: the first one that begins with it, or
-/// the one with the min edit distance, if that is less than half the number of its characters.
+/// the one with the min edit distance, if that is at most a third of its characters.
 /// Edits are insertions, deletions, replacements and swaps of neighbours; case is ignored. Empty if
 /// there is none.
 [[nodiscard]] std::string nearest_name(std::string_view name,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/suggestion.h"
 #include "decoder/best/collaborative.h"
 #include "decoder/block_partition.h"
 #include "decoder/block_task.h"
@@ -145,7 +145,8 @@ DecodeMethod decode_method_from_name(std::string_view name) {
         if (known.name == name) return known.method;
         names.emplace_back(known.name);
     }
-    throw InputError("decoding method", fmt::format("\"{}\" is none of {}", name, joined(names)));
+    throw InputError("decoding method",
+                     fmt::format("\"{}\" is unknown; {}", name, suggestion(name, names)));
 }
 
 }  // namespace stipple

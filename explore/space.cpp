@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/suggestion.h"
 #include "core/toml_keys.h"
 #include "scenes/scene.h"
 
@@ -294,7 +294,7 @@ void Space::replace(const SpaceAxis& other) {
         if (other.name == "system" &&
             std::ranges::find(systems, value, &SpaceSystem::name) == systems.end())
             throw InputError(fmt::format("system \"{}\"", value),
-                             "is none of " + joined(found->values));
+                             "is unknown; " + suggestion(value, found->values));
     bool of_systems = false;
     for (SpaceSystem& system : systems)
         for (auto& [name, value] : system.values)

@@ -43,7 +43,7 @@ std::optional<std::string> store_problem(const ExposureSchedule& schedule, int c
             if (const auto slot = crowded_slot(schedule.exposures(row, col),
                                                schedule.period_slots(), charge_stores))
                 return fmt::format(
-                    "pixel ({}, {}) slot {}: exposures interleave; this schedule takes {} charge "
+                    "pixel ({}, {}) slot {}: exposures interleave; this schedule needs {} charge "
                     "stores per pixel, the sensor has {}{}",
                     row, col, *slot, schedule.charge_stores(), charge_stores,
                     schedule.charge_stores() == 2 ? " (its key charge_stores=2 gives it two)"

@@ -21,9 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The words, with --help for "help" in front of subcommands or alone behind one.
+/// The words, with --help for "help" or "manual" in front of subcommands, or "help" alone behind
+/// one.
 std::vector<std::string> with_help(const CLI::App& program, std::vector<std::string> words) {
-    if (!words.empty() && words.front() == "help") {
+    const auto is_command = [&](const std::string& word) {
+        return !program
+                    .get_subcommands(
+                        [&](const CLI::App* choice) { return choice->check_name(word); })
+                    .empty();
+    };
+    const bool asks_manual = words.size() > 1 && words[0] == "manual" && is_command(words[1]);
+    if (asks_manual || (!words.empty() && words.front() == "help")) {
         words.erase(words.begin());
         words.emplace_back("--help");
     }

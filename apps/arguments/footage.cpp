@@ -50,8 +50,8 @@ void add_resample_arguments(Command& command, std::optional<Resampling>& method,
                             FootageOptions& options) {
     command
         .add_choice("--resample", method, kResamplings,
-                    "make slots of frames of another rate: hold the frame before, blend light, or "
-                    "move it by optical flow")
+                    "convert footage of another frame rate to slots: hold the frame before, blend "
+                    "light, or move it by optical flow")
         .default_text("each frame is a slot")
         .type_name("METHOD");
     command.add_option("--frames-hz", options.frames_hz, "frame rate of the footage")

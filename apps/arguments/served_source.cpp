@@ -31,7 +31,7 @@ std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {
         if (format == nullptr)
             throw InputError(
                 "--format " + choice.format,
-                "is no pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
+                "is not a pixel format; " + suggestion(choice.format, names_of(pixel_formats())));
     }
     return std::make_unique<FootageFrames>(choice.path, choice.reading,
                                            choice.frames_hz.value_or(ServedImage::kUsualFramesHz),

@@ -39,12 +39,12 @@ std::string name_of(std::span<const CLI::App* const> commands) {
 
 /// The option that was probably meant, or an empty text.
 std::string nearest_option(const CLI::App& command, const std::string& word) {
+    if (!word.starts_with("--")) return {};  // one letter is like any other
     std::vector<std::string> known;
-    for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-        for (const std::string& name : option->get_snames()) known.push_back("-" + name);
-    }
-    return nearest_name(word, known);
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back(name);
+    const std::string nearest = nearest_name(word.substr(2), known);
+    return nearest.empty() ? "" : "--" + nearest;
 }
 
 std::string option_problem(const std::vector<const CLI::App*>& commands, const CLI::App* command,
@@ -52,7 +52,7 @@ std::string option_problem(const std::vector<const CLI::App*>& commands, const C
     const std::string name = word.substr(0, word.find('='));
     const auto end = std::ranges::find(commands, command) + 1;
     const std::string problem =
-        fmt::format("{} is no option of {}", name, name_of({commands.begin(), end}));
+        fmt::format("{} is not an option of {}", name, name_of({commands.begin(), end}));
     if (command != commands.back() && commands.back()->get_option_no_throw(name) != nullptr)
         return fmt::format("{}; write it behind \"{}\"", problem, name_of(commands));
     const std::string nearest = nearest_option(*command, name);
@@ -80,7 +80,7 @@ std::string leftover_problem(const std::vector<const CLI::App*>& commands) {
             } else if (word.size() > 1 && word[0] == '-') {
                 if (!options_end) return option_problem(commands, command, word);
                 if (surplus.empty())
-                    surplus = fmt::format("\"{}\" is no option behind \"--\"", word);
+                    surplus = fmt::format("\"{}\" is not an option behind \"--\"", word);
             } else if (surplus.empty()) {
                 surplus = surplus_problem(commands, word);
             }
@@ -132,7 +132,7 @@ std::string unknown_subcommand(const CLI::App& program, std::span<const std::str
 std::string usage_problem(const CLI::App& program, std::span<const std::string> words,
                           const CLI::ParseError& error) {
     const auto commands = named_commands(program);
-    return fmt::format("{}\n\"{} --help\" says more", problem_of(commands, words, error),
+    return fmt::format("{}\nsee \"{} --help\" for details", problem_of(commands, words, error),
                        name_of(commands));
 }
 

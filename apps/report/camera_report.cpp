@@ -36,7 +36,7 @@ constexpr Row kRows[] = {
     {"  of columns", &CameraFigures::prnu_column, 100, "%"},
     {"  of pixels", &CameraFigures::prnu_pixel, 100, "%"},
     {"  without shading", &CameraFigures::prnu_high_pass, 100, "%"},
-    {"largest SNR", &CameraFigures::snr_max, 1, ""},
+    {"maximum SNR", &CameraFigures::snr_max, 1, ""},
     {"sensitivity threshold", &CameraFigures::sensitivity_threshold_p, 1, "photons"},
     {"dynamic range", &CameraFigures::dynamic_range, 1, ": 1"},
     {"linearity error", &CameraFigures::linearity_error, 100, "%"}};

@@ -215,7 +215,7 @@ std::vector<std::string> figure_notes(const CameraFigures& measured,
     if (configured && measured.saturation_e < configured->saturation_e)
         notes.emplace_back(
             "Saturation is where the variance is largest, before the mean pixel is full: it is "
-            "below the configured one by definition, and so are largest SNR and dynamic range.");
+            "below the configured one by definition, and so are maximum SNR and dynamic range.");
     if (measured.dsnu_row_e > measured.dsnu_e || measured.prnu_row > measured.prnu)
         notes.emplace_back(
             "DSNU and PRNU of rows contain the row noise that the mean of the images keeps; those "

@@ -6,7 +6,7 @@ const kCameraFigures = [
   ['gain_dn_per_e', 'system gain K', 1, 'DN/e'], ['quantum_efficiency', 'quantum efficiency', 100, '%'],
   ['dark_noise_e', 'dark noise', 1, 'e'], ['saturation_e', 'saturation capacity', 1, 'e'],
   ['dsnu_e', 'DSNU', 1, 'e'], ['dsnu_high_pass_e', 'DSNU without shading', 1, 'e'], ['prnu', 'PRNU', 100, '%'],
-  ['prnu_high_pass', 'PRNU without shading', 100, '%'], ['snr_max', 'largest SNR', 1, ': 1'],
+  ['prnu_high_pass', 'PRNU without shading', 100, '%'], ['snr_max', 'maximum SNR', 1, ': 1'],
   ['sensitivity_threshold_p', 'sensitivity threshold', 1, 'photons'], ['dynamic_range', 'dynamic range', 1, ': 1'],
   ['linearity_error', 'linearity error', 100, '%']];
 

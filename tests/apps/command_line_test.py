@@ -48,7 +48,7 @@ class CommandLineTest(ProgramTest):
         for commands, offered in ((SPREAD, True), (UNSPREAD, False)):
             for command in commands:
                 self.assertEqual("--threads" in self.succeed(*command, "--help"), offered, command)
-        self.fails(USAGE, ["--threads is no option of stipple info"], "info", "a", "--threads", 2)
+        self.fails(USAGE, ["--threads is not an option of stipple info"], "info", "a", "--threads", 2)
         self.fails(USAGE, ["--threads excludes --evaluate"], "characterize", "--evaluate", "a",
                    "--threads", 2)
 

@@ -85,7 +85,7 @@ class InfoTest(CameraFilesTest):
         self.expect({"format": "frames without a header", "sample_format": "Mono12p", "bits": 12, "frames": 4,
                      "black_level_dn": 64, "white_level_dn": 4095, "frames_hz": 1000}, "a.bin", "--raw",
                     "8x6:mono12p:black=64:hz=1000")
-        self.fails(INPUT, ["a.bin: is nothing that stipple reads", "--raw"], "info", "a.bin")
+        self.fails(INPUT, ["a.bin: is not a file type stipple can read", "--raw"], "info", "a.bin")
 
     def test_unknown_files_are_named_by_their_first_bytes(self):
         for content, kind in ((b"", "an empty file"), (b"\n <!DOCTYPE HTML>\n<html>", "a web page (HTML)"),
@@ -95,7 +95,7 @@ class InfoTest(CameraFilesTest):
                               (b"\x89\0\x1b" + bytes(80), "the bytes 89 00 1b 00 00 00 00 00")):
             for name in ("a.dat", "noextension"):
                 self.write(name, content)
-                said = self.fails(INPUT, [f"{name}: is nothing that stipple reads: it is ", kind,
+                said = self.fails(INPUT, [f"{name}: is not a file type stipple can read: it is ", kind,
                                           "no sample stream"], "info", name)
                 self.assertEqual(said.count("\n"), 1, said)
 
@@ -112,7 +112,7 @@ class InfoTest(CameraFilesTest):
         (self.folder / "clip.stipple").rename(self.folder / "clip.npy")
         self.expect({"kind": "stream", "slots": 30}, "clip.npy")
 
-        self.fails(INPUT, ["clip.npy: is no footage, of which --header is"], "info", "clip.npy", "--header")
+        self.fails(INPUT, ["clip.npy: --header applies to footage only"], "info", "clip.npy", "--header")
 
     def test_sensors(self):
         figures = self.expect({"kind": "sensor", "name": "imx273"}, "imx273")

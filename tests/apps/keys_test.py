@@ -37,6 +37,12 @@ class KeysTest(ProgramTest):
         self.succeed("decode", "clip.stipple", "-o", "naive.npy", "--method", "naive", "--force")
         return self.array("naive.npy")
 
+    def test_the_keys_of_a_sensor_are_those_of_its_mode_and_timing(self):
+        for sensor, kinds in (("ideal", {"paper", "physical", "timing"}), ("lux1310", {"paper", "timing"}),
+                              ("paper", {"paper"})):  # the last is the name of a mode too
+            self.assertEqual({key["of"] for key in self.keys("sensor", sensor)}, kinds)
+        self.fails(USAGE, ['"random" is unknown'], "list", "keys", "sensor", "random")
+
     def test_the_keys_of_every_sensor_and_schedule_are_listed(self):
         files = [("sensor", file) for file in project_path("config/sensors").glob("*.toml")]
         files += [("schedule", file) for file in project_path("config/schedules").glob("*.toml")]

@@ -29,6 +29,7 @@ class ManualTest(ProgramTest):
         for option in re.findall(r"^  (?:-\w,)?--([\w-]+)", self.succeed("emulate", "--help"), re.MULTILINE):
             self.assertIn("\\-\\-" + option.replace("-", "\\-"), page)
         self.fails(INPUT, ["man1", "--force"], "manual", "man1")
+        self.assertEqual(self.succeed("manual", "capture", "record"), self.succeed("capture", "record", "--help"))
 
     def test_pages_are_good_roff(self):
         if shutil.which("groff") is None:

@@ -69,7 +69,7 @@ class RivalsTest(ProgramTest):
         rows = self.rivals("still.npy", "--sensor", "ideal", "--system", "frames")
         self.assertEqual([(row["footage"], row["sensor"], row["system"]) for row in rows],
                          [("still.npy", "ideal", "frames")])
-        self.fails(INPUT, ['system "film": is none of coded, frames, buckets'], "rivals", "pan", "-o", "r",
+        self.fails(INPUT, ['system "film": is unknown; known are coded, frames, buckets'], "rivals", "pan", "-o", "r",
                    "--space", "space.toml", "--system", "film")
         self.fails(INPUT, ["is neither a file nor one of the spaces"], "rivals", "pan", "-o", "r", "--space", "nosuch")
 

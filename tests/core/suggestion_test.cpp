@@ -27,6 +27,8 @@ TEST(SuggestionTest, CaseIsNoDifferenceAndABeginningIsEnough) {
 
 TEST(SuggestionTest, NamesThatAreNotAlikeAreListed) {
     EXPECT_EQ(nearest_name("colour", {"gain", "offset"}), "");
+    EXPECT_EQ(nearest_name("version", {"sensor"}), "");
+    EXPECT_EQ(nearest_name("v", {"q", "o"}), "");
     EXPECT_EQ(suggestion("colour", {"gain", "offset"}), "known are gain, offset");
     EXPECT_EQ(suggestion("gian", {"gain", "offset"}), "did you mean \"gain\"?");
 }
