@@ -92,7 +92,8 @@ class VideoTest(ProgramTest):
         lossless = {"yuv420p": ["-c:v", "libx264", "-qp", "0"], "yuv444p12le": ["-c:v", "ffv1"],
                     "yuv422p10le": ["-c:v", "ffv1"]}
         for rows, matrix, scaled in ((48, "bt709", "bt709"), (720, "smpte170m", "bt601"),
-                                     (48, "bt2020nc", "bt2020"), (718, None, "bt601"),
+                                     (48, "bt2020nc", "bt2020"), (48, "smpte240m", "smpte240m"), (48, "fcc", "fcc"),
+                                     (718, None, "bt601"),
                                      (720, None, "bt709")):
             for span in ("tv", "pc"):
                 for pixels, codec in lossless.items():

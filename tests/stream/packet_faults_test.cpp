@@ -141,12 +141,13 @@ std::string with_index(const BrokenStream& s, std::uint64_t slots,
     std::string payload(entries.size() * kIndexEntryBytes, '\0');
     store_index(entries, as_numbers(payload));
     const std::uint32_t seed = s.stream.seed();
-    std::string bytes = s.stream.bytes.substr(0, s.stream.begins[3]);
+    const std::size_t index = s.packets.size();  // the piece that it is
+    std::string bytes = s.stream.bytes.substr(0, s.stream.begins[index]);
     std::uint32_t checksum = seed;
     bytes += framed(packet, payload, seed);
-    for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i <= index; ++i)
         checksum = add_to_checksum(checksum, as_numbers(bytes).subspan(s.stream.begins[i]));
-    const auto marker = encode_end_marker(s.stream.begins[3], checksum, seed);
+    const auto marker = encode_end_marker(s.stream.begins[index], checksum, seed);
     return bytes + std::string(marker.begin(), marker.end());
 }
 
@@ -156,7 +157,7 @@ void expect_index_refused(const BrokenStream& s, const std::string& bytes,
     EXPECT_EQ(packets, s.packets);
     EXPECT_EQ(causes(report), cause + '\n');
     expect_parts(message_of<InputError>([&] { return read_bytes(bytes, ReadPolicy::kStrict); }),
-                 {": byte " + std::to_string(s.stream.begins[3]) + ": " + cause});
+                 {": byte " + std::to_string(s.stream.begins[s.packets.size()]) + ": " + cause});
 }
 
 std::string impossible_entry(int entry, std::uint64_t slot, std::uint64_t offset) {
@@ -184,6 +185,17 @@ TEST(PacketFaultsTest, AnIndexThatIsWrongIsReported) {
     expect_index_refused(
         s, with_index(s, 3, {{0, at[1]}}),
         "the index says that slot 0 begins at byte " + std::to_string(at[1]) + ", but it does not");
+}
+
+TEST(PacketFaultsTest, AnIndexLeadsToTheFirstRowsOfASlot) {
+    BrokenStream s;
+    s.packets = random_packets(s.header, 3, 2);  // two bands in each slot
+    s.stream = bytes_of(s.header, s.packets);
+    const auto& at = s.stream.begins;
+    EXPECT_EQ(read_bytes(with_index(s, 3, {{1, at[2]}}), ReadPolicy::kStrict).packets, s.packets);
+    expect_index_refused(
+        s, with_index(s, 3, {{1, at[3]}}),
+        "the index says that slot 1 begins at byte " + std::to_string(at[3]) + ", but it does not");
 }
 
 TEST(PacketFaultsTest, AnIndexThatCountsMoreSlotsSaysThatTheyAreMissing) {
