@@ -125,7 +125,7 @@ class FitsTest(CameraFilesTest):
         self.assert_light(MOSAIC / 32767, self.write("clip.fits", content))
         # A primary array that is an image is the footage.
         self.assert_light(MOSAIC / 32767, self.write("clip.fits", fits(MOSAIC[:, ::-1], 16) + image))
-        self.assertEqual(self.said, "stipple: clip.fits: the images in its extensions are left out\n")
+        self.assertEqual(self.said, "stipple: warning: clip.fits: the images in its extensions are left out\n")
         self.light(self.write("clip.fits", fits(MOSAIC[:, ::-1], 16) + table))
         self.assertEqual(self.said, "")
 
@@ -152,8 +152,8 @@ class FitsTest(CameraFilesTest):
     def test_units_and_pedestals_are_told(self):
         name = self.fits(MOSAIC, 16, "BUNIT   = 'adu     '", "PEDESTAL= -100")
         self.light(name)
-        self.assertEqual(self.said, "stipple: clip.fits: declares a pedestal of -100, which is not subtracted from its "
-                         "numbers\n")
+        self.assertEqual(self.said, "stipple: warning: clip.fits: declares a pedestal of -100, which is not "
+                         "subtracted from its numbers\n")
         self.assertEqual(self.figures("info", name)["sample_format"], "BITPIX 16, adu")
 
     def test_extensions_that_are_not_read(self):

@@ -118,7 +118,7 @@ class DecodeTest(ProgramTest):
 
     def test_refuses_what_the_program_refuses(self):
         self.write_clip()
-        with self.assertRaisesRegex(ValueError, "is none of naive, fast"):
+        with self.assertRaisesRegex(ValueError, '"nave" is unknown; did you mean "naive"'):
             self.decodes("nave")
         with self.assertRaisesRegex(ValueError, "decoder setting round: is unknown"):
             self.decodes("fast", {"round": 1})
