@@ -42,6 +42,7 @@ struct LiveArguments {
     PreviewArguments preview;
     std::size_t queue_frames = 64;
     double late_after_slots = 2;
+    bool fails_on_loss = false;
 };
 
 LiveCameraOptions camera_options(const LiveArguments& arguments) {
@@ -59,12 +60,19 @@ LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& r
     LiveEmulator emulator(camera, std::move(to_light), recorder, std::move(options));
     Progress progress(run, "emulating live", frames);
     bool rate_compared = false;
+    bool drops_told = false;
     LiveEmulation result = emulator.run([&](const LiveEmulation& now) {
         if (now.rate.seconds() >= kRateAfterS && !std::exchange(rate_compared, true))
             say_warning(camera_rate_warning(now.rate, sensor));
+        if (now.dropped_slots > 0 && !std::exchange(drops_told, true))
+            say_warning(
+                "the emulation is slower than the camera: frames that find the queue full are "
+                "dropped, and their slots have no samples");
         progress.reach(static_cast<double>(now.latencies.count()));
         if (now.held_slots + now.late_slots > 0)
-            progress.note(fmt::format("{} held, {} late", now.held_slots, now.late_slots));
+            progress.note(fmt::format("{} held, {} dropped, {} late",
+                                      now.held_slots - now.dropped_slots, now.dropped_slots,
+                                      now.late_slots));
         return stop_signal() == 0;
     });
     if (!rate_compared && result.latencies.count() > 0)
@@ -154,6 +162,7 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
         say_kept(arguments.output.c_str());
     throw_early_end(emulation, address);
     tell({emulation, recorder, camera}, arguments, preview.get(), json, run);
+    if (arguments.fails_on_loss) throw_if_lost(losses_text(emulation.totals), arguments.output);
 }
 
 }  // namespace
@@ -174,6 +183,7 @@ void add_capture_live(Command& capture, Action& action) {
                  "change a key of the sensor or of the schedule, or set a feature of the camera");
     add_preview_arguments(command, options->preview);
     add_session_arguments(command, options->session);
+    add_loss_argument(command, options->fails_on_loss);
     command.add_option("--black-level", options->black_level_dn, "DN without light")
         .shows_default()
         .check(number_check(0))

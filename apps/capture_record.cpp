@@ -34,6 +34,7 @@ struct RecordArguments {
     SessionOptions session;
     std::string output;  ///< file, or a folder in which a file named by the time is made
     CaptureLimits limits;
+    bool fails_on_loss = false;
     bool coded = false;  ///< the samples of a camera of `capture serve --mode coded`
 };
 
@@ -113,6 +114,7 @@ void record_camera(const RecordArguments& arguments, const RunOptions& run) {
     check_end(recording, file, address);
     json.write(recording_json(file, recording));
     run.say(recording_text(file, recording));
+    if (arguments.fails_on_loss) throw_if_lost(losses_text(recording.session), file);
 }
 
 void record_coded_stream(const RecordArguments& arguments, const RunOptions& run) {
@@ -137,9 +139,12 @@ void record_coded_stream(const RecordArguments& arguments, const RunOptions& run
     json.write({{"slots", recording.slots},
                 {"missing_slots", recording.missing_slots},
                 {"damaged_frames", recording.damaged_frames}});
-    run.say(fmt::format("{}: {}, {} of them missing, {} damaged", arguments.output,
-                        counted(recording.slots, "slot"), recording.missing_slots,
-                        counted(recording.damaged_frames, "frame")));
+    const std::string losses = fmt::format("{} missing, {} damaged", recording.missing_slots,
+                                           counted(recording.damaged_frames, "frame"));
+    run.say(fmt::format("{}: {}, of these {}", arguments.output, counted(recording.slots, "slot"),
+                        losses));
+    if (arguments.fails_on_loss && recording.missing_slots + recording.damaged_frames > 0)
+        throw_if_lost(losses, arguments.output);
 }
 
 void record(const RecordArguments& arguments, const RunOptions& run) {
@@ -163,6 +168,7 @@ void add_capture_record(Command& capture, Action& action) {
     add_capture_limits(command, options->limits);
     add_incomplete_argument(command, options->session.incomplete);
     add_session_arguments(command, options->session);
+    add_loss_argument(command, options->fails_on_loss);
     auto coded_flag = command.add_flag(
         "--coded", options->coded,
         "record the coded stream of \"capture serve --mode coded\" as \"emulate\" writes it");

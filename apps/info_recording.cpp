@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,14 @@ struct FrameSummary {
     }
 };
 
+/// Frames that were lost after the last one in an undamaged file: the end record counts all.
+std::uint64_t missing_after_last(const RecordingReader& reader, const FrameSummary& frames) {
+    if (!reader.end()) return 0;
+    const auto& lost = reader.end()->lost;
+    const auto all = std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
+    return all - std::min(all, frames.missing);
+}
+
 /// Text of an untrusted file, for a terminal.
 std::string plain(const std::string& text) {
     return is_plain_text(text, false) ? text : "(not printable)";
@@ -82,6 +91,7 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
                       {"frames", report.frames},
                       {"incomplete", frames.incomplete},
                       {"missing_frames", frames.missing},
+                      {"missing_after_last", missing_after_last(reader, frames)},
                       {"gaps", ordered_json::array()},
                       {"width", nullptr},
                       {"height", nullptr},
@@ -104,10 +114,11 @@ ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames
     return json;
 }
 
-std::string gaps_text(const FrameSummary& frames) {
-    if (frames.gaps == 0) return "missing      none";
+std::string gaps_text(const FrameSummary& frames, std::uint64_t after_last) {
+    if (frames.gaps + after_last == 0) return "missing      none";
     std::string text =
         fmt::format("missing      {} frames in {} places", frames.missing, frames.gaps);
+    if (after_last > 0) text += fmt::format(", and {} after the last frame", after_last);
     for (std::size_t i = 0; i < std::min(frames.listed.size(), kMaxShownFaults); ++i)
         text += fmt::format("\n             {} before frame {}: {}", frames.listed[i].frames,
                             frames.listed[i].before_frame, cause_of(frames.listed[i]));
@@ -131,7 +142,7 @@ std::string info_text(const RecordingReader& reader, const FrameSummary& frames)
     } else {
         text += "\nframes       none";
     }
-    text.append(1, '\n').append(gaps_text(frames));
+    text.append(1, '\n').append(gaps_text(frames, missing_after_last(reader, frames)));
     for (const auto& [name, value] : reader.session().settings)
         text += fmt::format("\nsetting      {} = {}", plain(name), plain(value));
     return text;

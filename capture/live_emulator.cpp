@@ -84,15 +84,18 @@ void LiveEmulator::hold_missing(const FrameRecord& record) {
         result_.totals.missing_before_first += gap.lost + incomplete;
         return;
     }
-    const std::uint64_t slots = lost_to_hold(gap.lost) + incomplete;
-    for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns());
+    const std::uint64_t lost = lost_to_hold(gap.lost);
+    const std::uint64_t unread = record.cause == GapCause::kQueueDrop ? lost : 0;
+    const std::uint64_t slots = lost + incomplete;
+    for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns(), slot >= unread);
     result_.held_slots += slots;
+    result_.dropped_slots += unread;
     result_.totals.lost[static_cast<std::size_t>(record.cause)] += gap.lost;
     result_.totals.incomplete += incomplete;
 }
 
-void LiveEmulator::expose(std::int64_t arrival_ns) {
-    const auto packets = recorder_.expose(light_);
+void LiveEmulator::expose(std::int64_t arrival_ns, bool is_read) {
+    const auto packets = is_read ? recorder_.expose(light_) : recorder_.expose_unread(light_);
     if (options_.show) options_.show(packets, arrival_ns);
 }
 

@@ -49,8 +49,9 @@ struct LiveEmulation {
     DurationHistogram latencies;  ///< from frame in to packets out, of each whole frame
     SessionTotals totals;         ///< from the first slot to the last; missing_before_first apart
     FrameRate rate;
-    std::uint64_t held_slots = 0;    ///< repetitions of the previous frame
-    std::uint64_t unheld_slots = 0;  ///< missing and not replaced
+    std::uint64_t held_slots = 0;     ///< repetitions of the previous frame
+    std::uint64_t dropped_slots = 0;  ///< of these, without samples, as the emulation was too slow
+    std::uint64_t unheld_slots = 0;   ///< missing and not replaced
     std::uint64_t late_slots = 0;
     std::vector<LateSlot> late;              ///< the first 1000
     std::optional<double> slots_per_second;  ///< once it has ended; nothing of a single slot
@@ -59,7 +60,8 @@ struct LiveEmulation {
 };
 
 /// A camera's frames through the emulated sensor as they come, a slot each. Where frames are
-/// missing or incomplete, the previous one is repeated, so that each slot keeps its time.
+/// missing or incomplete, the previous one is repeated, so that each slot keeps its time. Where the
+/// full queue dropped frames, such slots have no samples, so that the emulation catches up.
 class LiveEmulator {
   public:
     /// Asked before each wait for a frame, every 50 ms at least; false ends the emulation.
@@ -79,7 +81,7 @@ class LiveEmulator {
     void take(const CapturedFrame& frame);
     [[nodiscard]] std::uint64_t lost_to_hold(std::uint64_t lost);
     void hold_missing(const FrameRecord& record);
-    void expose(std::int64_t arrival_ns);
+    void expose(std::int64_t arrival_ns, bool is_read = true);
 
     LiveCamera& camera_;
     FrameLight to_light_;

@@ -31,6 +31,7 @@ void visit_live_figures(const LiveReport& report, const Add& add) {
             visit_transport_figures(report.camera.transport(), inner);
         }});
     add("held_slots", live.held_slots);
+    add("dropped_slots", live.dropped_slots);
     add("unheld_slots", live.unheld_slots);
     add("late_slots", live.late_slots);
     add("late", FigureList{live.late, [](const LateSlot& late, const auto& inner) {

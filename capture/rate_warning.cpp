@@ -53,8 +53,10 @@ std::string video_rate_warning(const std::string& file, double frames_hz,
     if (agree(frames_hz, sensor)) return {};
     return fmt::format(
         "{}: has {:.4g} frames/s, but {}: motion in the stream is {:.3g}x as fast. "
-        "--set sensor.slot_us={:.5g} keeps the speed",
-        file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz);
+        "--set sensor.slot_us={:.5g} keeps the speed; {} makes frames of {:.4g} a second",
+        file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz,
+        frames_hz * sensor.slot_us < 1e6 ? "--resample flow" : "--resample blend",
+        1e6 / sensor.slot_us);
 }
 
 std::string exposure_warning(const std::string& file, double exposure_us,

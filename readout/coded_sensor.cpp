@@ -130,7 +130,9 @@ struct CodedSensor::Impl {
     [[nodiscard]] std::span<const float> light_of_slot(std::span<const float> frame);
     void find_overflow(std::span<const float> arriving, int row, Band& band);
     void leave_lag(std::uint32_t plane, Band& band);
-    void expose_band(std::span<const float> frame, int first_row, Band& band);
+    void collect_band(std::span<const float> frame, int first_row, Band& band);
+    void take_due(std::uint32_t plane, Band& band);
+    void read_band(Band& band);
     void collect(std::span<const float> frame, int row, Band& band);
     void read(std::uint32_t plane, Band& band);
 
@@ -236,12 +238,17 @@ void CodedSensor::Impl::charge(std::uint32_t plane, Band& band) const {
         array.expose(band.light, band.pixels, slot, plane, charges);
 }
 
-/// Light to DN of the due pixels of one plane.
-void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
+/// The light of the due pixels of one plane, which are reset.
+void CodedSensor::Impl::take_due(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     stores == 1 ? take(band.pixels, at_plane, band.light)
                 : take(band, shape.sites(), at_plane, band.light);
     if (lag != 0) leave_lag(plane, band);
+}
+
+/// Light to DN of the due pixels of one plane.
+void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
+    take_due(plane, band);
     charge(plane, band);
     adc.convert(band.electrons, band.plane_dn);
     const auto planes = static_cast<std::size_t>(shape.planes);
@@ -252,7 +259,8 @@ void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
     band.zeros += static_cast<std::uint64_t>(std::ranges::count(band.plane_dn, 0));
 }
 
-void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row, Band& band) {
+/// The light of the slot, and the pixels that are due at its end.
+void CodedSensor::Impl::collect_band(std::span<const float> frame, int first_row, Band& band) {
     const int end_row = std::min(first_row + kBandRows, shape.rows);
     band.pixels.clear();
     band.stores.clear();
@@ -263,9 +271,12 @@ void CodedSensor::Impl::expose_band(std::span<const float> frame, int first_row,
         if (stores == 2) sequencer.append_stores(stats.slots, row, band.stores);
         if (physical) sequencer.append_open_slots(stats.slots, row, band.open_slots);
     }
+    band.light.resize(band.pixels.size());
+}
+
+void CodedSensor::Impl::read_band(Band& band) {
     const std::size_t samples = band.pixels.size();
     band.dn.resize(samples * static_cast<std::size_t>(shape.planes));
-    band.light.resize(samples);
     band.electrons.resize(samples);
     band.clipped.resize(samples);
     band.plane_dn.resize(samples);
@@ -291,8 +302,10 @@ void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
     auto& bands = impl_->bands;
     const auto band_of = [&](int i) -> Band& { return bands[static_cast<std::size_t>(i)]; };
     frame = impl_->light_of_slot(frame);
-    parallel_for(0, static_cast<int>(bands.size()),
-                 [&](int i) { impl_->expose_band(frame, i * kBandRows, band_of(i)); });
+    parallel_for(0, static_cast<int>(bands.size()), [&](int i) {
+        impl_->collect_band(frame, i * kBandRows, band_of(i));
+        impl_->read_band(band_of(i));
+    });
 
     ReadoutStats& stats = impl_->stats;
     packet.slot = stats.slots++;
@@ -306,6 +319,18 @@ void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
         stats.zero_samples += band.zeros;
     }
     stats.samples += packet.dn.size();
+}
+
+void CodedSensor::expose_unread(std::span<const float> frame) {
+    assert(frame.size() == impl_->shape.sites());
+    frame = impl_->light_of_slot(frame);
+    parallel_for(0, static_cast<int>(impl_->bands.size()), [&](int i) {
+        Band& band = impl_->bands[static_cast<std::size_t>(i)];
+        impl_->collect_band(frame, i * kBandRows, band);
+        for (int plane = 0; plane < impl_->shape.planes; ++plane)
+            impl_->take_due(static_cast<std::uint32_t>(plane), band);
+    });
+    ++impl_->stats.slots;
 }
 
 const ReadoutStats& CodedSensor::stats() const {

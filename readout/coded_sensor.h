@@ -33,6 +33,8 @@ class CodedSensor {
     /// `packet` with the samples that are due at its end. The same bits for any thread count.
     /// Precondition: frame.size() == shape.sites(), light >= 0 and not NaN.
     void expose(std::span<const float> frame, SamplePacket& packet);
+    /// The same light and resets without samples: takes a tenth of the time or so.
+    void expose_unread(std::span<const float> frame);
 
     [[nodiscard]] const ReadoutStats& stats() const;
 

@@ -47,7 +47,8 @@ Emulator::Emulator(const SensorSetup& setup, std::int64_t first_slot)
     readout_cost_->begin_at(first_slot);
 }
 
-std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
+/// Behind colour filters and a grey mask.
+std::span<const float> Emulator::light_on_pixels(std::span<const float> frame) {
     const ColourFilter filter = setup_.params.physical.cfa;
     if (filter != ColourFilter::kNone && setup_.footage.planes == 3) {
         mosaic_.resize(setup_.shape.pixels());
@@ -60,15 +61,31 @@ std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
         mask(schedule, stats().slots, setup_.shape, frame, masked_);
         frame = masked_;
     }
-    sensor_.expose(frame, packets_[0]);
+    return frame;
+}
+
+std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
+    sensor_.expose(light_on_pixels(frame), packets_[0]);
     return readout_cost_ ? split_at_overrun(readout_cost_->add_next())
                          : std::span(packets_).first(1);
 }
 
+const SamplePacket& Emulator::expose_unread(std::span<const float> frame) {
+    const std::int64_t slot = stats().slots;
+    sensor_.expose_unread(light_on_pixels(frame));
+    if (readout_cost_) readout_cost_->add_next();
+    ++unread_[kind_of_slot(setup_.schedule.schedule, slot)];
+    packets_[0] = {slot, 0, setup_.shape.rows, SamplePacket::kDropped, {}};
+    return packets_[0];
+}
+
 double Emulator::light_read() const {
-    const double light =
-        light_due_in_clip(setup_.schedule.schedule, filters_, setup_.shape, stats().slots);
-    return (light - dropped_light_) /
+    const ExposureSchedule& schedule = setup_.schedule.schedule;
+    const FrameShape& shape = setup_.shape;
+    double light = light_due_in_clip(schedule, filters_, shape, stats().slots) - dropped_light_;
+    for (const auto& [slot, times] : unread_)
+        light -= times * light_due(schedule, filters_, {slot, 0, shape.rows, shape.cols});
+    return light /
            (static_cast<double>(stats().slots) * static_cast<double>(setup_.shape.pixels()));
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,6 +32,9 @@ class Emulator {
     /// packets of the slot, valid until the next call: one, or two if the last rows do not fit the
     /// slot and are dropped.
     [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
+    /// The same for a slot whose samples are all dropped, which takes a fraction of the time. Its
+    /// packet, valid until the next call.
+    [[nodiscard]] const SamplePacket& expose_unread(std::span<const float> frame);
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
     /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
@@ -47,6 +51,7 @@ class Emulator {
     }
 
   private:
+    [[nodiscard]] std::span<const float> light_on_pixels(std::span<const float> frame);
     [[nodiscard]] std::span<const SamplePacket> split_at_overrun(const SlotCost& slot);
 
     const SensorSetup& setup_;
@@ -54,9 +59,10 @@ class Emulator {
     CodedSensor sensor_;
     std::optional<ReadoutCost> readout_cost_;
     std::array<SamplePacket, 2> packets_;
-    double dropped_light_ = 0;   ///< as `light_due`
-    std::vector<float> mosaic_;  ///< of light in colour behind colour filters
-    std::vector<float> masked_;  ///< light behind a grey mask
+    double dropped_light_ = 0;            ///< as `light_due`, of rows that were due
+    std::map<std::int64_t, int> unread_;  ///< how many slots of a kind (`kind_of_slot`) are unread
+    std::vector<float> mosaic_;           ///< of light in colour behind colour filters
+    std::vector<float> masked_;           ///< light behind a grey mask
 };
 
 }  // namespace stipple

@@ -53,6 +53,11 @@ double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
     return light;
 }
 
+std::int64_t kind_of_slot(const ExposureSchedule& schedule, std::int64_t slot) {
+    const std::int64_t steady = std::max(schedule.longest_span_slots(), 1) - 1;
+    return slot < steady ? slot : steady + (slot - steady) % schedule.period_slots();
+}
+
 double light_due_in_clip(const ExposureSchedule& schedule, const CalibrationTile& tile,
                          FrameShape shape, std::int64_t slots) {
     const std::int64_t period = schedule.period_slots();

@@ -27,6 +27,9 @@ struct SlotRows {
 [[nodiscard]] double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
                                const SlotRows& rows);
 
+/// The earliest slot with the same exposures due.
+[[nodiscard]] std::int64_t kind_of_slot(const ExposureSchedule& schedule, std::int64_t slot);
+
 /// The same for all samples of the slots 0 .. `slots` - 1. Exposures that begin before or end after
 /// them are not read, so it is less than light_throughput * slots * pixels.
 [[nodiscard]] double light_due_in_clip(const ExposureSchedule& schedule,

@@ -18,8 +18,17 @@ StreamRecorder::~StreamRecorder() = default;
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
     const auto packets = emulator_->expose(frame);
-    for (const SamplePacket& packet : packets) writer_.write(packet);
+    for (const SamplePacket& packet : packets) {
+        writer_.write(packet);
+        samples_ += packet.dn.size();
+    }
     return packets;
+}
+
+std::span<const SamplePacket> StreamRecorder::expose_unread(std::span<const float> frame) {
+    const SamplePacket& packet = emulator_->expose_unread(frame);
+    writer_.write(packet);
+    return {&packet, 1};
 }
 
 void StreamRecorder::finish() {
@@ -39,10 +48,6 @@ const SensorSetup& StreamRecorder::setup() const {
 
 const ReadoutStats& StreamRecorder::stats() const {
     return emulator_->stats();
-}
-
-std::uint64_t StreamRecorder::samples() const {
-    return stats().samples - (readout_cost() ? readout_cost()->totals().dropped_samples : 0);
 }
 
 std::uint64_t StreamRecorder::payload_bits() const {

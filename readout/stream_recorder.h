@@ -36,6 +36,8 @@ class StreamRecorder {
     /// writes its samples, without those of dropped rows.
     /// Returns the packets written, valid until the next call. \throws DeviceError.
     std::span<const SamplePacket> expose(std::span<const float> frame);
+    /// The same for a slot whose samples are all dropped, which takes a fraction of the time.
+    std::span<const SamplePacket> expose_unread(std::span<const float> frame);
     /// Puts the file in place. \throws DeviceError.
     void finish();
 
@@ -46,12 +48,12 @@ class StreamRecorder {
     [[nodiscard]] const SensorSetup& setup() const;
     [[nodiscard]] const ReadoutStats& stats() const;
     /// Samples in the stream.
-    [[nodiscard]] std::uint64_t samples() const;
+    [[nodiscard]] std::uint64_t samples() const { return samples_; }
     [[nodiscard]] std::uint64_t payload_bits() const;
     /// Counted values of light per counted sample. Infinite before the first sample.
     [[nodiscard]] double compression_ratio() const;
-    /// Fraction of the samples that the full well has clipped or that are at full scale, dropped
-    /// ones too. NaN before the first sample.
+    /// Fraction of the samples that the full well has clipped or that are at full scale, those of
+    /// dropped rows too. NaN before the first sample.
     [[nodiscard]] double saturated_fraction() const;
     /// The same of the samples that are DN 0.
     [[nodiscard]] double zero_fraction() const;
@@ -67,6 +69,7 @@ class StreamRecorder {
     PendingOutput output_;
     std::unique_ptr<Emulator> emulator_;
     StreamWriter writer_;
+    std::uint64_t samples_ = 0;
 };
 
 }  // namespace stipple

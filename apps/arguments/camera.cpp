@@ -52,6 +52,11 @@ void add_incomplete_argument(Command& command, IncompletePolicy& policy) {
         .type_name("POLICY");
 }
 
+void add_loss_argument(Command& command, bool& fails_on_loss) {
+    command.add_flag("--fail-on-loss", fails_on_loss,
+                     "exit code 3 if anything is lost or incomplete; the file is kept");
+}
+
 void add_session_arguments(Command& command, SessionOptions& options) {
     constexpr std::uint64_t kMaxStallMs{SessionOptions::kMaxStall.count()};
     command

@@ -34,6 +34,9 @@ void add_camera_arguments(Command& command, CameraArguments& arguments);
 /// `--incomplete`.
 void add_incomplete_argument(Command& command, IncompletePolicy& policy);
 
+/// `--fail-on-loss`.
+void add_loss_argument(Command& command, bool& fails_on_loss);
+
 /// `--stall` and `--no-reconnect`.
 void add_session_arguments(Command& command, SessionOptions& options);
 

@@ -23,13 +23,17 @@ std::string live_text(const LiveReport& report, const std::string& output,
     const LiveEmulation& live = report.emulation;
     return fmt::format(
         "{}: {}\n{}, {} late (more than {} slots), {} held for frames that are missing or "
-        "incomplete{}\n"
+        "incomplete{}{}\n"
         "lost: {}; incomplete: {}{}\n"
         "frame in to packet out: median {:.2f} ms, 99 % within {:.2f} ms, all within {:.2f} ms",
         output, emulation_text(report.recorder, live.slots_per_second),
         counted(live.latencies.count(), "frame"), counted(live.late_slots, "slot"),
         late_after_slots, live.held_slots,
         live.unheld_slots == 0 ? "" : fmt::format(", {} left out", live.unheld_slots),
+        live.dropped_slots == 0
+            ? ""
+            : fmt::format(", {} of them without samples as the emulation was too slow",
+                          live.dropped_slots),
         lost_text(live.totals), live.totals.incomplete,
         live.totals.missing_before_first == 0
             ? ""

@@ -8,6 +8,7 @@
 
 #include "apps/standard_error.h"
 #include "capture/session_figures.h"
+#include "core/error.h"
 #include "report/json_figures.h"
 
 namespace stipple {
@@ -32,6 +33,10 @@ std::string losses_text(const SessionTotals& totals) {
     const auto lost = std::accumulate(totals.lost.begin(), totals.lost.end(), std::uint64_t{0});
     if (lost + totals.incomplete == 0) return {};
     return fmt::format("{} lost, {} incomplete", lost, totals.incomplete);
+}
+
+void throw_if_lost(const std::string& losses, const std::string& file) {
+    if (!losses.empty()) throw DeviceError(file, losses + "; the file is kept (--fail-on-loss)");
 }
 
 void say_event(const SessionEvent& event) {

@@ -20,6 +20,9 @@ namespace stipple {
 /// all is well.
 [[nodiscard]] std::string losses_text(const SessionTotals& totals);
 
+/// \throws DeviceError if `losses` (a text as above) is not empty: `--fail-on-loss`.
+void throw_if_lost(const std::string& losses, const std::string& file);
+
 /// Tells on standard error that the camera is lost or back, or what is wrong at the end of a
 /// replay.
 void say_event(const SessionEvent& event);

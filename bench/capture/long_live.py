@@ -6,6 +6,7 @@ sensor has no noise, so that each slot of the stream can be checked as it is wri
 - the samples of a slot have as many values as there are exposure times, and a longer exposure has
   the sum of its slots: no part of an incomplete frame, and no frame at a wrong place, became light;
 - a slot has the level of the next frame, or the one before (held): these are counted;
+- a slot without samples (dropped, as the queue was full) counts as held;
 - only where the camera was gone may the levels begin anew: once for each such outage.
 
 usage: long_live.py [--stall S] [--rate HZ] [STIPPLE [SECONDS [FOLDER [CAMERA-OPTION]...]]]
@@ -38,7 +39,7 @@ from realtime import ADDRESS, RATE, SHAPE, Namespace
 
 LEVELS = numpy.arange(97) * 61 % 97 * 2 + 40  # one after the other differ, by 72 or more
 EXPOSURES = 4  # of schedule random: 1, 2, 4, 8 slots
-PACKET, INDEX, HEADER_BYTES = b"\xc5SPK", 3, 36  # docs/stream_format.md
+PACKET, INDEX, DROPPED, HEADER_BYTES = b"\xc5SPK", 3, 2, 36  # docs/stream_format.md
 MAX_GROWTH_MB, SETTLED_S, EACH_S = 5.0, 60, 10
 MARKS_S = (SETTLED_S, 3600, 7200)  # when memory is reported
 START_S, END_S = 60, 120  # a busy machine may take so long to begin, and to end
@@ -58,7 +59,7 @@ class Slots:
     """What the slots of a stream hold, one after the other."""
 
     def __init__(self):
-        self.count = self.held = 0
+        self.count = self.held = self.dropped = 0
         self.either = 0  # held or not: in a long gap the turn comes round to the level that is held
         self.fault_count, self.faults = 0, []  # the first of them as text
         self.jumps = []  # where the levels begin anew
@@ -77,6 +78,13 @@ class Slots:
             self.take(values, dn_of)
         else:
             self.fault("no samples")
+        self.count += 1
+
+    def drop(self):
+        self.frame = (self.frame + 1) % len(LEVELS)
+        self.shown = [*self.shown[-7:], self.shown[-1]]
+        self.held += 1
+        self.dropped += 1
         self.count += 1
 
     def take(self, values, dn_of):
@@ -140,7 +148,10 @@ class Follower:
             if len(header) < HEADER_BYTES or len(payload) < size:
                 break
             self.ended = header[:4] != PACKET or header[4] == INDEX
-            if not self.ended:
+            if not self.ended and header[5] & DROPPED:
+                self.slots.drop()
+                self.at += HEADER_BYTES
+            elif not self.ended:
                 self.slots.add(numpy.frombuffer(payload, "<u2"), self.dn_of)
                 self.at += HEADER_BYTES + size
             self.free()
@@ -268,7 +279,7 @@ def run(stipple, camera, seconds, folder, stall_s):
     if follower is None:
         sys.exit(f"nothing was recorded; exit code {live.returncode}")
     slots = follower.slots
-    slots.allow_jumps(outages=messages.count("the camera is gone"))
+    slots.allow_jumps(outages=messages.count("camera lost ("))
     if live.returncode != 0 and live.returncode not in STOPPED:
         slots.fault(f"exit code {live.returncode}")
     return read_json(figures), slots, memory
@@ -296,10 +307,12 @@ def print_totals(live, slots, memory):
               f"frames dropped, queue full: {dropped}\n"
               f"frames lost otherwise: {lost - dropped}\n"
               f"frames repeated: {live['repeated']}\n"
-              f"slots late: {live['late_slots']}")
+              f"slots late: {live['late_slots']}; latency in us: {live['latency_us']}")
         held = live["incomplete"] + lost
         if slots.count != live["slots"]:
             slots.fault(f"the stream should have {live['slots']} slots")
+        if slots.dropped != live["dropped_slots"]:
+            slots.fault(f"{slots.dropped} slots have no samples, not {live['dropped_slots']}")
         if not slots.held <= held <= slots.held + slots.either or live["frames"] + held != slots.count:
             slots.fault("slots, frames and held ones do not agree")
     print(f"outages: {slots.outages}, the levels begin anew: {len(slots.jumps)} times")

@@ -58,6 +58,16 @@ void full1x_slots(benchmark::State& state) {
     expose_slots(state, full_schedule(1, 4));
 }
 
+/// Slots whose samples are dropped.
+void unread_slots(benchmark::State& state) {
+    const ThreadLimit limit(static_cast<int>(state.range(0)));
+    const ExposureSchedule schedule =
+        random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
+    CodedSensor sensor({}, kShape, schedule, 1);
+    for (auto step : state) sensor.expose_unread(footage().frame(0));
+    state.SetItemsProcessed(state.iterations());
+}
+
 /// Msamples/s of the converter alone, one thread.
 void adc_samples(benchmark::State& state) {
     std::vector<float> electrons(1U << 14U);
@@ -73,6 +83,7 @@ void adc_samples(benchmark::State& state) {
 }
 
 BENCHMARK(random_slots)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(unread_slots)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(tiled_slots)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(full1x_slots)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(adc_samples);

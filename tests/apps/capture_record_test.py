@@ -42,10 +42,10 @@ class CaptureRecordTest(ProgramTest):
         self.address = f"gige:{self.ip}"
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
 
-    def serve(self):
+    def serve(self, *options):
         """Starts a camera and waits until it is there."""
         camera = self.start_program("capture", "serve", "light.npy", "--repeat", "--format", "Mono16",
-                                    "--address", self.ip, "--frames-hz", 100, stdout=subprocess.PIPE)
+                                    "--address", self.ip, "--frames-hz", 100, *options, stdout=subprocess.PIPE)
         watchdog = threading.Timer(60, camera.kill)
         watchdog.start()
         self.addCleanup(self.end, camera)
@@ -85,6 +85,33 @@ class CaptureRecordTest(ProgramTest):
         self.assertEqual(len(records), 30)
         for before, record in zip(records, records[1:]):
             self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
+
+    def losses(self, options, *told):
+        """Records; the parts are in what is told for people, and --fail-on-loss has an exit code. The figures."""
+        command = ["capture", "record", self.address, "-o", *options, "--json", "figures.json", "--force"]
+        said = self.succeed(*command)
+        for part in told:
+            self.assertIn(part, said)
+        self.fails(DEVICE, ["clip.", "; the file is kept (--fail-on-loss)"], *command, "--fail-on-loss")
+        return json.loads((self.folder / "figures.json").read_text())
+
+    def test_frames_that_the_camera_leaves_out_are_its_loss(self):
+        self.serve("--fault-begin-at", 4)
+        figures = self.losses(["clip.strec", "--frames", 5], "lost: 4 device, of these 4 before the first frame")
+        self.assertEqual((figures["lost"]["device"], figures["missing_before_first"]), (4, 4))
+
+    def test_lost_packets_are_a_loss_in_transport(self):
+        self.serve("--fault-lose", 0.2, "--no-resend")
+        figures = self.losses(["clip.strec", "--frames", 20, "--incomplete", "drop"], " transport")
+        self.assertEqual(sum(figures["lost"].values()), figures["lost"]["transport"])
+        info = self.figures("info", "clip.strec")
+        self.assertTrue(info["complete"])
+        self.assertEqual(info["missing_frames"] + info["missing_after_last"], figures["lost"]["transport"])
+
+    def test_missing_slots_are_told_apart_from_damaged_frames(self):
+        self.serve("--mode", "coded", "--fault-begin-at", 4)
+        figures = self.losses(["clip.stipple", "--coded", "--frames", 12], "of these 4 missing, 0 frames damaged")
+        self.assertEqual((figures["missing_slots"], figures["damaged_frames"]), (4, 0))
 
     def test_features_are_listed_with_their_ranges(self):
         self.serve()

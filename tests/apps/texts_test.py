@@ -70,6 +70,12 @@ class TextsTest(ProgramTest):
         self.check(text, "slot +# clocks", figures["slot_clocks"])
         self.assertEqual(len({figures["min_slot_clocks"], figures["frame_clocks"], figures["slot_clocks"]}), 3)
 
+    def test_schedule(self):
+        text, figures = self.told("schedule", "show", "pixel_flutter")
+        self.assertLess(figures["light_throughput"], 1)
+        self.check(text, "compression #, light throughput # %", figures["compression_ratio"],
+                   100 * figures["light_throughput"])
+
     def test_compare(self):
         light = self.write_ramp()
         self.write_array("other.npy", self.array(light) + 0.01)

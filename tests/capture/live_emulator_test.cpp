@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numeric>
+#include <semaphore>
 
 #include "readout/emulator.h"
 #include "readout/provenance.h"
@@ -21,13 +23,16 @@ class LiveEmulatorTest : public ::testing::Test {
                           LiveEmulatorOptions options = {}) {
         return emulate(frames(wire_ids), std::move(options));
     }
-    LiveEmulation emulate(std::deque<ScriptedStep> steps, LiveEmulatorOptions options) {
+    LiveEmulation emulate(std::deque<ScriptedStep> steps, LiveEmulatorOptions options,
+                          std::size_t waiting_frames = 64) {
         steps.push_back(is_lost("unplugged"));
         LiveCamera camera(plays({std::move(steps)}), {.session = {.reconnect = false},
+                                                      .waiting_frames = waiting_frames,
                                                       .from_start = true,
                                                       .tell = [](const SessionEvent&) {}});
         options.show = [this](auto packets, std::int64_t) {
             shown_.insert(shown_.end(), packets.begin(), packets.end());
+            if (after_show_) after_show_();
         };
         LiveEmulator emulator(camera, to_light_, recorder_, std::move(options));
         LiveEmulation result = emulator.run([](const LiveEmulation&) { return true; });
@@ -54,6 +59,7 @@ class LiveEmulatorTest : public ::testing::Test {
     StreamRecorder recorder_{
         folder_ / "live.stipple", setup_, {.provenance = provenance_of(setup_, {})}};
     std::vector<SamplePacket> shown_;
+    std::function<void()> after_show_;
 };
 
 TEST_F(LiveEmulatorTest, EachFrameIsASlot) {
@@ -77,6 +83,41 @@ TEST_F(LiveEmulatorTest, TheFrameBeforeStandsInForWhatIsMissing) {
     EXPECT_EQ(result.held_slots, 2U);
     EXPECT_EQ(result.latencies.count(), 4U);
     EXPECT_EQ(std::accumulate(result.totals.lost.begin(), result.totals.lost.end(), 0U), 2U);
+}
+
+// While the first slot is emulated, frame 11 fills the queue, and 12, 13 and 14 find no room.
+TEST_F(LiveEmulatorTest, SlotsOfAFullQueueHaveNoSamples) {
+    std::binary_semaphore begun{0}, full{0}, room{0};
+    after_show_ = [&] {
+        if (shown_.size() == 1) {
+            begun.release();
+            full.acquire();
+        } else if (shown_.size() == 2) {
+            room.release();
+        }
+    };
+    std::deque<ScriptedStep> steps = frames({10, 11, 12, 13, 14, 15});
+    const auto before = [](ScriptedStep& step, const std::function<void()>& action) {
+        step.arrival = [action, arrival = step.arrival] {
+            action();
+            return arrival();
+        };
+    };
+    before(steps[1], [&] { begun.acquire(); });
+    before(steps[5], [&] {
+        full.release();
+        room.acquire();
+    });
+    const LiveEmulation result = emulate(std::move(steps), {}, 1);
+    auto packets = expected({10, 11, 11, 11, 11, 15});
+    for (std::size_t slot = 2; slot < 5; ++slot) {
+        packets[slot].flags = SamplePacket::kDropped;
+        packets[slot].dn.clear();
+    }
+    EXPECT_EQ(shown_, packets);
+    EXPECT_EQ(result.held_slots, 3U);
+    EXPECT_EQ(result.dropped_slots, 3U);
+    EXPECT_EQ(result.totals.lost[static_cast<std::size_t>(GapCause::kQueueDrop)], 3U);
 }
 
 // Slot 0 is the first whole frame: what is missing before it has no slot, but a count.

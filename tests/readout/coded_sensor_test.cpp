@@ -243,7 +243,7 @@ TEST(CodedSensorTest, RefusesSchedulesOfMoreChargeStoresThanItHas) {
     const ExposureSchedule three(1, 1, 9, {0, 3}, {{0, 0b1001}, {1, 0b1001}, {2, 0b1001}});
     const SensorParams two_bucket{.charge_stores = 2};
     expect_parts(message_of<InputError>([&] { CodedSensor(two_bucket, kShape, three, kSeed); }),
-                 {"pixel (0, 0) slot 2", "takes 3", "the sensor has 2"});
+                 {"pixel (0, 0) slot 2", "needs 3", "the sensor has 2"});
 }
 
 TEST(CodedSensorTest, RefusesEmptyArraysAndBadSensors) {

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <map>
 #include <thread>
+#include <variant>
+#include <vector>
 
 #include "capture/aravis/aravis_device.h"
 #include "capture/capture_session.h"
+#include "capture/host_clock.h"
 #include "capture/open_camera.h"
 #include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"
@@ -97,6 +100,28 @@ TEST_F(AravisCameraTest, StampsAreTheCamerasOwnAndTheHostsBothClocks) {
     EXPECT_GT(second.host_monotonic_ns, first.host_monotonic_ns);
     EXPECT_GT(first.host_realtime_ns, std::int64_t{1'600'000'000} * 1'000'000'000);
     EXPECT_EQ(first.exposure_us, 10000.0);  // the setting of the fake
+}
+
+/// Stamps of a frame that waits are those of its arrival: on both clocks the same time ago.
+TEST_F(AravisCameraTest, StampsOfAFrameThatWaitsAreThoseOfItsArrival) {
+    constexpr std::int64_t kPeriodNs = 5'000'000, kWaitNs = 400'000'000;
+    const FakeCameraProcess camera;
+    const auto opened = opener({}, {.frames = 64})();
+    opened->start();
+    std::this_thread::sleep_for(std::chrono::nanoseconds(kWaitNs));
+    const std::int64_t clocks_ns = realtime_ns() - monotonic_ns();
+    std::vector<FrameRecord> records;
+    while (records.size() < 10) {
+        Arrival arrival = opened->wait(1s);
+        ASSERT_TRUE(std::holds_alternative<CapturedFrame>(arrival));
+        records.push_back(std::get<CapturedFrame>(arrival).record);
+    }
+    EXPECT_GT(monotonic_ns() - records[0].host_monotonic_ns, kWaitNs / 2);
+    EXPECT_GT(records[9].host_monotonic_ns - records[0].host_monotonic_ns, 9 * kPeriodNs / 2);
+    for (const FrameRecord& record : records)
+        EXPECT_NEAR(static_cast<double>(record.host_realtime_ns - record.host_monotonic_ns),
+                    static_cast<double>(clocks_ns), kPeriodNs);
+    opened->stop();
 }
 
 TEST_F(AravisCameraTest, IdsThatWrapLeaveNoGap) {
