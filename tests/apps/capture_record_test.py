@@ -42,9 +42,9 @@ class CaptureRecordTest(ProgramTest):
         self.address = f"gige:{self.ip}"
         self.write_array("light.npy", np.random.default_rng(1).random((20, 48, 64)))
 
-    def serve(self, *options):
+    def serve(self, *options, images=("--format", "Mono16")):
         """Starts a camera and waits until it is there."""
-        camera = self.start_program("capture", "serve", "light.npy", "--repeat", "--format", "Mono16",
+        camera = self.start_program("capture", "serve", "light.npy", "--repeat", *images,
                                     "--address", self.ip, "--frames-hz", 100, *options, stdout=subprocess.PIPE)
         watchdog = threading.Timer(60, camera.kill)
         watchdog.start()
@@ -109,7 +109,7 @@ class CaptureRecordTest(ProgramTest):
         self.assertEqual(info["missing_frames"] + info["missing_after_last"], figures["lost"]["transport"])
 
     def test_missing_slots_are_told_apart_from_damaged_frames(self):
-        self.serve("--mode", "coded", "--fault-begin-at", 4)
+        self.serve("--mode", "coded", "--fault-begin-at", 4, images=())
         figures = self.losses(["clip.stipple", "--coded", "--frames", 12], "of these 4 missing, 0 frames damaged")
         self.assertEqual((figures["missing_slots"], figures["damaged_frames"]), (4, 0))
 

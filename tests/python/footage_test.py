@@ -84,7 +84,8 @@ class FootageTest(ProgramTest):
         said = [line.split("clip.raw: ")[1] for line in done.stderr.splitlines()]
         self.assertIn("has 1000 frames/s", said[0])
         self.assertEqual([text.split("clip.raw: ")[1] for text in told],
-                         [line.replace("--set sensor.", "sensor setting ") for line in said])
+                         [line.replace("--set sensor.", "sensor setting ").replace("--resample blend", 'resample="blend"')
+                          for line in said])
         self.assertEqual(self.warnings_of(lambda: stipple.emulate(self.path("clip.raw"), raw=raw, resample="hold")), [])
 
     def test_missing_frames_and_damage_of_a_recording_are_warnings(self):
