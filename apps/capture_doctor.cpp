@@ -15,7 +15,7 @@ namespace stipple {
 namespace {
 
 using Level = DoctorFinding::Level;
-constexpr std::array<const char*, 3> kLevels{"good", "warning", "problem"};
+constexpr std::array<const char*, 4> kLevels{"fact", "good", "warning", "problem"};
 
 const char* name_of(Level level) {
     return kLevels[static_cast<std::size_t>(level)];
@@ -38,7 +38,8 @@ std::vector<DoctorFinding> examine(const std::string& address) {
         findings.insert(findings.end(), more.begin(), more.end());
     };
     for (const CameraKind& kind : camera_kinds()) {
-        if (kind.examine_machine != nullptr) add(kind.examine_machine());
+        if (kind.examine_machine != nullptr && (asked == nullptr || &kind == asked))
+            add(kind.examine_machine(address));
         if (&kind == asked) add(kind.examine_camera(address));
     }
     return findings;
@@ -81,7 +82,9 @@ void add_capture_doctor(Command& capture, Action& action) {
     Command command =
         capture.add_command("doctor", "Diagnose the network and camera settings that cost frames");
     const auto address = std::make_shared<std::string>();
-    command.add_option("ADDRESS", *address, "a camera to look at: gige:IP or usb:SERIAL");
+    command.add_option("ADDRESS", *address,
+                       "a camera to look at, and what it needs of this machine: gige:IP or "
+                       "usb:SERIAL");
     command.footer(
         "Examples:\n"
         "  stipple capture doctor\n"

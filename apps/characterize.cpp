@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -160,18 +161,25 @@ void report(const CameraReport& camera, const std::optional<DeviceError>& failur
     if (failure) throw DeviceError(*failure);
 }
 
+/// Without --output the images lie in a temporary folder meanwhile.
 void characterize_sensor(const CharacterizeOptions& options, const RunOptions& run) {
     const SensorParams params = set_up_params(options.sensor);
     JsonFile json(run);
-    PendingOutput folder(options.output, run.force, OutputKind::kFolder, is_series_name);
-    say_leftover(options.output);
+    const bool is_kept = !options.output.empty();
+    const std::filesystem::path output = is_kept ? std::filesystem::path(options.output)
+                                                 : std::filesystem::temp_directory_path() /
+                                                       fmt::format("stipple_series_{}", ::getpid());
+    PendingOutput folder(output, run.force, OutputKind::kFolder, is_series_name);
+    if (is_kept) say_leftover(options.output);
     capture_flat_fields(options.sensor, params, folder, run);
     const auto where = (folder.final_path() / kDescriptorName).string();
     const CameraReport camera{evaluate(folder.partial() / kDescriptorName, where, run),
                               configured_figures(params)};
     std::optional<DeviceError> failure;
-    draw_charts(camera, fmt::format("Sensor {}", params.name), folder, failure);
-    folder.commit();
+    if (is_kept) {
+        draw_charts(camera, fmt::format("Sensor {}", params.name), folder, failure);
+        folder.commit();
+    }
     report(camera, failure, json, run);
 }
 
@@ -215,6 +223,7 @@ void add_characterize(Command& app, Action& action) {
     command
         .add_option("-o,--output", options->output,
                     "folder for images, descriptor, charts and page")
+        .default_text("none: figures only")
         .type_name("DIR")
         .output();
     command.footer(
@@ -223,10 +232,7 @@ void add_characterize(Command& app, Action& action) {
         "  stipple characterize --sensor t6 --set sensor.temperature_c=60 -o warm --json "
         "figures.json\n"
         "  stipple characterize --evaluate camera/emva1288_data.txt -o charts");
-    set_action(command, action, options, characterize, [options] {
-        if (options->descriptor.empty() && options->output.empty())
-            throw UsageError("--output", "a folder for the series is required, or --evaluate");
-    });
+    set_action(command, action, options, characterize);
 }
 
 }  // namespace stipple

@@ -54,6 +54,7 @@ std::string title_of(const std::string& comment) {
 }
 
 std::vector<Entry> configurations(ConfigKind kind) {
+    require_configs(kind);
     std::vector<Entry> entries;
     for (const std::string& name : config_names(kind))
         entries.push_back({name, title_of(first_comment(find_config(kind, name)))});

@@ -50,9 +50,9 @@ RigFolder open_rig_folder(const fs::path& folder, ReadPolicy policy) {
     RigFolder opened{.rig = read_rig(config), .readers = {}};
     for (const RigSensor& sensor : opened.rig.sensors) {
         const fs::path file = folder / sensor.file();
-        if (!fs::exists(file))
+        if (!fs::is_regular_file(file))
             throw InputError(file.string(),
-                             fmt::format("is missing; {} names it as the stream of sensor \"{}\"",
+                             fmt::format("is not there as a file; {} names it as the stream of sensor \"{}\"",
                                          (folder / kRigFile).string(), sensor.name));
         opened.readers.emplace_back(file, policy);
         check_stream(sensor, opened.readers.back(), opened.readers.front());

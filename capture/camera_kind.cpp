@@ -16,10 +16,10 @@ namespace {
 constexpr CameraKind kKinds[] = {
     {"gige", "gige:IP", false, open_aravis_camera, list_aravis_cameras, examine_network,
      examine_genicam_camera, aravis_features},
-    {"usb", "usb:SERIAL", false, open_aravis_camera, nullptr, [] { return usb_findings(); },
-     examine_genicam_camera, aravis_features},
-    {"v4l2", "v4l2:/dev/videoN", false, open_v4l2_camera, list_v4l2_cameras, v4l2_findings, nullptr,
-     v4l2_features},
+    {"usb", "usb:SERIAL", false, open_aravis_camera, nullptr,
+     [](const std::string&) { return usb_findings(); }, examine_genicam_camera, aravis_features},
+    {"v4l2", "v4l2:/dev/videoN", false, open_v4l2_camera, list_v4l2_cameras,
+     [](const std::string&) { return v4l2_findings(); }, nullptr, v4l2_features},
     {kReplayPrefix, "replay:FILE", true, open_replay_camera, nullptr, nullptr, nullptr},
 };
 

@@ -22,7 +22,8 @@ struct CameraKind {
     std::unique_ptr<Camera> (*open)(const std::string& address, const CameraSettings& settings,
                                     const CameraBuffers& buffers);
     std::vector<CameraListing> (*list)();
-    std::vector<DoctorFinding> (*examine_machine)();  ///< for all cameras of the kind
+    /// For the camera at an address; for all cameras of the kind if it is empty.
+    std::vector<DoctorFinding> (*examine_machine)(const std::string& address);
     std::vector<DoctorFinding> (*examine_camera)(const std::string& address);
     std::vector<CameraFeature> (*features)(const std::string& address) = nullptr;
 };

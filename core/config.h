@@ -112,4 +112,7 @@ enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces, kRigs };
 /// All names of a kind, sorted.
 [[nodiscard]] std::vector<std::string> config_names(ConfigKind kind);
 
+/// \throws InputError that names the folders searched if there is none of this kind.
+void require_configs(ConfigKind kind);
+
 }  // namespace stipple

@@ -64,6 +64,14 @@ std::vector<std::string> config_names(ConfigKind kind) {
     return {names.begin(), names.end()};
 }
 
+void require_configs(ConfigKind kind) {
+    if (config_names(kind).empty())
+        throw InputError("configuration",
+                         fmt::format("there is no {}/ in {}; set STIPPLE_CONFIG_DIR to a folder "
+                                     "that has it, as PREFIX/share/stipple/config",
+                                     folder_of(kind), searched()));
+}
+
 fs::path find_config(ConfigKind kind, std::string_view name) {
     std::error_code error;
     fs::path path(name);
@@ -74,15 +82,10 @@ fs::path find_config(ConfigKind kind, std::string_view name) {
         fs::path file = folder / folder_of(kind) / fmt::format("{}.toml", name);
         if (fs::is_regular_file(file, error)) return file;
     }
-    const auto names = config_names(kind);
-    throw InputError(
-        fmt::format("\"{}\"", name),
-        names.empty()
-            ? fmt::format("there is no {}/ in {}; set STIPPLE_CONFIG_DIR to a folder that "
-                          "has it, as PREFIX/share/stipple/config",
-                          folder_of(kind), searched())
-            : fmt::format("is neither a file nor one of the {}; {}", folder_of(kind),
-                          suggestion(name, names)));
+    require_configs(kind);
+    throw InputError(fmt::format("\"{}\"", name),
+                     fmt::format("is neither a file nor one of the {}; {}", folder_of(kind),
+                                 suggestion(name, config_names(kind))));
 }
 
 }  // namespace stipple

@@ -13,7 +13,10 @@
 namespace stipple {
 namespace {
 
-std::string csv_field(const std::string& text) {
+/// As RFC 4180. A text that a spreadsheet would take for a formula has an apostrophe before it.
+std::string csv_field(std::string text) {
+    if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
+        text.insert(0, 1, '\'');
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);

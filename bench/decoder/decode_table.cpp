@@ -232,8 +232,9 @@ std::vector<double> factors(const std::string& text) {
 
 int run(int argc, char** argv) {
     TableOptions options;
-    for (const NamedDecodeMethod& known : decode_methods())  // those that take any schedule
-        if (known.check_schedule == nullptr) options.methods.emplace_back(known.name);
+    for (const NamedDecodeMethod& known : decode_methods())
+        if (known.check_schedule == nullptr && known.method != DecodeMethod::kHitomi2011)
+            options.methods.emplace_back(known.name);
     const auto all_methods = options.methods;
     CommandLine line("bench_decode",
                      "Speed, memory and quality of the decoding methods, as a table");
@@ -241,7 +242,10 @@ int run(int argc, char** argv) {
     command.add_list("--clips", options.clips, "clips of the footage folder, or scenes")
         .split_at_commas();
     command
-        .add_list("--methods", options.methods, "of `stipple decode` (all that take any schedule)")
+        .add_list(
+            "--methods", options.methods,
+            "of `stipple decode` (all that take any schedule, without hitomi2011, which needs "
+            "--set hitomi2011.dictionary=FILE)")
         .split_at_commas()
         .one_of(names_of(decode_methods()));
     command.add_list("--set", options.settings, "METHOD.KEY=VALUE");

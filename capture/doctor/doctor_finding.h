@@ -7,11 +7,12 @@ namespace stipple {
 
 /// One result of `stipple capture doctor`.
 struct DoctorFinding {
-    enum class Level { kGood, kWarning, kProblem };
+    enum class Level { kFact, kGood, kWarning, kProblem };
     Level level = Level::kGood;
     std::string subject;  ///< "receive buffer", "group video"
     std::string fact;     ///< finding, with numbers
-    std::string fix;      ///< advice, if possible a command; empty if good or given before
+    std::string
+        fix;  ///< advice, if possible a command; empty if none is needed or it was given before
 };
 
 }  // namespace stipple

@@ -70,7 +70,7 @@ void examine_format(const AravisDevice& device, std::vector<DoctorFinding>& find
 /// \throws DeviceError.
 void examine(const std::string& address, std::vector<DoctorFinding>& findings) {
     const AravisDevice device(address);
-    findings.push_back({Level::kGood, "camera",
+    findings.push_back({Level::kFact, "camera",
                         fmt::format("{} {}", device.read("DeviceVendorName").value_or("?"),
                                     device.read("DeviceModelName").value_or("?")),
                         ""});
@@ -78,7 +78,7 @@ void examine(const std::string& address, std::vector<DoctorFinding>& findings) {
     if (device.is_gige() && device.is_controller()) examine_packets(device, findings);
     examine_format(device, findings);
     for (const auto& [name, value] : device.features())
-        findings.push_back({Level::kGood, name, value, ""});
+        findings.push_back({Level::kFact, name, value, ""});
 }
 
 /// What was found before the camera was lost counts too.

@@ -46,10 +46,12 @@ DoctorFinding judge_mtu(const std::string& interface, int mtu) {
     return finding;
 }
 
-std::vector<DoctorFinding> examine_network() {
+std::vector<DoctorFinding> examine_network(const std::string& address) {
     std::vector<DoctorFinding> findings;
     const bool may_exceed = can_exceed_rmem_max();
+    const auto path = address.empty() ? std::nullopt : interface_towards(address.substr(5));
     for (const NetworkInterface& interface : network_interfaces()) {
+        if (path && path->name != interface.name) continue;
         DoctorFinding finding{
             Level::kGood, fmt::format("interface {}", interface.name),
             fmt::format("{} / {}, {}", ipv4_text(interface.address), ipv4_text(interface.netmask),
@@ -67,7 +69,7 @@ std::vector<DoctorFinding> examine_network() {
         findings.push_back({Level::kWarning, "interfaces", "none has an IPv4 address",
                             "ip addr add 192.168.0.1/24 dev IF for a camera that is plugged in "
                             "directly"});
-    findings.push_back({Level::kGood, "CAP_NET_ADMIN",
+    findings.push_back({Level::kFact, "CAP_NET_ADMIN",
                         may_exceed ? "held: receive buffers of any size"
                                    : "not held: receive buffers up to net.core.rmem_max",
                         ""});

@@ -8,9 +8,10 @@
 
 namespace stipple {
 
-/// Network of this machine for GigE Vision cameras: interfaces with address and MTU, receive
-/// buffer, permission for a larger one.
-[[nodiscard]] std::vector<DoctorFinding> examine_network();
+/// Network of this machine for the GigE Vision camera at "gige:IP", for all such cameras if the
+/// address is empty: the interfaces that lead there with address and MTU, receive buffer,
+/// permission for a larger one.
+[[nodiscard]] std::vector<DoctorFinding> examine_network(const std::string& address);
 
 /// Finding on the receive buffer for a net.core.rmem_max of `max_bytes` (0: unknown), which this
 /// program may exceed or not.

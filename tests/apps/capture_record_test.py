@@ -216,6 +216,11 @@ class CaptureRecordTest(ProgramTest):
         self.serve()
         found = self.findings_of(self.address)
         self.assertIn(("control", "free"), [(one["subject"], one["fact"]) for one in found])
+        levels = {one["subject"]: one["level"] for one in found}
+        self.assertEqual((levels["control"], levels["Width"]), ("good", "fact"))
+        # Other interfaces and kinds of cameras do not matter to this one.
+        self.assertEqual([name for name in levels if name.startswith(("interface", "MTU"))], ["interface lo"])
+        self.assertFalse([name for name in levels if "usbfs" in name or "/dev/" in name])
         recorder = self.record()
         self.until_frames(recorder, 1)
         found = self.findings_of(self.address)

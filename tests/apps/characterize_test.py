@@ -38,6 +38,15 @@ class CharacterizeTest(ProgramTest):
         arguments = [word for setting in settings for word in ("--set", f"sensor.{setting}")]
         return self.figures("characterize", "--sensor", sensor, "-o", "series", *arguments)
 
+    def test_without_a_folder_the_figures_are_the_same_and_no_file_stays(self):
+        figures = self.series_of_t6()
+        (self.folder / "tmp").mkdir()
+        done = self.run_program("characterize", "--sensor", "t6", "--json", "-",
+                                env=os.environ | {"TMPDIR": str(self.folder / "tmp")})
+        self.assertEqual(done.returncode, OK, done.stderr)
+        self.assertEqual(json.loads(done.stdout), figures)
+        self.assertEqual(list((self.folder / "tmp").iterdir()), [])
+
     def expect_configured(self, figures, keys):
         self.assertFalse(figures["biased"])
         for key in keys:

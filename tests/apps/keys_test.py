@@ -1,11 +1,13 @@
 """`stipple list keys` lists what --set takes, with the defaults that hold where nothing is set."""
 
+import shutil
+import subprocess
 import tomllib
 import unittest
 
 import numpy as np
 
-from program import USAGE, ProgramTest, project_path
+from program import INPUT, PROGRAM, USAGE, ProgramTest, project_path
 
 
 def flat(table, prefix=""):
@@ -36,6 +38,12 @@ class KeysTest(ProgramTest):
         self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--force", *arguments)
         self.succeed("decode", "clip.stipple", "-o", "naive.npy", "--method", "naive", "--force")
         return self.array("naive.npy")
+
+    def test_a_program_without_its_configurations_says_so(self):
+        shutil.copy(PROGRAM, self.folder / "alone")
+        done = subprocess.run([self.folder / "alone", "list", "sensors"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (INPUT, ""))
+        self.assertIn("there is no sensors/ in ", done.stderr)
 
     def test_the_keys_of_a_sensor_are_those_of_its_mode_and_timing(self):
         for sensor, kinds in (("ideal", {"paper", "physical", "timing"}), ("lux1310", {"paper", "timing"}),

@@ -1,5 +1,6 @@
 """Several sensors on one scene: a rig through emulate, info and decode."""
 
+import os
 import shutil
 import unittest
 
@@ -51,6 +52,12 @@ class RigTest(ProgramTest):
         self.assertGreater(figures["energy_uj"], 0)
         self.assertAlmostEqual(figures["energy_uj"],
                                sum(sensor["readout"]["energy_uj"] for sensor in figures["sensors"]), 6)
+
+    def test_a_pipe_in_place_of_a_stream_is_refused(self):
+        self.emulate()
+        (self.folder / "rig/left.stipple").unlink()
+        os.mkfifo(self.folder / "rig/left.stipple")
+        self.fails(INPUT, ["rig/left.stipple: is not there as a file"], "info", "rig")
 
     def test_a_stream_is_that_of_the_sensor_alone(self):
         self.emulate()

@@ -95,7 +95,7 @@ class ExamplesTest(unittest.TestCase):
         program = self.folder / "own_by_hand"
         self.run_command(program, "own.stipple", env=os.environ | {"STIPPLE_CONFIG_DIR": configs})
         said = self.run_command(program, "own.stipple", code=1, env=os.environ | {"STIPPLE_CONFIG_DIR": "nowhere"})
-        self.assertRegex(said, rf'"ideal": there is no sensors/ in nowhere, .*{self.folder}/config.*; '
+        self.assertRegex(said, rf'configuration: there is no sensors/ in nowhere, .*{self.folder}/config.*; '
                                "set STIPPLE_CONFIG_DIR")
 
     def project(self, name, *lines):

@@ -16,7 +16,7 @@ class ResultsTableTest : public testing::Test {
     /// Points 0 and 1; the second has no figures.
     Exploration explored() {
         write_text(folder_ / "space.toml",
-                   "[axes]\nsensor = 'paper'\nmethod = ['naive', 'no, \"such\"']\n"
+                   "[axes]\nsensor = 'paper'\nmethod = ['naive', '=no, \"such\"']\n"
                    "[clip]\nframes = 12\nrows = 8\ncols = 8\n");
         Exploration exploration(folder_ / "space.toml", folder_ / "results", {},
                                 [] { return true; });
@@ -54,7 +54,7 @@ TEST_F(ResultsTableTest, TextsOfTheCsvAreQuotedWhereTheyMustBe) {
     const std::string text = csv_table(explored());
     expect_parts(text, {"footage,sensor,schedule,method,seed,slots_per_second,",
                         ",limited_by,compared_slots,rung,slots,problem\npan,paper,random,naive,1,",
-                        ",31.5,", ",slot,,1,12,\n", "\npan,paper,random,\"no, \"\"such\"\"\",1,,"});
+                        ",31.5,", ",slot,,1,12,\n", "\npan,paper,random,\"'=no, \"\"such\"\"\",1,,"});
 }
 
 }  // namespace

@@ -28,10 +28,10 @@ TEST(NetworkDoctorTest, ASmallMtuIsWarnedOfWithTheCommandThatRaisesIt) {
 }
 
 TEST(NetworkDoctorTest, EveryFindingThatIsNotGoodHasAFix) {
-    for (const DoctorFinding& finding : examine_network()) {
+    for (const DoctorFinding& finding : examine_network({})) {
         EXPECT_FALSE(finding.subject.empty());
         EXPECT_FALSE(finding.fact.empty());
-        EXPECT_EQ(finding.fix.empty(), finding.level == Level::kGood) << finding.subject;
+        EXPECT_EQ(finding.fix.empty(), finding.level <= Level::kGood) << finding.subject;
     }
 }
 
