@@ -90,7 +90,7 @@ void add_decode(Command& app, Action& action) {
         .input();
     command
         .add_option("-o,--output", options->output,
-                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video)")
+                    "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m)")
         .type_name("OUT")
         .required()
         .output(kVideoName);
@@ -125,6 +125,7 @@ void add_decode(Command& app, Action& action) {
         "  stipple decode live.stipple -o live --method fast --follow\n"
         "  stipple decode tocci -o hdr.npy\n"
         "  stipple decode clip.stipple -o hdr.mkv --video pq --peak-cd 4000 --fps 60\n"
+        "  stipple decode clip.stipple -o - | ffmpeg -i - -c:v prores clip.mov\n"
         "  stipple decode film.stipple -o windows --part 3/16\n"
         "What is intact of a damaged stream is decoded, the damage is listed, the exit code is 1.");
     set_action(command, action, options, decode_all_or_part, [command, options, check_schedule] {

@@ -77,11 +77,11 @@ void add_join(Command& app, Action& action) {
         .input();
     command
         .add_option("-o,--output", options->output,
-                    "folder of images, .npy or .tif (linear), .mp4 or .mkv (video); of pieces a "
-                    ".stipple")
+                    "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m); of "
+                    "pieces a .stipple")
         .type_name("OUT")
         .required()
-        .output();
+        .output({.may_be_pipe = true});
     add_video_arguments(command, options->video, options->images);
     command.footer(
         "Example:\n"

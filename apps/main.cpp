@@ -102,6 +102,7 @@ CommandLine::Parsed run(int argc, char** argv) {
     for (Command& command : root.leaves()) add_run_options(command, action.options);
     add_manual(root, action, [&line] { return line.description(); });
     const auto parsed = line.parse(argc, argv);
+    action.options.notes_only = line.writes_to_standard_output();
     if (parsed == CommandLine::Parsed::kAction) run(action);
     if (std::fflush(stdout) != 0)
         throw std::system_error(errno, std::generic_category(), "standard output");

@@ -31,6 +31,7 @@ void add_part(Command& command, PartOfWork& part, const std::string& text) {
 
 void check_part_folder(const std::string& output) {
     const std::filesystem::path folder(output);
+    if (output == "-") throw UsageError("--output", "with --part it is a folder; give it a name");
     if (folder.has_extension() && !std::filesystem::is_directory(folder))
         throw UsageError("--output", "with --part it is a folder, and has no extension");
 }

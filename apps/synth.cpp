@@ -54,7 +54,9 @@ void synth(const SynthOptions& options, const RunOptions& run) {
                 {"slots_per_second", rate}});
     run.say(fmt::format("{}: {} of {} x {}, {}, {} frames/s", options.output,
                         counted(progress.done(), "frame"), shape.cols, shape.rows,
-                        is_video_name(options.output) ? "tone-mapped to 8 bits" : "linear light",
+                        is_video_name(options.output) || is_pipe(options.output)
+                            ? "tone-mapped to 8 bits"
+                            : "linear light",
                         rounded(rate)));
 }
 
@@ -66,7 +68,9 @@ void add_synth(Command& app, Action& action) {
     command.add_option("SCENE", options->scene, "scene, of \"stipple list scenes\"")
         .one_of(names_of(scenes()))
         .required();
-    command.add_option("-o,--output", options->output, "folder (EXR), .npy, .tif, .mp4 or .mkv")
+    command
+        .add_option("-o,--output", options->output,
+                    "folder (EXR), .npy, .tif, .mp4, .mkv, .y4m, - (.y4m)")
         .type_name("OUT")
         .required()
         .output(kVideoName);

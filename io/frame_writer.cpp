@@ -1,6 +1,7 @@
 #include "io/frame_writer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cassert>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "io/exr_file.h"
 #include "io/footage_files.h"
 #include "io/npy_writer.h"
+#include "io/output_names.h"
 #include "io/pending_output.h"
 #include "io/png_file.h"
 #include "io/tiff_writer.h"
@@ -83,18 +85,22 @@ void FolderWriter::write_image(const fs::path& file, const std::string& where,
 
 using Writer = std::variant<FolderWriter, NpyWriter, VideoWriter, TiffWriter>;
 
-enum class Format { kFolder, kNpy, kVideo, kTiffStack };
+enum class Format { kFolder, kNpy, kVideo, kY4m, kTiffStack };
 
 Format format_of(const fs::path& output) {
     const std::string extension = lower_extension(output);
     std::error_code error;
+    if (is_pipe(output) && extension.empty()) return Format::kY4m;
+    if (extension == ".y4m") return Format::kY4m;
+    if (is_pipe(output))
+        throw InputError(output.string(), "is a pipe, which takes .y4m only; rename it");
     if (extension.empty() || fs::is_directory(output, error)) return Format::kFolder;
     if (extension == ".npy") return Format::kNpy;
     if (extension == ".mp4" || extension == ".mkv") return Format::kVideo;
     if (extension == ".tif" || extension == ".tiff") return Format::kTiffStack;
     throw InputError(
         output.string(),
-        fmt::format("videos cannot be written as \"{}\"; give .npy, .mp4, .mkv, .tif, or "
+        fmt::format("videos cannot be written as \"{}\"; give .npy, .mp4, .mkv, .y4m, .tif, or "
                     "a folder (a name without extension, or with a / at its end)",
                     extension));
 }
@@ -113,7 +119,7 @@ OutputKind checked_kind(const fs::path& output, FrameShape shape,
                                      video.frames_hz));
     const Format format = format_of(output);
     if (video.curve != VideoCurve::kSdr && format != Format::kVideo)
-        throw InputError(output.string(), "holds linear light; PQ and HLG need .mp4 or .mkv");
+        throw InputError(output.string(), "holds no HDR video; PQ and HLG need .mp4 or .mkv");
     return format == Format::kFolder ? OutputKind::kFolder : OutputKind::kFile;
 }
 
@@ -121,7 +127,9 @@ OutputKind checked_kind(const fs::path& output, FrameShape shape,
 FrameWriterOptions checked_samples(const fs::path& output, FrameWriterOptions options) {
     ImageCoding& images = options.images;
     const Format format = format_of(output);
-    if (format == Format::kNpy || format == Format::kVideo) return options;
+    options.video.uncompressed = format == Format::kY4m;
+    if (format == Format::kNpy || format == Format::kVideo || format == Format::kY4m)
+        return options;
     if (format == Format::kTiffStack) images.format = ImageFormat::kTiff;
     const bool png = images.format == ImageFormat::kPng;
     const SampleKind samples =
@@ -135,6 +143,16 @@ FrameWriterOptions checked_samples(const fs::path& output, FrameWriterOptions op
                                               : "TIFF is written as f32 or u16");
     images.samples = samples;
     return options;
+}
+
+/// For messages. \throws InputError if it is a terminal.
+std::string pipe_name(const fs::path& pipe) {
+    if (pipe != "-") return pipe.string();
+    if (isatty(STDOUT_FILENO) != 0)
+        throw InputError("standard output",
+                         "is a terminal; send the video to a program or a file, as by "
+                         "-o - | ffmpeg -i - OUT.mov");
+    return "standard output";
 }
 
 /// A live folder is put in place at once.
@@ -151,6 +169,7 @@ Writer open_writer(PendingOutput& output, Format format, FrameShape shape,
         case Format::kTiffStack:
             return TiffWriter(output.partial(), where, shape, options.images);
         case Format::kVideo:
+        case Format::kY4m:
             break;
     }
     return VideoWriter(output.partial(), where, shape, options.video);
@@ -160,14 +179,21 @@ Writer open_writer(PendingOutput& output, Format format, FrameShape shape,
 
 struct FrameWriter::Impl {
     std::size_t sites;
-    PendingOutput output;
+    std::optional<PendingOutput> output;  ///< none: a pipe
     Writer writer;
     bool finished = false;
 
     Impl(const fs::path& path, FrameShape shape, const FrameWriterOptions& options)
-        : sites(shape.sites()),
-          output(path, options.force, checked_kind(path, shape, options)),
-          writer(open_writer(output, format_of(path), shape, checked_samples(path, options))) {}
+        : sites(shape.sites()), writer(open(path, shape, options)) {}
+
+  private:
+    Writer open(const fs::path& path, FrameShape shape, const FrameWriterOptions& wanted) {
+        const OutputKind kind = checked_kind(path, shape, wanted);
+        const FrameWriterOptions options = checked_samples(path, wanted);
+        if (is_pipe(path)) return VideoWriter(path, pipe_name(path), shape, options.video);
+        output.emplace(path, options.force, kind);
+        return open_writer(*output, format_of(path), shape, options);
+    }
 };
 
 FrameWriter::FrameWriter(const fs::path& output, FrameShape shape, FrameWriterOptions options)
@@ -188,7 +214,7 @@ std::optional<LightLevels> FrameWriter::light_levels() const {
 void FrameWriter::finish() {
     if (std::exchange(impl_->finished, true)) return;
     std::visit([](auto& writer) { writer.finish(); }, impl_->writer);
-    if (!impl_->output.committed()) impl_->output.commit();
+    if (impl_->output && !impl_->output->committed()) impl_->output->commit();
 }
 
 }  // namespace stipple

@@ -12,7 +12,7 @@
 namespace stipple {
 
 struct FrameWriterOptions {
-    VideoCoding video = {};   ///< of .mp4 / .mkv
+    VideoCoding video = {};   ///< of .mp4 / .mkv / .y4m
     ImageCoding images = {};  ///< of a folder and of .tif / .tiff
     bool force = false;       ///< replace an existing output
     bool live = false;        ///< frames of a folder appear there one by one
@@ -20,9 +20,9 @@ struct FrameWriterOptions {
 
 /// Writes a video frame by frame. The name determines the format: a folder of `frame_%04d.exr`,
 /// light_%04d.png or light_%04d.tif (linear), `.tif` / `.tiff` (OME-TIFF, linear), `.npy` (float32,
-/// (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv` (io/video_writer.h). The output is written under a hidden
-/// name in the same folder, and `finish` renames it. So the final name never holds a partial video;
-/// without `finish` nothing remains.
+/// (T,H,W) or (T,H,W,3)), `.mp4` / `.mkv` / `.y4m` (io/video_writer.h). The output is written under
+/// a hidden name in the same folder, and `finish` renames it. So the final name never holds a
+/// partial video; without `finish` nothing remains. To a pipe (is_pipe) .y4m is written at once.
 class FrameWriter {
   public:
     /// \throws InputError if the output exists (and not force) or its folder does not, or the

@@ -1,19 +1,24 @@
 #include "io/output_file.h"
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "core/write_failure.h"
+#include "io/output_names.h"
 
 namespace stipple {
 
 OutputFile::OutputFile(const std::filesystem::path& path, std::string where)
     : where_(std::move(where)) {
-    // Not through a link that somebody has put there.
-    constexpr int kMode = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
-    const int descriptor = ::open(path.c_str(), kMode, 0666);
+    // Not through a link that somebody has put there, unless to a pipe, as /dev/fd/N is.
+    constexpr int kMode = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+    const int descriptor =
+        path == "-" ? ::dup(STDOUT_FILENO)
+                    : ::open(path.c_str(), kMode | (is_pipe(path) ? 0 : O_NOFOLLOW), 0666);
     if (descriptor >= 0) file_.reset(::fdopen(descriptor, "wb"));
     if (!file_) fail();
 }
@@ -31,6 +36,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::fail() const {
+    if (errno == EPIPE) throw std::system_error(errno, std::generic_category(), where_);
     throw write_failure(where_, errno);
 }
 

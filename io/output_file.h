@@ -10,10 +10,10 @@
 namespace stipple {
 
 /// An output file. Each failure (such as a full disk) is a DeviceError that gives the name that the
-/// user knows.
+/// user knows, but a pipe without a reader is a std::system_error.
 class OutputFile {
   public:
-    /// Creates `path`; messages name it `where`. \throws DeviceError.
+    /// Creates `path`, or opens a pipe (is_pipe); messages name it `where`. \throws DeviceError.
     OutputFile(const std::filesystem::path& path, std::string where);
 
     void write(std::span<const std::byte> bytes);

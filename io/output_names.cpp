@@ -8,6 +8,11 @@
 namespace stipple {
 namespace fs = std::filesystem;
 
+bool is_pipe(const fs::path& output) {
+    std::error_code error;
+    return output == "-" || fs::is_fifo(output, error);
+}
+
 std::string name_problem(const fs::path& file, const OutputName& name) {
     std::error_code error;
     if (name.rule.empty() || (fs::exists(file, error) && !fs::is_regular_file(file, error)))

@@ -10,9 +10,13 @@ namespace stipple {
 /// The names that an output may have: any, or those with one of the extensions.
 struct OutputName {
     std::string_view rule = {};  ///< as in "a diagram is a .png or a .svg"; empty: any name
-    std::array<std::string_view, 5> extensions = {};  ///< in lower case; names may be in upper case
+    std::array<std::string_view, 6> extensions = {};  ///< in lower case; names may be in upper case
     bool may_have_none = true;
+    bool may_be_pipe = false;  ///< "-", standard output
 };
+
+/// True for "-" and for a named pipe.
+[[nodiscard]] bool is_pipe(const std::filesystem::path& output);
 
 /// What is wrong with `file` as a name of `name`, or an empty text. An existing folder, pipe or
 /// device may have any name.
@@ -26,8 +30,11 @@ constexpr OutputName kRecoveredName{
     "a stream is a .stipple, a recording a .strec, or either has a name without extension",
     {".stipple", ".strec"}};
 constexpr OutputName kVideoName{
-    "a video is a .npy, .mp4, .mkv or .tif, or by a name without extension a folder of images",
-    {".npy", ".mp4", ".mkv", ".tif", ".tiff"}};
+    "a video is a .npy, .mp4, .mkv, .y4m or .tif, or by a name without extension a folder of "
+    "images",
+    {".npy", ".mp4", ".mkv", ".y4m", ".tif", ".tiff"},
+    true,
+    true};
 constexpr OutputName kDifferenceName{
     "a difference is a .png or a .npy, or by a name without extension a folder of EXR files",
     {".png", ".npy"}};

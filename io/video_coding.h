@@ -16,6 +16,7 @@ enum class HdrCodec { kHevc, kAv1 };
 
 struct VideoCoding {
     VideoCurve curve = VideoCurve::kSdr;
+    bool uncompressed = false;  ///< .y4m; by the name of the output
     HdrCodec codec = HdrCodec::kHevc;
     double frames_hz = 30;                   ///< of playback
     double cd_per_unit = kReferenceWhiteCd;  ///< luminance of light 1.0, in cd/m2

@@ -46,7 +46,8 @@ const AVCodec* find_encoder(const VideoCoding& coding, const std::string& where)
     const bool sdr = coding.curve == VideoCurve::kSdr;
     const bool hevc = coding.codec == HdrCodec::kHevc;
     const AVCodec* const codec =
-        sdr ? avcodec_find_encoder(AV_CODEC_ID_H264)
+        sdr ? avcodec_find_encoder(coding.uncompressed ? AV_CODEC_ID_WRAPPED_AVFRAME
+                                                       : AV_CODEC_ID_H264)
             : avcodec_find_encoder_by_name(hevc ? "libx265" : "libaom-av1");
     if (codec == nullptr)
         throw DeviceError(
@@ -94,6 +95,7 @@ void check_size(FrameShape shape, const VideoCoding& coding, const std::string& 
 
 AVDictionary* options_of(const VideoCoding& coding) {
     AVDictionary* options = nullptr;
+    if (coding.uncompressed) return options;
     if (coding.curve == VideoCurve::kSdr) {
         av_dict_set(&options, "crf", "23", 0);  // x264's default
     } else if (coding.codec == HdrCodec::kHevc) {

@@ -150,16 +150,23 @@ FfmpegPtr<AVFrame> new_frame(AVPixelFormat format, int width, int height) {
     return frame;
 }
 
+/// Of .y4m, which cannot declare it, that which readers take for the size.
+int matrix_of(const VideoCoding& coding, int rows) {
+    constexpr int kMinRowsOfBt709 = 720;
+    if (coding.curve != VideoCurve::kSdr) return SWS_CS_BT2020;
+    return coding.uncompressed && rows < kMinRowsOfBt709 ? SWS_CS_ITU601 : SWS_CS_ITU709;
+}
+
 /// From grey or RGB of 8 or 16 bits; the same bits on any processor.
-FfmpegPtr<SwsContext> new_scaler(const AVFrame& from, const AVFrame& to, VideoCurve curve) {
+FfmpegPtr<SwsContext> new_scaler(const AVFrame& from, const AVFrame& to,
+                                 const VideoCoding& coding) {
     constexpr int kFlags =
         SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
     constexpr int kOne = 1 << 16;
     FfmpegPtr<SwsContext> scaler(sws_getContext(
         from.width, from.height, static_cast<AVPixelFormat>(from.format), to.width, to.height,
         static_cast<AVPixelFormat>(to.format), kFlags, nullptr, nullptr, nullptr));
-    const int* const matrix =
-        sws_getCoefficients(curve == VideoCurve::kSdr ? SWS_CS_ITU709 : SWS_CS_BT2020);
+    const int* const matrix = sws_getCoefficients(matrix_of(coding, to.height));
     if (scaler) sws_setColorspaceDetails(scaler.get(), matrix, 1, matrix, 0, 0, kOne, kOne);
     return scaler;
 }
@@ -226,7 +233,8 @@ void VideoWriter::Impl::open_stream() {
 void VideoWriter::Impl::open(const std::filesystem::path& file) {
     av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* created = nullptr;
-    check(avformat_alloc_output_context2(&created, nullptr, nullptr, file.c_str()), kCreate);
+    const char* const format = coding.uncompressed ? "yuv4mpegpipe" : nullptr;
+    check(avformat_alloc_output_context2(&created, nullptr, format, file.c_str()), kCreate);
     muxer.reset(created);
     encoder = open_encoder(shape, coding, (muxer->oformat->flags & AVFMT_GLOBALHEADER) != 0, where);
     packet.reset(av_packet_alloc());
@@ -236,7 +244,7 @@ void VideoWriter::Impl::open(const std::filesystem::path& file) {
                             : (grey ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24),
                        encoder->width, encoder->height);
     encoded = new_frame(encoder->pix_fmt, encoder->width, encoder->height);
-    if (packet && padded && encoded) scaler = new_scaler(*padded, *encoded, coding.curve);
+    if (packet && padded && encoded) scaler = new_scaler(*padded, *encoded, coding);
     auto* const buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
     if (buffer != nullptr)
         bytes.reset(avio_alloc_context(buffer, kBufferBytes, 1, &sink, nullptr, write_bytes, seek));

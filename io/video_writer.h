@@ -15,12 +15,14 @@ namespace stipple {
 /// file declares curve, primaries and matrix. Odd sizes, and fewer than four columns, are padded by
 /// repeating the last row or column.
 ///
-/// For viewing: tone-mapped (io/tone_map.h), H.264 of 8 bits, Y'CbCr by BT.709. In HDR: the signals
-/// of io/hdr_signal.h, HEVC or AV1 of 10 bits, Y'CbCr by BT.2020 (non-constant luminance); in PQ
-/// with mastering display (SMPTE ST 2086) and light levels (CTA-861.3), rounded up to cd/m2.
+/// For viewing: tone-mapped (io/tone_map.h), H.264 or uncompressed, of 8 bits, Y'CbCr by BT.709, in
+/// .y4m below 720 rows by BT.601. In HDR: the signals of io/hdr_signal.h, HEVC or AV1 of 10 bits,
+/// Y'CbCr by BT.2020 (non-constant luminance); in PQ with mastering display (SMPTE ST 2086) and
+/// light levels (CTA-861.3), rounded up to cd/m2.
 class VideoWriter {
   public:
-    /// Creates `file` (.mp4 or .mkv); messages name it `where`. \throws DeviceError.
+    /// Creates `file` (.mp4, .mkv or .y4m), or opens a pipe for .y4m; messages name it `where`.
+    /// \throws DeviceError.
     VideoWriter(const std::filesystem::path& file, std::string_view where, FrameShape shape,
                 const VideoCoding& coding);
     ~VideoWriter();

@@ -56,6 +56,14 @@ std::vector<std::pair<std::string, fs::path>> named_files(
     return files;
 }
 
+/// The options whose output is standard output.
+std::vector<std::string> written_to_standard_output(const DeclaredOptions& declared) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : declared.outputs)
+        if (std::ranges::count(option->results(), "-") > 0) names.push_back(option->get_name());
+    return names;
+}
+
 /// \throws UsageError for an empty name or "-" as the name of a file.
 void check_names(const DeclaredOptions& declared) {
     const auto check = [](const CLI::Option* option, const char* standard_stream) {
@@ -66,11 +74,16 @@ void check_names(const DeclaredOptions& declared) {
         }
     };
     for (const CLI::Option* option : declared.inputs)
-        check(option, "\"-\" is no file; write /dev/stdin where a stream comes from a pipe");
-    for (const CLI::Option* option : declared.outputs)
-        check(option, option->get_name() == "--json"
-                          ? nullptr
-                          : "\"-\" is no file; standard output does not take it, give it a name");
+        check(option, "\"-\" is not a file; write /dev/stdin where a stream comes from a pipe");
+    for (std::size_t i = 0; i < declared.outputs.size(); ++i)
+        check(declared.outputs[i], declared.output_names[i].may_be_pipe
+                                       ? nullptr
+                                       : "\"-\" is not a file; standard output does not take it, "
+                                         "give it a name");
+    if (written_to_standard_output(declared).size() > 1)
+        throw UsageError(written_to_standard_output(declared)[0],
+                         fmt::format("\"-\" is the output of {} too; give one of them a name",
+                                     written_to_standard_output(declared)[1]));
 }
 
 /// The file or folder that an input stands for: of a pattern the folder.
@@ -293,6 +306,10 @@ CommandLine::CommandLine(const std::string& program, const std::string& text,
 }
 
 CommandLine::~CommandLine() = default;
+
+bool CommandLine::writes_to_standard_output() const {
+    return !written_to_standard_output(declared_).empty();
+}
 
 CommandDescription CommandLine::description() const {
     return described(*app_, {}, declared_);

@@ -182,6 +182,8 @@ class CommandLine {
     [[nodiscard]] Command root() { return {*app_, declared_}; }
     /// As it was declared.
     [[nodiscard]] CommandDescription description() const;
+    /// Whether an output that was given is "-".
+    [[nodiscard]] bool writes_to_standard_output() const;
     enum class Parsed { kAction, kHelp, kWrong };
     /// Parses the command line and runs the callbacks of the subcommand that it names. Prints help
     /// and version if they are asked for, and a message if the command line is wrong.

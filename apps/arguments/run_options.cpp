@@ -11,6 +11,7 @@ namespace stipple {
 
 void RunOptions::say(std::string_view text) const {
     if (quiet || json == "-") return;
+    if (notes_only) return say_note(text);
     clear_bar();
     print_text(terminal_text(text) + "\n");
 }
@@ -21,7 +22,7 @@ void add_run_options(Command& command, RunOptions& run) {
                     "write the figures of the run as JSON; - is standard output, without text then")
         .type_name("FILE")
         .group(kCommonOptions)
-        .output();
+        .output({.may_be_pipe = true});
     command
         .add_flag("--force", run.force,
                   "replace existing outputs, the file of --json too; of a link the file behind it")

@@ -18,8 +18,10 @@ struct RunOptions {
     int threads = 0;               ///< 0: all cores; of those that have `--threads`
     std::string json;              ///< file for the figures; empty: none, "-": standard output
 
-    /// Prints `text` for people on standard output, unless it shall be quiet or has JSON on it.
-    /// \throws std::system_error if it cannot be written.
+    bool notes_only = false;  ///< standard output is for data
+
+    /// Prints `text` for people on standard output, or as a note on standard error, unless it shall
+    /// be quiet or has JSON on it. \throws std::system_error if it cannot be written.
     void say(std::string_view text) const;
 };
 

@@ -4,6 +4,7 @@
 
 #include "apps/arguments/checks.h"
 #include "io/footage_files.h"
+#include "io/output_names.h"
 
 namespace stipple {
 
@@ -72,7 +73,8 @@ void check_video_arguments(const Command& command, const VideoCoding& video,
                            const ImageCoding& images, const std::string& output) {
     const std::string extension = lower_extension(output);
     const bool is_stack = extension == ".tif" || extension == ".tiff";
-    const bool is_video = extension == ".mp4" || extension == ".mkv";
+    const bool is_y4m = extension == ".y4m" || is_pipe(output);
+    const bool is_video = is_y4m || extension == ".mp4" || extension == ".mkv";
     if (is_video || is_stack || extension == ".npy")
         command.refuse({"--images"}, "needs a folder of images as output");
     if (is_video || extension == ".npy")
@@ -85,6 +87,9 @@ void check_video_arguments(const Command& command, const VideoCoding& video,
     if (!is_video)
         command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd"},
                        "needs .mp4 or .mkv; this output is linear light");
+    if (is_y4m)
+        command.refuse({"--video", "--codec", "--cd-per-unit", "--peak-cd"},
+                       "needs .mp4 or .mkv; .y4m and pipes are tone-mapped video");
     if (video.curve == VideoCurve::kSdr)
         command.refuse({"--codec", "--cd-per-unit", "--peak-cd"},
                        "needs HDR video; add --video pq or --video hlg");

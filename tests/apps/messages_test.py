@@ -55,7 +55,7 @@ class UsageTest(ProgramTest):
         self.fails(USAGE, ["--timeout", "--follow"], "decode", "a", "-o", "x", "--timeout", 3)
         self.fails(USAGE, ["--json", "is empty"], "info", "a", "--json", "")
         self.fails(USAGE, ["FILE", "/dev/stdin"], "info", "-")
-        self.fails(USAGE, ["--output", "standard output"], "synth", "pan", "-o", "-")
+        self.fails(USAGE, ["--output", "standard output"], "emulate", "a", "-o", "-")
         self.fails(USAGE, ["--name", "64"], "schedule", "import", "a.npy", "-o", "x", "--name", "n" * 65)
 
     def test_subcommands_that_are_missing(self):

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 import numpy as np
-from program import DEVICE, PROGRAM, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, USAGE, ProgramTest
 from outputs_test import small_files
 
 COLOURS = np.array([[[0.18, 0.18, 0.18], [1, 0.05, 0.05]], [[0.05, 1, 0.05], [0.1, 0.2, 3]]])
@@ -52,6 +52,53 @@ class OutputVideoTest(ProgramTest):
                 inner = image[rows // 4::rows // 2, cols // 4::cols // 2]
                 # Lossy: two steps of luma, which are 1.2, and two of chroma, up to 2.1. BT.601 is off by 15.
                 np.testing.assert_allclose(inner, tone_mapped(COLOURS), atol=6)
+
+    def test_uncompressed_video_has_the_colours_of_the_light(self):
+        for rows, matrix in ((48, "bt601"), (720, "bt709")):  # as readers guess
+            light = np.repeat(np.repeat(COLOURS, rows // 2, axis=0), 8, axis=1)
+            self.write_video("a.y4m", [light] * 3)
+            frames = self.run_tool("ffmpeg", "-v", "error", "-i", "a.y4m", "-vf", f"scale=in_color_matrix={matrix}", "-f",
+                                   "rawvideo", "-pix_fmt", "rgb24", "-")
+            image = np.frombuffer(frames, np.uint8).reshape(3, rows, 16, 3)[0, rows // 4::rows // 2, 4::8]
+            np.testing.assert_allclose(image, tone_mapped(COLOURS), atol=3)  # 8 bits of luma and chroma
+
+    def pipe(self, *arguments):
+        """What a run with binary data on standard output writes there, and its messages."""
+        done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=60)
+        self.assertEqual(done.returncode, OK, done.stderr)
+        return done.stdout, done.stderr.decode()
+
+    def test_standard_output_and_named_pipes_take_uncompressed_video(self):
+        decode = ("decode", self.write_stream(slots=6), "--method", "naive", "-o")
+        self.succeed(*decode, "file.y4m")
+        whole = (self.folder / "file.y4m").read_bytes()
+        video, said = self.pipe(*decode, "-")
+        self.assertEqual(video, whole)
+        self.assertIn("stipple: -: 6 frames, method naive", said)
+        frames = subprocess.run(["ffmpeg", "-v", "error", "-i", "-", "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                                input=video, check=True, capture_output=True).stdout
+        self.assertEqual(len(frames), 6 * 8 * 8)
+        os.mkfifo(self.folder / "pipe.y4m")
+        with subprocess.Popen(["cat", "pipe.y4m"], cwd=self.folder, stdout=subprocess.PIPE) as reader:
+            self.succeed(*decode, "pipe.y4m")
+            self.assertEqual(reader.communicate(timeout=60)[0], whole)
+        self.succeed("decode", "clip.stipple", "--method", "naive", "-o", "windows", "--part", "1/1")
+        self.assertEqual(self.pipe("join", "windows", "-o", "-")[0], whole)
+
+    def test_a_pipe_without_a_reader_ends_the_program_quietly(self):
+        with subprocess.Popen(["true"], stdin=subprocess.PIPE) as reader:
+            reader.wait()
+            done = subprocess.run([PROGRAM, "synth", "pan", "-o", "-", "--size", "256x192", "--frames", "4"],
+                                  stdout=reader.stdin, stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (141, b""))
+
+    def test_what_a_pipe_cannot_take_is_refused(self):
+        decode = ("decode", self.write_stream(slots=6), "--method", "naive")
+        self.fails(USAGE, ['"-" is the output of --json too'], *decode, "-o", "-", "--json", "-")
+        self.fails(USAGE, ["with --part it is a folder"], *decode, "-o", "-", "--part", "1/2")
+        self.fails(USAGE, ["--video: needs .mp4 or .mkv"], *decode, "-o", "-", "--video", "pq")
+        os.mkfifo(self.folder / "pipe.npy")
+        self.fails(INPUT, ["pipe.npy: is a pipe, which takes .y4m only"], *decode, "-o", "pipe.npy")
 
     def test_grey_has_no_colour(self):
         light = np.repeat([[0, 0.18, 1, 4]], 16, axis=0).repeat(16, axis=1)

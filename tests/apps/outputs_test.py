@@ -100,7 +100,7 @@ class OutputsTest(ProgramTest):
         make = ["schedule", "make", "random", "-o"]
         record = ["capture", "record", f"replay:{light}", "-o"]
         for option, kind, line in (
-                ("--output", "a video is a .npy, .mp4, .mkv or .tif, or by a name without", [*SYNTH, "out.avi"]),
+                ("--output", "a video is a .npy, .mp4, .mkv, .y4m or .tif, or by a name without", [*SYNTH, "out.avi"]),
                 ("--output", "a sample stream is a .stipple, or", [*emulate, "out.mp4"]),
                 ("--output", "a sample stream is a .stipple, or", [*emulate, "out.npy", "--force"]),
                 ("--truth", "a video is", [*emulate, "out", "--truth", "out.stipple"]),
