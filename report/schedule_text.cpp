@@ -63,7 +63,8 @@ std::string figures_text(const std::string& name, const ScheduleFigures& figures
             : fmt::format("{} to {}", figures.min_exposures, figures.max_exposures);
     return fmt::format(
         "{}: tile of {} x {} pixels, {} slots\n"
-        "compression {:.4g}, light throughput {:.4g} %, {} exposure{} a pixel, {} charge store{}\n"
+        "compression {:.4g} in steady state, light throughput {:.4g} %, {} exposure{} a pixel, {} "
+        "charge store{}\n"
         "pixels read in a slot: {} to {}, mean {:.1f}; code memory {} bits",
         name, figures.tile_cols, figures.tile_rows, figures.period_slots, figures.compression_ratio,
         100 * figures.light_throughput, exposures, exposures == "1" ? "" : "s",

@@ -39,8 +39,9 @@ function fillCameraTable() {
   const row = ([key, name, scale, unit]) => {
     const value = measured[key];
     const expected = configured?.[key];
+    const decibels = unit === ': 1' && value > 0 ? ` (${shown(20 * Math.log10(value))} dB)` : '';
     const deviation = expected ? `${shown(100 * (value / expected - 1), 2)} %` : '';
-    return [name, shown((value ?? null) === null ? null : value * scale),
+    return [name, shown((value ?? null) === null ? null : value * scale) + decibels,
             ...(configured ? [(expected ?? null) === null ? '–' : shown(expected * scale), deviation] : []), unit];
   };
   fillTable(element('camera-table'), [head, ...kCameraFigures.map(row)]);

@@ -29,9 +29,15 @@ function axis(title, more = {}) {
   };
 }
 
+/** With the length of a slot, if it is that of all runs. */
+function slotTitle() {
+  const lengths = new Set(data.runs.map((run) => run.stream.slot_us));
+  return lengths.size === 1 ? `time, slots of ${shown([...lengths][0] / 1000)} ms` : 'time, slots';
+}
+
 /** With ticks at whole slots only: by their distance Chart.js also chooses the width of bars. */
 function slotAxis() {
-  const slots = axis('time, slots', {type: 'linear', min: 0, max: data.slots, offset: false});
+  const slots = axis(slotTitle(), {type: 'linear', min: 0, max: data.slots, offset: false});
   slots.ticks.precision = 0;
   return slots;
 }

@@ -2,7 +2,7 @@
 
 // Quality of each video against the truth: by frame, and of the whole.
 
-const kMetrics = [['psnr_db', 'PSNR, dB'], ['psnr_gamma_db', 'gamma PSNR, dB'], ['pu21_psnr_db', 'PU21-PSNR, dB'],
+const kMetrics = [['psnr_db', 'PSNR, dB'], ['psnr_gamma_db', 'PSNR (gamma 2.2), dB'], ['pu21_psnr_db', 'PU21-PSNR, dB'],
                   ['ssim', 'SSIM']];
 
 function comparedVideos() {

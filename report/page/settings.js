@@ -34,7 +34,8 @@ function showHeader() {
   if (typeof DecompressionStream === 'undefined')
     notes.push('This browser cannot unpack the pictures (DecompressionStream); use one of 2023 or later.');
   element('notes').hidden = notes.length === 0;
-  element('notes').replaceChildren(...notes.map((note) => made('li', {}, note)));
+  const look = (note) => (note.includes(': the stream is damaged') ? {class: 'warning'} : {});
+  element('notes').replaceChildren(...notes.map((note) => made('li', look(note), note)));
 }
 
 function calibrationOf({stream}) {

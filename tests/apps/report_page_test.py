@@ -142,6 +142,27 @@ class ReportPageTest(BrowserTest):
             self.assertTrue(inked, name)
         self.assertGreater(len(self.browser.find_elements(By.CSS_SELECTOR, "#schedule-lanes rect")), 50)
 
+    def test_the_logarithmic_axis_begins_near_the_least_light(self):
+        self.open_page()
+        self.wait(lambda: "sample" in self.element("pixel-name").text)
+        if self.script("return typeof Chart === 'undefined'"):
+            self.skipTest("the build has no Chart.js (libjs-chart.js)")
+        self.element("log-light").click()
+        scale = "const {y, x} = Chart.getChart('pixel-chart').scales; return "
+        self.wait(lambda: self.script(scale + "y.type") == "logarithmic")
+        least = self.script("return Math.min(...shownSamples.map((s) => s.light), ...Chart.getChart('pixel-chart').data"
+                            ".datasets.flatMap((line) => line.data.map(({y}) => y)).filter((y) => y > 0))")
+        self.assertAlmostEqual(self.script(scale + "y.min"), least / 2, delta=1e-6)
+        self.assertEqual(self.script(scale + "x.options.title.text"), "time, slots of 5 ms")
+
+    def test_damage_is_in_the_colour_of_a_warning(self):
+        self.write_stream()
+        self.change_byte("clip.stipple", (self.folder / "clip.stipple").stat().st_size // 2)
+        self.run_program("report", "clip.stipple")
+        self.open_file("report.html")
+        warning, = self.browser.find_elements(By.CSS_SELECTOR, "#notes .warning")
+        self.assertIn("clip: the stream is damaged", warning.text)
+
     def test_dark_mode_and_a_narrow_screen(self):
         self.open_page()
         for scheme in ("light", "dark"):
@@ -231,6 +252,7 @@ class ReportPageTest(BrowserTest):
         self.assertTrue(self.element("camera").is_displayed())
         self.assertFalse(self.element("viewer").is_displayed())
         self.assertIn("system gain K", self.element("camera-table").text)
+        self.assertRegex(self.element("camera-table").text, r"dynamic range [\d.]+ \([\d.]+ dB\)")
 
 
 if __name__ == "__main__":
