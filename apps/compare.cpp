@@ -36,6 +36,7 @@ struct CompareOptions {
     std::string result;
     std::string reference;
     FootageOptions footage;  ///< of the reference
+    std::optional<Transfer> result_transfer;
     QualityOptions quality;
     std::int64_t until = 0;            ///< frames of each; 0: as many as both have
     std::vector<std::string> metrics;  ///< names; empty: the default ones
@@ -139,10 +140,11 @@ class Outputs {
 };
 
 ReadAhead read_result(const CompareOptions& options) {
-    return read_footage(options.result, {.transfer = Transfer::kLinear,
-                                         .luminance = options.footage.luminance,
-                                         .max_value = {},
-                                         .negative = true});
+    return read_footage(options.result,
+                        {.transfer = options.result_transfer.value_or(Transfer::kLinear),
+                         .luminance = options.footage.luminance,
+                         .max_value = {},
+                         .negative = true});
 }
 
 QualityOptions quality_options(const CompareOptions& options, const QualityMetrics& metrics) {
@@ -152,12 +154,13 @@ QualityOptions quality_options(const CompareOptions& options, const QualityMetri
     return quality;
 }
 
-void warn_of_gamma(const std::string& name, const ReadAhead& result) {
-    if (result.gamma_coded())
+void warn_of_gamma(const CompareOptions& options, const ReadAhead& result) {
+    if (!options.result_transfer && result.gamma_coded())
         say_warning(
             fmt::format("{}: is not linear light, as RESULT has to be: .mp4, .mkv and .png of "
-                        "stipple are tone-mapped; compare the .npy or the folder",
-                        name));
+                        "stipple are tone-mapped, compare the .npy or the folder; for results of "
+                        "others, give --result-transfer",
+                        options.result));
 }
 
 void compare(const CompareOptions& options, const RunOptions& run) {
@@ -166,7 +169,7 @@ void compare(const CompareOptions& options, const RunOptions& run) {
     const QualityOptions quality = quality_options(options, metrics);
     JsonFile json(run);
     ReadAhead result = read_result(options);
-    warn_of_gamma(options.result, result);
+    warn_of_gamma(options, result);
     ReadAhead reference = read_footage(options.reference, options.footage);
     if (result.shape() != reference.shape()) fail_shape(options, result.shape(), reference.shape());
     QualityMeter meter(reference.shape(), quality);
@@ -273,6 +276,11 @@ void add_compare(Command& app, Action& action) {
         .type_name("N");
     add_max_value(command, options->quality.max_value);
     add_footage_arguments(command, options->footage, "REFERENCE");
+    command
+        .add_choice("--result-transfer", options->result_transfer, kTransfers,
+                    "transfer function of RESULT; auto: the declared one")
+        .default_text("linear")
+        .type_name("NAME");
     add_quality_arguments(command, *options);
     add_compare_outputs(command, *options);
     add_threads(command, action.options);

@@ -186,6 +186,9 @@ void PartRun::tell() {
                          arguments_.output, arguments_.part.number, arguments_.part.count, decoded,
                          counted(windows, "window"), windows - decoded, arguments_.method,
                          rounded(seconds_), calibrated_text(arguments_)));
+    if (windows == 0)
+        run_.say(fmt::format("the stream has {}, so this part has none",
+                             counted(folder_.count(), "window")));
     read_.tail_bytes = 0;  // it may read beyond the part, not to the end
     if (const auto text = decoded_damage_text(read_, schedule_hint(read_)); !text.empty())
         throw InputError(arguments_.stream, text);

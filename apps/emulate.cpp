@@ -26,6 +26,7 @@
 #include "core/error.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
+#include "io/video_reader.h"
 #include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
 #include "readout/timing/waveform_file.h"
@@ -98,7 +99,7 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
 /// A piece is a part of the stream and of nothing else.
 void check_part(const Command& command, const EmulateArguments& arguments) {
     command.refuse({"--truth", "--vcd", "--vcd-slots", "--calibration"},
-                   "is of all slots, which a part has not; leave out one of them");
+                   "is of all slots, which a part does not have; leave out one of them");
     check_part_folder(arguments.output);
 }
 
@@ -132,7 +133,16 @@ void add_rig(Command& command, EmulateArguments& arguments) {
                  "change a key of the sensor, of the schedule or of the rig");
 }
 
+void warn_of_tone_mapped(const std::string& truth) {
+    if (is_video_name(truth) || is_pipe(truth))
+        say_warning(
+            "{}: is tone-mapped to 8 bits, so it does not suit \"stipple compare\"; a "
+            ".npy or a folder holds linear light",
+            truth);
+}
+
 void emulate_all_or_part(const EmulateArguments& arguments, const RunOptions& run) {
+    warn_of_tone_mapped(arguments.truth);
     if (!arguments.rig.empty())
         emulate_rig(arguments, run);
     else if (arguments.part.count > 0)

@@ -12,6 +12,9 @@ EmulationInput::EmulationInput(const EmulateArguments& arguments)
     : footage_(read_footage(arguments.footage, arguments.reading)),
       setup_(set_up_sensor(arguments.sensor, footage_.shape(), footage_.filter())),
       slots_(slots_of(footage_, arguments, setup_.params.slot_us)) {
+    if (setup_.params.slot_us < 1)
+        say_warning("slots of {:g} us are {:.3g} a second; is slot_us in microseconds?",
+                    setup_.params.slot_us, 1e6 / setup_.params.slot_us);
     say_warning(mosaic_warning(setup_, footage_.filter()));
     for (const std::string& note :
          sensor_notes(arguments.footage, footage_, setup_.params, arguments.resampling.has_value()))

@@ -41,15 +41,15 @@ void keep_masks(NpyVolume& masks, int slots, const std::string& file) {
 /// The arrays of the files. \throws InputError as their readers.
 MeasuredArrays read_arrays(const ImportOptions& options) {
     MeasuredArrays arrays = options.arrays;
+    const auto read = [](const std::string& file, const std::string& variable, NpyImages images) {
+        return is_mat(file) ? read_mat_volume(file, variable) : read_npy_volume(file, images);
+    };
+    arrays.measurements = read(arrays.measurement_file, options.variable, NpyImages::kOneLayer);
     if (arrays.mask_file.empty()) {
         if (!is_mat(arrays.measurement_file))
             throw InputError("--masks", "is needed; only a .mat file may hold the masks too");
         arrays.mask_file = arrays.measurement_file;
     }
-    const auto read = [](const std::string& file, const std::string& variable, NpyImages images) {
-        return is_mat(file) ? read_mat_volume(file, variable) : read_npy_volume(file, images);
-    };
-    arrays.measurements = read(arrays.measurement_file, options.variable, NpyImages::kOneLayer);
     arrays.masks = read(arrays.mask_file, options.mask_variable, NpyImages::kRefused);
     keep_masks(arrays.masks, options.slots, arrays.mask_file);
     if (!options.noise_free) arrays.electrons = options.electrons;

@@ -115,11 +115,11 @@ void info(const InfoOptions& options, const RunOptions& run) {
         return info_settings(kind, file, run);
     if (may_be_stream(file)) return info_stream(file, run);
     throw InputError(
-        file,
-        fmt::format("is not a file type stipple can read: it is {}, no sample stream, recording, "
-                    "calibration, footage, sensor, schedule, rig, space or scene; frames "
-                    "without a header need --raw",
-                    kind_by_start(file)));
+        file, fmt::format(
+                  "is not a file type stipple can read: it is {}, not a sample stream, recording, "
+                  "calibration, footage, sensor, schedule, rig, space or scene; frames "
+                  "without a header need --raw",
+                  kind_by_start(file)));
 }
 
 }  // namespace

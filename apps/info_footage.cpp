@@ -64,6 +64,11 @@ void read_all(FootageReader& reader, const std::string& source, const RunOptions
     }
 }
 
+std::optional<std::int64_t> announced_frames(const FootageReader& reader) {
+    if (const auto slots = reader.slots()) return *slots;
+    return reader.traits().announced_frames;
+}
+
 ordered_json footage_json(const FootageReader& reader, const Light& light, bool complete) {
     const FrameShape shape = reader.shape();
     const SourceTraits& traits = reader.traits();
@@ -72,7 +77,7 @@ ordered_json footage_json(const FootageReader& reader, const Light& light, bool 
                       {"width", shape.cols},
                       {"height", shape.rows},
                       {"planes", shape.planes},
-                      {"announced_frames", or_null(reader.slots())},
+                      {"announced_frames", or_null(announced_frames(reader))},
                       {"frames", nullptr},
                       {"frames_hz", or_null(reader.frames_hz())},
                       {"exposure_us", or_null(traits.exposure_us)},
@@ -102,8 +107,9 @@ std::string frames_text(const FootageReader& reader, const Light& light, bool co
     std::string text = fmt::format("{} x {} x {} (width x height x planes), ", shape.cols,
                                    shape.rows, shape.planes);
     if (complete) return text + fmt::format("{} of them", light.frames);
-    return text + (reader.slots() ? fmt::format("{} announced", *reader.slots())
-                                  : "their number is not announced");
+    const auto announced = announced_frames(reader);
+    return text +
+           (announced ? fmt::format("{} announced", *announced) : "their number is not announced");
 }
 
 std::string rate_text(const FootageReader& reader, const Light& light, bool complete) {
@@ -141,14 +147,14 @@ std::string footage_text(const FootageReader& reader, const Light& light, bool c
         "footage      {}\n"
         "frames       {}\n"
         "rate         {}\n"
-        "exposure     {}\n"
         "samples      {}\n"
-        "levels       {}\n"
-        "filter       {}\n"
         "transfer     {}",
         reader.kind(), frames_text(reader, light, complete), rate_text(reader, light, complete),
-        traits.exposure_us ? fmt::format("{:.6g} us", *traits.exposure_us) : "not declared",
-        samples_text(traits), levels_text(traits), name_of(traits.filter), transfer_text(traits));
+        samples_text(traits), transfer_text(traits));
+    if (traits.exposure_us) text += fmt::format("\nexposure     {:.6g} us", *traits.exposure_us);
+    if (traits.black_dn || traits.white_dn) text += "\nlevels       " + levels_text(traits);
+    if (traits.filter != ColourFilter::kNone)
+        text += fmt::format("\nfilter       {}", name_of(traits.filter));
     if (traits.has_alpha) text += "\nalpha        left out";
     if (light.frames > 0)
         text += fmt::format("\nlight        {:.4g} to {:.4g}, mean {:.4g}, in the numbers as read",

@@ -53,9 +53,10 @@ void on_stop_signal(int signal) {
     std::int64_t first = 0;
     if (received_ms.compare_exchange_strong(first, now)) {  // another thread may catch the next one
         received_signal = signal;
-        if (!clear_bar()) write_error_text("\n");
-        write_error_text(
-            "stipple: stopping when this step is done; a second Ctrl-C stops at once\n");
+        if (!clear_bar() && signal == SIGINT) write_error_text("\n");
+        write_error_text("stipple: stopping when this step is done; ");
+        write_error_text(signal == SIGINT ? "a second Ctrl-C stops at once\n"
+                                          : "a second signal stops at once\n");
     } else if (now - first > kSameWishMs) {
         end_at_once(signal);
     }

@@ -50,7 +50,8 @@ std::string name_of_file(const std::filesystem::path& file) {
 void import(const ImportOptions& options, const RunOptions& run) {
     if (options.period_slots > 0 && !options.lengths)
         throw InputError("--period", "goes with --lengths; masks have one slot per layer");
-    const NpyVolume volume = read_npy_volume(options.volume);
+    const NpyVolume volume = read_npy_volume(
+        options.volume, options.lengths ? NpyImages::kOneLayer : NpyImages::kRefused);
     const ExposureSchedule schedule =
         options.lengths ? lengths_schedule(volume, options.period_slots, options.volume)
                         : mask_schedule(volume, options.volume);
@@ -81,9 +82,10 @@ void add_schedule_import(Command& schedule, Action& action) {
         .type_name("FILE")
         .required()
         .output(kScheduleName);
-    command.add_flag("--lengths", options->lengths,
-                     "VOLUME holds (exposures, rows, columns): lengths of 0 to 64 slots of "
-                     "successive exposures");
+    command.add_flag(
+        "--lengths", options->lengths,
+        "VOLUME holds lengths of 0 to 64 slots of successive exposures: (exposures, rows, "
+        "columns), or (rows, columns) of one");
     command
         .add_option("--period", options->period_slots,
                     "with --lengths: slots after which the exposures repeat")

@@ -57,9 +57,10 @@ bool has_identity(const fs::path& folder, const SharedFolderKind& kind,
     if (!fs::exists(folder / kind.identity)) {
         for (const fs::directory_entry& entry : fs::directory_iterator(folder))
             if (!partial_output(entry.path()) && entry.path().filename() != kind.identity)
-                throw InputError(folder.string(),
-                                 fmt::format("holds {}, and is no folder of {}; give another name",
-                                             entry.path().filename().string(), kind.parts));
+                throw InputError(
+                    folder.string(),
+                    fmt::format("holds {}, so it is not a folder of {}; give another name",
+                                entry.path().filename().string(), kind.parts));
         return false;
     }
     const std::string other = first_difference(read_identity(folder, kind, identity), identity);
@@ -87,7 +88,7 @@ nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderK
     const fs::path file = folder / kind.identity;
     if (!fs::exists(file))
         throw InputError(folder.string(),
-                         fmt::format("has no {}: it is no folder that `stipple {} --part` wrote",
+                         fmt::format("has no {}: `stipple {} --part` did not write this folder",
                                      kind.identity, kind.verb));
     auto json = nlohmann::ordered_json::parse(identity_text(folder, kind), nullptr, false);
     bool whole = json.is_object();

@@ -87,7 +87,7 @@ std::string take_name(ByteCursor& cursor) {
     std::string name;
     for (std::uint32_t i = 0; i < bytes; ++i)
         name += static_cast<char>(cursor.take<std::uint8_t>());
-    if (!is_plain_text(name, false)) cursor.fail("the name is no plain text");
+    if (!is_plain_text(name, false)) cursor.fail("the name is not plain text");
     return name;
 }
 
@@ -207,7 +207,7 @@ ChipCalibration decode_chip_calibration(std::span<const std::uint8_t> bytes,
     const auto there = std::min(bytes.size(), kMagic.size());
     if (there == 0 || !std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(there),
                                   kMagic.begin()))
-        throw InputError(where, "is no calibration file, which \"stipple calibrate\" writes");
+        throw InputError(where, "is not a calibration file, which \"stipple calibrate\" writes");
     if (bytes.size() < kFixedBytes + kCrcBytes)
         require_size(bytes.size(), kFixedBytes + kCrcBytes, where);
     Head head = read_head(bytes, where);

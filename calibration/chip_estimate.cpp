@@ -94,7 +94,7 @@ double mean_light(const CalibrationSeries& series, const EstimateMap& light,
     const double mean = mean_of(ours.value, used);
     if (!(mean > kDimSigmas * std::sqrt(mean_of(ours.variance, used))))
         throw InputError(series.flat_name,
-                         fmt::format("is no brighter than its noise; {}", kTakeHalf));
+                         fmt::format("is not brighter than its noise; {}", kTakeHalf));
     return mean;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 std::uint64_t seed_of(const std::string& text) {
     if (const auto seed = parsed_number<std::uint64_t>(text)) return *seed;
-    throw InputError("seed", fmt::format("\"{}\" is no whole number", text));
+    throw InputError("seed", fmt::format("\"{}\" is not a whole number", text));
 }
 
 /// \throws InputError if the point sets a key of `section`.

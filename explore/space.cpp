@@ -84,7 +84,7 @@ std::string SpaceReader::text(const std::string& key, const toml::node& node) co
         return word->get();
     if (node.is_string()) fail(key, "is an empty text");
     if (node.is_table() || node.is_date() || node.is_time() || node.is_date_time())
-        fail(key, "has a value that is no number, text, boolean or list");
+        fail(key, "has a value that is not a number, text, boolean or list");
     std::ostringstream text;
     if (const auto* list = node.as_array())
         text << toml::toml_formatter(*list);
@@ -106,9 +106,10 @@ std::vector<std::string> SpaceReader::range(const std::string& key,
     const bool log = table["log"].value_or(false);
     if (!from || !to || !count || *count < 2 || *count > kMaxCount || !std::isfinite(*from) ||
         !std::isfinite(*to) || (log && (*from <= 0 || *to <= 0)))
-        fail(key,
-             "is no range such as { from = 10, to = 1000, count = 5, log = true }; count is 2 to "
-             "10000, and the ends of a log range are above 0");
+        fail(
+            key,
+            "is not a range such as { from = 10, to = 1000, count = 5, log = true }; count is 2 to "
+            "10000, and the ends of a log range are above 0");
     const bool whole = table["from"].is_integer() && table["to"].is_integer();
     std::vector<std::string> values;
     for (std::int64_t i = 0; i < *count; ++i) {
@@ -138,7 +139,7 @@ int SpaceReader::whole(const toml::table& table, const std::string& key, int fal
     if (node == nullptr) return fallback;
     const auto number = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
     if (!number || *number < 1 || *number > max)
-        fail(key, fmt::format("is no whole number of 1 to {}", max));
+        fail(key, fmt::format("is not a whole number of 1 to {}", max));
     return static_cast<int>(*number);
 }
 
@@ -167,7 +168,7 @@ void SpaceReader::check_keys(const toml::table& table, const std::string& sectio
 const toml::table& SpaceReader::section(const toml::table& tables, const std::string& name) const {
     static const toml::table kNone;
     const toml::node* node = tables.get(name);
-    if (node != nullptr && !node->is_table()) fail(name, "is no section");
+    if (node != nullptr && !node->is_table()) fail(name, "is not a section");
     return node == nullptr ? kNone : *node->as_table();
 }
 
@@ -215,7 +216,7 @@ void SpaceReader::add_systems(Space& space, const toml::node* list) const {
     if (list == nullptr) return;
     const toml::array* tables = list->as_array();
     if (tables == nullptr || !tables->is_array_of_tables() || tables->empty())
-        fail("systems", "is no list of tables, each headed [[systems]]");
+        fail("systems", "is not a list of tables, each headed [[systems]]");
     SpaceAxis names{"system", {}};
     for (std::size_t i = 0; i < tables->size(); ++i) {
         space.systems.push_back(

@@ -86,7 +86,8 @@ void check_free(const fs::path& folder) {
     bool is_free = fs::is_directory(status);
     if (is_free) is_free = fs::is_empty(folder, error);
     if (error) throw DeviceError(folder.string(), "cannot be read: " + error.message());
-    if (!is_free) throw InputError(folder.string(), "is no folder of results; give another name");
+    if (!is_free)
+        throw InputError(folder.string(), "is not a folder of results; give another name");
 }
 
 /// Makes the folder unless there is one. \throws InputError if there is no folder to make it in,

@@ -51,7 +51,7 @@ DnImage read_dn_image(const std::filesystem::path& file) {
         case ImageFormat::kTiff:
             return read_dn_tiff(file);
         default:
-            throw InputError(file.string(), "is no image of digital numbers; give PNG or TIFF");
+            throw InputError(file.string(), "is not an image of digital numbers; give PNG or TIFF");
     }
 }
 

@@ -43,6 +43,16 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
     return entries;
 }
 
+/// Of a folder without images: what is in it that others can read.
+std::string remedy_in(const fs::path& folder) {
+    for (const fs::path& file : list_folder(folder)) {
+        if (const std::string remedy = conversion_of(file); !remedy.empty()) return remedy;
+        if (lower_extension(file) == ".stipple")
+            return fmt::format("; name one of its sample streams, as {}", file.string());
+    }
+    return {};
+}
+
 /// Two names that differ in one number alone.
 struct Step {
     std::size_t begin = 0;   ///< of the number
@@ -143,6 +153,13 @@ std::string lower_extension(const fs::path& file) {
     return extension;
 }
 
+std::string conversion_of(const fs::path& file) {
+    const std::string extension = lower_extension(file);
+    if (extension != ".jpg" && extension != ".jpeg" && extension != ".bmp" && extension != ".webp")
+        return {};
+    return fmt::format("; {0} is not read, convert it: ffmpeg -i %04d{0} %04d.png", extension);
+}
+
 ImageFormat image_format(const fs::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".png") return ImageFormat::kPng;
@@ -174,7 +191,9 @@ ImageFiles images_in_folder(const fs::path& folder) {
         return file.filename().string().starts_with('.') ||
                image_format(file) == ImageFormat::kNone;
     });
-    if (files.empty()) throw InputError(folder.string(), "holds no PNG, TIFF, EXR or DNG images");
+    if (files.empty())
+        throw InputError(folder.string(),
+                         "holds no PNG, TIFF, EXR or DNG images" + remedy_in(folder));
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         return numerically_before(a.filename().string(), b.filename().string());
     });
@@ -191,7 +210,8 @@ ImageFiles images_in_folder(const fs::path& folder) {
 ImageFiles images_of_pattern(const fs::path& pattern) {
     const Pattern names(pattern);
     if (image_format(pattern) == ImageFormat::kNone)
-        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG images");
+        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG images" +
+                                               conversion_of(pattern));
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::map<std::int64_t, fs::path> found;
     std::vector<std::string> left_out;

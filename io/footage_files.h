@@ -12,6 +12,9 @@ enum class ImageFormat { kNone, kPng, kTiff, kExr, kDng };
 /// Format of an image by its extension, in upper or lower case.
 [[nodiscard]] ImageFormat image_format(const std::filesystem::path& file);
 
+/// What to do with a common kind of image that is not read, as the end of a message; else empty.
+[[nodiscard]] std::string conversion_of(const std::filesystem::path& file);
+
 /// The extension in lower case, with its dot.
 [[nodiscard]] std::string lower_extension(const std::filesystem::path& file);
 

@@ -119,10 +119,11 @@ FrameReduction::FrameReduction(const FootagePart& part, FrameShape source, Colou
         cropped_ = {part.crop->rows, part.crop->cols, source.planes};
     }
     if (cropped_.rows % part.bin != 0 || cropped_.cols % part.bin != 0)
-        throw InputError(name, fmt::format("has {0}, no multiple of --bin {1}; add --crop {2}x{3}",
-                                           size_text(cropped_), part.bin,
-                                           std::max(cropped_.cols / part.bin, 1) * part.bin,
-                                           std::max(cropped_.rows / part.bin, 1) * part.bin));
+        throw InputError(name,
+                         fmt::format("has {0}, not a multiple of --bin {1}; add --crop {2}x{3}",
+                                     size_text(cropped_), part.bin,
+                                     std::max(cropped_.cols / part.bin, 1) * part.bin,
+                                     std::max(cropped_.rows / part.bin, 1) * part.bin));
     binned_ = {cropped_.rows / part.bin, cropped_.cols / part.bin, source.planes};
     resized_ = part.size ? FrameShape{part.size->rows, part.size->cols, source.planes} : binned_;
     if (resized_.rows > binned_.rows || resized_.cols > binned_.cols)

@@ -115,13 +115,16 @@ class ImageSequence {
 
 using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
 
-/// Why a file of this extension is no footage.
-const char* not_footage(const std::string& extension) {
+/// Why a file cannot be footage, by its extension.
+std::string not_footage(const fs::path& source) {
+    const std::string extension = lower_extension(source);
     if (extension == ".stipple")
         return "is a sample stream, not footage; \"stipple decode\" makes video of it";
     if (extension == ".strec")
-        return "is no recording of a camera: it is empty, or does not begin as one";
-    return "is no footage by its extension; give a folder or pattern of PNG, TIFF, EXR or DNG "
+        return "is not a recording of a camera: it is empty, or does not begin as one";
+    if (const std::string remedy = conversion_of(source); !remedy.empty())
+        return "is not a recognised footage format" + remedy;
+    return "is not a recognised footage format; give a folder or pattern of PNG, TIFF, EXR or DNG "
            "images, a video or camera file, or .npy; a file without a header needs --raw";
 }
 
@@ -145,7 +148,7 @@ Source open_source(const fs::path& source, const FootageOptions& options) {
     if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
     if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
     if (is_video_name(source)) return VideoReader(source);
-    throw InputError(name, not_footage(lower_extension(source)));
+    throw InputError(name, not_footage(source));
 }
 
 }  // namespace
@@ -196,8 +199,10 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
         },
         source);
     if (const auto* images = std::get_if<ImageSequence>(&source)) warn(images->warning());
-    if (const auto* video = std::get_if<VideoReader>(&source))
+    if (const auto* video = std::get_if<VideoReader>(&source)) {
         traits.frames_hz = video->frames_hz();
+        traits.announced_frames = video->announced_frames();
+    }
     if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
         throw InputError(name,

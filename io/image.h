@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct SourceTraits {
     ColourFilter filter = ColourFilter::kNone;  ///< whose mosaic its one plane is
     std::optional<double> frames_hz = {};       ///< at which frames play or were taken
     std::optional<double> exposure_us = {};     ///< of a frame
+    std::optional<std::int64_t> announced_frames = {};  ///< by the container of a video
     std::string sample_format = {};       ///< as files and libraries name it: "uint16", "yuv420p"
     int bits = 0;                         ///< significant bits of a sample; 0: unknown or floating
     std::optional<double> black_dn = {};  ///< that the file declares, or its kind

@@ -44,7 +44,7 @@ class Cursor {
         skip_space();
         std::uint64_t value = 0;
         const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-        if (error != std::errc()) fail("a size is no number, or too large");
+        if (error != std::errc()) fail("a size is not a number, or too large");
         take(static_cast<std::size_t>(end - rest_.data()), 0);
         return value;
     }

@@ -170,7 +170,7 @@ void PendingOutput::check_replaceable() const {
         const fs::path foreign = foreign_entry(final_, is_own_);
         if (!foreign.empty())
             refuse(
-                fmt::format("holds \"{}\", which is no file that this run writes, so the folder "
+                fmt::format("holds \"{}\", which this run does not write, so the folder "
                             "is not replaced; give another name",
                             foreign.filename().string()));
     } catch (const fs::filesystem_error& e) {

@@ -40,7 +40,7 @@ PixelFormat format_named(std::string_view name, std::string_view where) {
         return format;
     }
     throw InputError(where,
-                     fmt::format("\"{}\" is no pixel format that is read; give one as mono8, "
+                     fmt::format("\"{}\" is not a supported pixel format; give one as mono8, "
                                  "mono16, mono12p, mono12packed, mono12msb, bayerrg12p or "
                                  "rgb8 (docs/footage.md)",
                                  name));
@@ -82,10 +82,10 @@ void set_key(RawFormat& raw, std::string_view key, std::string_view value) {
             throw InputError(where, fmt::format("hz={}: give frames per second", value));
         raw.frames_hz = number;
     } else {
-        throw InputError(where,
-                         fmt::format("\"{}\" is no key; there are offset=BYTES, stride=BYTES, "
-                                     "frames=N, black=DN and hz=RATE",
-                                     key));
+        throw InputError(
+            where, fmt::format("\"{}\" is an unknown key; there are offset=BYTES, stride=BYTES, "
+                               "frames=N, black=DN and hz=RATE",
+                               key));
     }
 }
 
@@ -139,7 +139,7 @@ RawFormat parse_raw_format(std::string_view text) {
     const auto cols = parsed_number<std::uint64_t>(take_until(size, 'x'));
     const auto rows = parsed_number<std::uint64_t>(size);
     if (!cols || !rows || rest.empty())
-        throw InputError(text, "give columns x rows and a pixel format, such as 640x480:mono12p");
+        throw InputError(text, "give width x height and a pixel format, such as 640x480:mono12p");
     raw.cols = *cols;
     raw.rows = *rows;
     raw.format = format_named(take_until(rest, ':'), text);

@@ -87,7 +87,7 @@ FfmpegPtr<AVFormatContext> open_file(const std::string& name) {
     if (error >= 0) error = avformat_find_stream_info(file, nullptr);
     if (error < 0)
         throw InputError(name, fmt::format("cannot be read as video ({}); it is damaged, ends too "
-                                           "early or is none",
+                                           "early or is not a video",
                                            ffmpeg_reason(error)));
     return opened;
 }
@@ -292,6 +292,11 @@ std::optional<double> VideoDecoder::Impl::frames_hz() const {
 
 std::optional<double> VideoDecoder::frames_hz() const {
     return impl_->frames_hz();
+}
+
+std::optional<std::int64_t> VideoDecoder::announced_frames() const {
+    const std::int64_t frames = impl_->stream->nb_frames;
+    return frames > 0 ? std::optional(frames) : std::nullopt;
 }
 
 double VideoDecoder::frame_time() const {

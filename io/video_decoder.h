@@ -32,6 +32,8 @@ class VideoDecoder {
     [[nodiscard]] std::optional<double> frames_hz() const;
     /// Of the last frame, as FrameTimes::time.
     [[nodiscard]] double frame_time() const;
+    /// As VideoReader::announced_frames.
+    [[nodiscard]] std::optional<std::int64_t> announced_frames() const;
     /// As FrameTimes::unequal, of the frames so far.
     [[nodiscard]] std::string unequal_times() const;
     /// Number of signs of damaged or missing frames so far.

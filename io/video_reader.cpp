@@ -14,9 +14,9 @@
 namespace stipple {
 namespace {
 
-constexpr std::array<std::string_view, 16> kExtensions = {
-    ".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mpg", ".mpeg",
-    ".ts",  ".mts", ".wmv", ".flv", ".y4m",  ".ogv", ".mxf", ".3gp"};
+constexpr std::array<std::string_view, 17> kExtensions = {
+    ".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mpg", ".mpeg", ".ts",
+    ".mts", ".wmv", ".flv", ".y4m", ".ogv",  ".mxf", ".3gp", ".gif"};
 
 }  // namespace
 
@@ -59,6 +59,10 @@ std::vector<std::string> VideoReader::warnings() const {
 
 std::optional<double> VideoReader::frames_hz() const {
     return impl_->decoder.frames_hz();
+}
+
+std::optional<std::int64_t> VideoReader::announced_frames() const {
+    return impl_->decoder.announced_frames();
 }
 
 double VideoReader::frame_time() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -29,6 +30,8 @@ class VideoReader {
     [[nodiscard]] FrameShape shape() const;
     /// Playback rate in frames per second, if the file gives it.
     [[nodiscard]] std::optional<double> frames_hz() const;
+    /// Number of frames by the container, which may be off by some.
+    [[nodiscard]] std::optional<std::int64_t> announced_frames() const;
     [[nodiscard]] const SourceTraits& traits() const;
     /// Of the frame read last, as FrameTimes::time.
     [[nodiscard]] double frame_time() const;

@@ -57,9 +57,9 @@ Range range_of(const MeasuredArrays& arrays, const ExposureSchedule& schedule) {
         for (int m = 0; m < arrays.measurements.layers; ++m) {
             const double y = arrays.measurements.at(m, row, col);
             if (!std::isfinite(y))
-                throw InputError(
-                    arrays.measurement_file,
-                    fmt::format("measurement {} pixel ({}, {}): {} is no number", m, row, col, y));
+                throw InputError(arrays.measurement_file,
+                                 fmt::format("measurement {} pixel ({}, {}): {} is not a number", m,
+                                             row, col, y));
             range = {std::min(range.min, y), std::max(range.max, y)};
         }
     });

@@ -41,7 +41,7 @@ std::vector<std::string> read_names(Config& config) {
         fail(fmt::format("names {} sensors; a rig has {} at most", names.size(), Rig::kMaxSensors));
     for (auto name = names.begin(); name != names.end(); ++name) {
         if (!is_name(*name))
-            fail(fmt::format("\"{}\" is no name: 1 to 32 letters, digits, _ and -", *name));
+            fail(fmt::format("\"{}\" is not a name: 1 to 32 letters, digits, _ and -", *name));
         if (std::find(names.begin(), name, *name) != name)
             fail(fmt::format("names two sensors \"{}\"; give each a name of its own", *name));
     }

@@ -30,7 +30,7 @@ DecodedSamples decode_samples(const StreamHeader& stream, const Framing& framing
     };
     if (start_of(bytes, framing) != Start::kPacket) return fail("no packet begins here");
     const PacketHeader header = decode_packet_header(bytes);
-    if (header.kind != PacketKind::kSamples) return fail("it is no packet of samples");
+    if (header.kind != PacketKind::kSamples) return fail("it is not a packet of samples");
     if (header.payload_bytes > bytes.size() - kPacketHeaderBytes)
         return fail("a packet is longer than what there is");
     const auto payload = bytes.subspan(kPacketHeaderBytes, header.payload_bytes);

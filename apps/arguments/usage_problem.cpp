@@ -9,6 +9,7 @@
 
 #include "core/joined.h"
 #include "core/suggestion.h"
+#include "io/footage_files.h"
 
 namespace stipple {
 namespace {
@@ -64,9 +65,10 @@ std::string surplus_problem(const std::vector<const CLI::App*>& commands, const 
     const std::string problem =
         fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
     std::error_code error;
-    return std::filesystem::path(word).has_extension() && std::filesystem::exists(word, error)
-               ? problem + "; for many images, name their folder or a pattern as frames/%04d.png"
-               : problem;
+    if (!std::filesystem::is_regular_file(word, error)) return problem;
+    return problem + (image_format(word) == ImageFormat::kNone
+                          ? "; run it once for each file"
+                          : "; for many images, name their folder or a pattern as frames/%04d.png");
 }
 
 /// The message for words that no command takes; empty if there are none.

@@ -43,7 +43,7 @@ ordered_json read_camera_file(const std::string& file) {
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     const ordered_json json = ordered_json::parse(text, text + bytes.size(), nullptr, false);
     if (!is_camera(json))
-        throw InputError(file, "is no result of \"stipple characterize --json FILE\"");
+        throw InputError(file, "is not a result of \"stipple characterize --json FILE\"");
     ordered_json camera;
     for (const char* key : {"measured", "configured", "photon_transfer", "saturation_point"})
         if (json.contains(key)) camera[key] = json[key];

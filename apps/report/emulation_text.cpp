@@ -27,7 +27,7 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
     const SensorSetup& setup = recorder.setup();
     const ReadoutStats& stats = recorder.stats();
     const std::string per_sample =
-        fmt::format(", 1 for {:.2f} values of light", recorder.compression_ratio());
+        fmt::format(", 1 for {:.2f} values of light in this clip", recorder.compression_ratio());
     const std::string clipped =
         fmt::format(", {:.2f} % of the samples saturated, {:.2f} % at DN 0",
                     100 * recorder.saturated_fraction(), 100 * recorder.zero_fraction());

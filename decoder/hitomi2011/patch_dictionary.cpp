@@ -33,7 +33,7 @@ PatchDictionary patch_dictionary(const ArrayShape& shape, std::span<const double
     if (side == 0 || shape.rows > kMaxExposureSlots)
         throw InputError(
             where,
-            fmt::format("{} x {} x {} values are no dictionary (atom, slot, pixel) of square "
+            fmt::format("{} x {} x {} values are not a dictionary (atom, slot, pixel) of square "
                         "patches of 1..{} slots; make one with \"stipple dictionary\"",
                         shape.layers, shape.rows, shape.cols, kMaxExposureSlots));
     PatchDictionary result{.shape = {.slots = shape.rows, .side_px = side},
@@ -45,8 +45,9 @@ PatchDictionary patch_dictionary(const ArrayShape& shape, std::span<const double
         double most = 0;
         for (const double value : atom) {
             if (!std::isfinite(value))
-                throw InputError(where, fmt::format("atom {} holds {}, which is no finite number",
-                                                    number, value));
+                throw InputError(
+                    where,
+                    fmt::format("atom {} holds {}, which is not a finite number", number, value));
             most = std::max(most, std::abs(value));
         }
         double square = 0;

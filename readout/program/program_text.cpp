@@ -113,7 +113,7 @@ class Parser {
 
     void read_address(std::string_view text) {
         const auto address = parsed_number<std::size_t>(text, 16);
-        if (!address) fail(fmt::format("\"@{}\" is no hexadecimal address", text));
+        if (!address) fail(fmt::format("\"@{}\" is not a hexadecimal address", text));
         address_ = *address;
     }
 
@@ -162,7 +162,8 @@ class Parser {
     [[nodiscard]] unsigned nibble_of(char c) const {
         const char lower = c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
         const auto digit = kHexDigits.find(lower);
-        if (digit == std::string_view::npos) fail(fmt::format("\"{}\" is no hexadecimal digit", c));
+        if (digit == std::string_view::npos)
+            fail(fmt::format("\"{}\" is not a hexadecimal digit", c));
         return static_cast<unsigned>(digit);
     }
 

@@ -37,7 +37,7 @@ int whole_groups(const char* key, int pixels, int group, const char* group_key) 
     if (pixels < 0 || pixels > kMaxHardwareSide)
         fail(fmt::format("{} {} is outside 0..{}", key, pixels, kMaxHardwareSide));
     if (pixels % group != 0)
-        fail(fmt::format("{} {} is no multiple of {} {}", key, pixels, group_key, group));
+        fail(fmt::format("{} {} is not a multiple of {} {}", key, pixels, group_key, group));
     return pixels / group;
 }
 

@@ -56,11 +56,11 @@ NamedSchedule read_random(Config& config, const Made& made) {
     if (shape.pixels() * lengths.size() > kMaxRandomExposures)
         throw InputError(config.where("kind"),
                          fmt::format("random exposures of {} x {} pixels are too many for a "
-                                     "stream; use the schedule \"tiled\"",
-                                     shape.rows, shape.cols));
+                                     "stream; use the schedule \"tiled\" (--schedule tiled)",
+                                     shape.cols, shape.rows));
     // It is kept twice: by the sensor, and in the header of the stream.
     check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.where("kind"),
-                 fmt::format("random exposures of {} x {} pixels", shape.rows, shape.cols));
+                 fmt::format("random exposures of {} x {} pixels", shape.cols, shape.rows));
     ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, made.seed);
     return {.name = "random",
             .source = {ScheduleSource::Kind::kRandom, std::move(lengths), made.seed},

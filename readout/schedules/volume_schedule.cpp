@@ -32,8 +32,8 @@ float weight_at(const Masks& masks, int slot, TilePixel pixel) {
     if (!(weight >= 0 && weight <= static_cast<double>(kMaxSlotWeight)))
         throw InputError(
             masks.where,
-            fmt::format("pixel ({}, {}) slot {}: {} is no weight: not in 0..{}", pixel.row,
-                        pixel.col, slot, masks.volume.at(slot, pixel.row, pixel.col),
+            fmt::format("pixel ({}, {}) slot {}: {} is not a weight: it is outside 0..{}",
+                        pixel.row, pixel.col, slot, masks.volume.at(slot, pixel.row, pixel.col),
                         masks.white * static_cast<double>(kMaxSlotWeight)));
     const auto rounded = static_cast<float>(weight);
     return rounded < kMinSlotWeight ? 0 : rounded;
@@ -66,7 +66,7 @@ int length_at(const NpyVolume& lengths, int layer, TilePixel pixel, std::string_
     if (value >= 0 && value <= kMaxExposureSlots && value == static_cast<int>(value))
         return static_cast<int>(value);
     throw InputError(where,
-                     fmt::format("pixel ({}, {}) exposure {}: {} is no whole number of slots "
+                     fmt::format("pixel ({}, {}) exposure {}: {} is not a whole number of slots "
                                  "from 0 to {}",
                                  pixel.row, pixel.col, layer, value, kMaxExposureSlots));
 }

@@ -23,8 +23,8 @@ namespace stipple {
 /// The schedule of a volume of exposure lengths in slots: each pixel repeats its layers' exposures
 /// one after the other from slot 0 on; a length of 0 is none. The period is `period_slots` or, if
 /// that is 0, the largest sum of a pixel.
-/// \throws InputError at `where`, naming pixel and exposure, for a value that is no whole number of
-/// 0..64 and for a pixel whose sum is longer than the period; if the period is beyond 65535.
+/// \throws InputError at `where`, naming pixel and exposure, for a value that is not a whole number
+/// of 0..64 and for a pixel whose sum is longer than the period; if the period is beyond 65535.
 [[nodiscard]] ExposureSchedule lengths_schedule(const NpyVolume& lengths, int period_slots,
                                                 std::string_view where);
 

@@ -40,8 +40,8 @@ void check_window(const ReadoutTiming& timing, FrameShape shape) {
         shape.cols <= timing.cols)
         return;
     throw InputError("readout timing",
-                     fmt::format("{} x {} pixels (columns x rows) do not lie within the array of "
-                                 "{} x {}, timing.cols x timing.rows",
+                     fmt::format("{} x {} pixels (width x height) are more than the array of {} x "
+                                 "{}, timing.cols x timing.rows; --crop takes a part of footage",
                                  shape.cols, shape.rows, timing.cols, timing.rows));
 }
 

@@ -71,7 +71,7 @@ function lightTitle() {
 function pixelChart(lines) {
   const lights = lines.flatMap((line) => line.points.map(([, y]) => y));
   const highest = Math.max(1e-3, ...shownSamples.map((s) => s.light + s.deviation), ...lights);
-  const lowest = Math.min(...[...lights, ...shownSamples.map((s) => s.light)].filter((y) => y > 0));
+  const lowest = Math.min(highest, ...[...lights, ...shownSamples.map((s) => s.light)].filter((y) => y > 0));
   const lightAxis = () => {
     const scale = axis(lightTitle(), state.log ? {type: 'logarithmic', min: Math.max(lowest / 2, highest / 3000)}
                                                : {type: 'linear', beginAtZero: true, suggestedMax: highest * 1.05});

@@ -257,7 +257,7 @@ class CalibrateTest(ProgramTest):
         (self.folder / "cut.stcal").write_bytes(whole[:500])
         self.fails(INPUT, ["cut.stcal: byte 500: the file is truncated"], *decode, "cut.stcal")
         (self.folder / "text.stcal").write_text("gain = 1")
-        self.fails(INPUT, ["text.stcal: is no calibration file"], *decode, "text.stcal")
+        self.fails(INPUT, ["text.stcal: is not a calibration file"], *decode, "text.stcal")
         self.fails(INPUT, ["none.stcal"], *decode, "none.stcal")
         self.succeed("calibrate", *SENSOR, "--size", "24x24", "-o", "small.stcal")
         self.fails(INPUT, ["small.stcal: is the calibration of 24 x 24 pixels"], *decode, "small.stcal")

@@ -1,6 +1,7 @@
 """Comparison of videos: overlap, figures of each frame, difference, choice of figures."""
 
 import csv
+import json
 import math
 import resource
 import shutil
@@ -54,6 +55,18 @@ class CompareTest(ProgramTest):
         self.fails(INPUT, ["short.npy: ends after 4 frames, before --until 5"], "compare", "noisy.npy", "short.npy",
                    "--until", 5)
         self.fails(INPUT, ["margin", "none of 4"], "compare", "noisy.npy", "short.npy", "--margin", 2)
+
+    def test_results_may_have_a_transfer_function(self):
+        light = self.write_array("light.npy", np.full((2, 8, 8), (100 / 255) ** 2.2))
+        (self.folder / "result").mkdir()
+        for frame in range(2):
+            self.write_png(f"result/{frame}.png", np.full((8, 8, 3), 100))
+        self.write_array("colour.npy", np.repeat(self.array(light)[..., np.newaxis], 3, axis=3))
+        done = self.run_program("compare", "result", "colour.npy", "--json", "-")
+        self.assertIn("give --result-transfer", done.stderr)
+        done = self.run_program("compare", "result", "colour.npy", "--result-transfer", "gamma22", "--json", "-")
+        self.assertEqual(done.stderr, "")
+        self.assertGreater(json.loads(done.stdout)["psnr_db"], 100)
 
     def test_the_table_has_the_figures_of_each_frame(self):
         self.noisy[2] = self.light[2]

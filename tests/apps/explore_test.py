@@ -314,16 +314,16 @@ method = "fast"
 
     def test_bad_spaces_are_refused_before_anything_is_written(self):
         for text, part in [("", "axes.sensor: is missing"), ("[axes]\nsensor = []", "is an empty list"),
-                           ("[axes", "space.toml:1"), ("axes = 3", "is no section"),
+                           ("[axes", "space.toml:1"), ("axes = 3", "is not a section"),
                            ('[axes]\nsensor = "paper"\nlens = 1', "axes.lens: is unknown"),
                            ('[axes]\nsensor = "paper"\n[set]\nsensor.bit_depth = 8', "put it into quotes"),
                            ('[axes]\nsensor = "paper"\n[clip]\nframes = 0', "clip.frames"),
-                           ('[axes]\nsensor = "paper"\nseed = { from = 1 }', "is no range such as"),
+                           ('[axes]\nsensor = "paper"\nseed = { from = 1 }', "is not a range such as"),
                            ('[axes]\nsensor = "paper"\nseed = { from = 0, to = 9, count = 3, log = true }',
-                            "is no range"),
-                           ('[axes]\nsensor = 1979-05-27', "no number, text"),
+                            "is not a range"),
+                           ('[axes]\nsensor = 1979-05-27', "not a number, text"),
                            ('[axes]\nsensor = ""', "is an empty text"),
-                           ('systems = 3\n[axes]\nsensor = "paper"', "systems: is no list of tables"),
+                           ('systems = 3\n[axes]\nsensor = "paper"', "systems: is not a list of tables"),
                            ('[axes]\nsensor = "paper"\n[[systems]]\nname = "a"', "systems.1.schedule: is missing"),
                            ('[axes]\nsensor = "paper"\nmethod = "fast"\n' + SYSTEM, "axes.method: is set by each"),
                            ('[axes]\nsensor = "paper"\n' + SYSTEM.replace("method", 'rig = "flutter"\nmethod'),
@@ -352,7 +352,7 @@ method = "fast"
         self.fails(INPUT, ["results of another version"], "explore", "space.toml", "-o", "results")
         (self.folder / "letters").mkdir()
         (self.folder / "letters" / "a.txt").touch()
-        self.fails(INPUT, ["is no folder of results"], "explore", "space.toml", "-o", "letters")
+        self.fails(INPUT, ["is not a folder of results"], "explore", "space.toml", "-o", "letters")
 
 
 if __name__ == "__main__":

@@ -92,7 +92,7 @@ class FootagePartTest(ProgramTest):
     def test_what_does_not_fit_is_one_message(self):
         (self.folder / "space.toml").write_text(SPACE.replace("FOOTAGE", "clip.npy"))
         for option, part in ((("--crop", "30x10"), "has 24 x 18 pixels, in which --crop 30x10 does not lie"),
-                             (("--bin", 5), "no multiple of --bin 5; add --crop 20x15"),
+                             (("--bin", 5), "not a multiple of --bin 5; add --crop 20x15"),
                              (("--resize", "30x10"), "would enlarge"),
                              (("--frames", "9:17"), "has 16 frames, so not all of --frames 9:17")):
             self.fails(INPUT, ["clip.npy: ", part], "emulate", "clip.npy", "-o", "a.stipple", *option)

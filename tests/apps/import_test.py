@@ -132,10 +132,10 @@ class ImportTest(ProgramTest):
         for value in (-0.01, 2e6, np.nan, np.inf):
             masks = self.masks.copy()
             masks[2, 5, 6] = value
-            self.refuse(["masks.npy", "pixel (5, 6) slot 2", "is no weight"], masks=masks)
+            self.refuse(["masks.npy", "pixel (5, 6) slot 2", "is not a weight"], masks=masks)
         for value in (np.nan, np.inf):
             self.measurements[1, 5, 6] = value
-            self.refuse(["meas.npy", "measurement 1 pixel (5, 6)", "is no number"])
+            self.refuse(["meas.npy", "measurement 1 pixel (5, 6)", "is not a number"])
 
     def test_masks_are_needed(self):
         self.write()

@@ -58,6 +58,18 @@ class UsageTest(ProgramTest):
         self.fails(USAGE, ["--output", "standard output"], "emulate", "a", "-o", "-")
         self.fails(USAGE, ["--name", "64"], "schedule", "import", "a.npy", "-o", "x", "--name", "n" * 65)
 
+    def test_files_that_another_command_or_a_loop_takes(self):
+        self.write_stream()
+        self.fails(INPUT, ["name one of its sample streams, as ./clip.stipple"], "info", ".")
+        self.fails(USAGE, ['"clip.stipple" is more than stipple decode takes; run it once for each file'], "decode",
+                   "a.stipple", "clip.stipple", "-o", "x")
+        self.fails(INPUT, ["none.npy: cannot be read: No such file"], "import", "none.npy", "-o", "x")
+
+    def test_slots_in_another_unit_are_asked_about(self):
+        said = self.run_program("emulate", self.write_flat("light.npy"), "-o", "clip.stipple", "--set",
+                                "sensor.slot_us=0.005").stderr
+        self.assertIn("slots of 0.005 us are 2e+08 a second; is slot_us in microseconds?", said)
+
     def test_subcommands_that_are_missing(self):
         self.fails(USAGE, ['"stipple" needs a subcommand: synth, emulate'])
         self.fails(USAGE, ['"stipple capture" needs a subcommand: list, features'], "capture")

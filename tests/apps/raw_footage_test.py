@@ -61,14 +61,14 @@ class RawTest(CameraFilesTest):
 
     def test_what_is_no_description_is_wrong_usage(self):
         name = self.write("clip.raw", bytes(96))
-        for text, part in (("8x6", "give columns x rows"), ("8:mono8", "give columns x rows"),
-                           ("8x6:mono13p", "\"mono13p\" is no pixel format"), ("8x6:msb", "\"msb\" is no"),
+        for text, part in (("8x6", "give width x height"), ("8:mono8", "give width x height"),
+                           ("8x6:mono13p", "\"mono13p\" is not a supported pixel format"), ("8x6:msb", "\"msb\" is not"),
                            ("0x6:mono8", "outside 1..65535"), ("70000x1:mono8", "outside 1..65535"),
                            ("8x6:mono8:black=255", "black=255"), ("8x6:mono8:black=nan", "black=nan"),
                            ("8x6:mono8:hz=0", "hz=0"), ("8x6:mono8:offset=-1", "offset=-1"),
                            ("8x6:mono8:stride=47", "stride=47: give a number of bytes, at least the 48 of a frame"),
                            ("8x6:mono8:frames=0", "frames=0"),
-                           ("8x6:mono8:fps=3", "\"fps\" is no key")):
+                           ("8x6:mono8:fps=3", "\"fps\" is an unknown key")):
             with self.subTest(text=text):
                 said = self.fails(USAGE, [f"--raw: {text}: ", part], "emulate", name, "-o", "x.stipple", "--raw", text)
                 self.assertEqual(said.count("--raw: "), 1)

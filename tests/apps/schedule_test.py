@@ -196,6 +196,11 @@ class ImportTest(ProgramTest):
                      "8", "--name", "mine")
         self.assertIn('"AaAAaa..", "Aaaa....",', (self.folder / "b.toml").read_text())
         self.assertIn('name = "mine"', (self.folder / "b.toml").read_text())
+        self.write_array("one.npy", lengths[0], np.uint8)  # one exposure of each pixel
+        self.write_array("layer.npy", lengths[:1], np.uint8)
+        for name in ("one", "layer"):
+            self.succeed("schedule", "import", f"{name}.npy", "-o", f"{name}.toml", "--lengths", "--name", "x")
+        self.assertEqual((self.folder / "one.toml").read_text(), (self.folder / "layer.toml").read_text())
 
     def test_a_long_name_of_the_output_is_cut_between_two_characters(self):
         self.write_array("masks.npy", np.ones((2, 2, 2)))
@@ -211,7 +216,7 @@ class ImportTest(ProgramTest):
         masks = np.zeros((70, 2, 3))
         for value in (-1, 1e7, np.nan, np.inf):
             masks[4, 1, 2] = value
-            self.refuse(["pixel (1, 2) slot 4", "is no weight"], masks)
+            self.refuse(["pixel (1, 2) slot 4", "is not a weight"], masks)
         masks[4, 1, 2] = 0
         self.refuse(["all weights are 0"], masks)
         masks[4, 1, 2] = 1.5

@@ -303,6 +303,29 @@ class VideoTest(ProgramTest):
         self.assertEqual(len(light), 30)
         self.assertRegex(said, r"video.mkv: the decoder reports \d+ errors?, the first at frame \d+")
 
+    def test_gif(self):
+        self.write_moving("video.gif", seconds=0.2)
+        light, said = self.emulate("video.gif")
+        np.testing.assert_array_equal(light, np.float32(self.shown("video.gif", light.shape)) / np.float32(255))
+        self.assertIn(HINT, said)
+
+    def test_frames_that_the_container_announces(self):
+        self.write_moving("video.mp4", seconds=0.2)
+        self.assertEqual(self.figures("info", "video.mp4", "--header")["announced_frames"], 6)
+        self.assertIn("6 announced", self.succeed("info", "video.mp4", "--header"))
+
+    def test_images_that_are_not_read_have_the_command_that_converts_them(self):
+        (self.folder / "frames").mkdir()
+        self.write_moving("frames/%04d.jpg", seconds=0.2)
+        for footage in ("frames", "frames/%04d.jpg", "frames/0001.jpg"):
+            self.refuse(footage, ".jpg is not read, convert it: ffmpeg -i %04d.jpg %04d.png")
+
+    def test_truth_for_viewing_is_no_reference(self):
+        self.write_flat("light.npy", slots=2, rows=16, cols=16)
+        for name, warned in (("a.mp4", True), ("a.y4m", True), ("a.npy", False)):
+            said = self.run_program("emulate", "light.npy", "-o", "clip.stipple", "--force", "--truth", name).stderr
+            self.assertEqual("tone-mapped to 8 bits" in said, warned)
+
     def test_pixels_that_are_no_such_numbers_are_refused(self):
         self.write_flat_colour("flat.mkv", 48, "ycgco", "out_color_matrix=bt709", "yuv444p", "-c:v",
                                "ffv1")

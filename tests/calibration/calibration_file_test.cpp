@@ -129,7 +129,7 @@ TEST(CalibrationFileTest, IsFoundBesideAStream) {
 
 TEST(CalibrationFileTest, NamesDamageAndForeignFiles) {
     const auto bytes = encode_chip_calibration(example());
-    expect_parts(message({}), {"chip.stcal: is no calibration file"});
+    expect_parts(message({}), {"chip.stcal: is not a calibration file"});
     for (std::size_t i = 40; i < bytes.size(); ++i) {
         auto changed = bytes;
         changed[i] ^= 0x10U;
@@ -140,7 +140,7 @@ TEST(CalibrationFileTest, NamesDamageAndForeignFiles) {
     expect_parts(message(longer), {"after the end"});
     auto foreign = bytes;
     foreign[1] = 'X';
-    expect_parts(message(foreign), {"no calibration file"});
+    expect_parts(message(foreign), {"not a calibration file"});
     auto newer = bytes;
     newer[8] = 3;
     expect_parts(message(mended(newer)), {"version 3"});

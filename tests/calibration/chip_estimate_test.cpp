@@ -219,7 +219,7 @@ TEST(ChipEstimateTest, NamesAFlatSeriesThatSaturatesOrIsDark) {
     expect_parts(series.message(), {"flat series: saturates: ", "half of saturation"});
     series.flat = FieldSamples(kShape);
     expose(chip, 5000, 100, 10, 10, series.flat);  // half a DN
-    expect_parts(series.message(), {"flat series: is no brighter than its noise"});
+    expect_parts(series.message(), {"flat series: is not brighter than its noise"});
 }
 
 // Above an unknown full well light adds no noise.

@@ -49,7 +49,7 @@ TEST(PointViewTest, ValuesThatCannotBeAreRefused) {
     expect_parts(refusal("binning = 2\nrig = 'flutter'\n"), {"binning", "rig"});
     FluxVideo odd(1, {5, 6, 1});
     expect_parts(message_of<InputError>([&] { (void)binned_light(odd, view("binning = 2\n")); }),
-                 {"6 x 5 pixels", "no multiple"});
+                 {"6 x 5 pixels", "not a multiple"});
 }
 
 }  // namespace

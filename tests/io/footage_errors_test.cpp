@@ -53,7 +53,8 @@ TEST_F(FootageErrorsTest, NamesAnEmptyFolder) {
 
 TEST_F(FootageErrorsTest, NamesFilesOfUnknownKind) {
     write_text(folder_ / "notes.txt", "hello");
-    expect_parts(error_of(folder_ / "notes.txt"), {"notes.txt: is no footage by its extension"});
+    expect_parts(error_of(folder_ / "notes.txt"),
+                 {"notes.txt: is not a recognised footage format"});
 }
 
 TEST_F(FootageErrorsTest, NamesEmptyAndForeignFiles) {

@@ -36,7 +36,7 @@ class DecodeTest(ProgramTest):
         result = self.decodes("naive", calibration=self.folder / "chip.stcal")
         np.testing.assert_array_equal(
             result, self.program_decodes("--method", "naive", "--calibration", "chip.stcal"))
-        with self.assertRaisesRegex(ValueError, "clip.stipple: is no calibration file"):
+        with self.assertRaisesRegex(ValueError, "clip.stipple: is not a calibration file"):
             self.decodes("naive", calibration=self.folder / "clip.stipple")
         with self.assertRaises(FileNotFoundError):
             self.decodes("naive", calibration=self.folder / "none.stcal")

@@ -83,10 +83,10 @@ TEST(MeasuredStreamTest, NamesWhatIsWrong) {
                  {"y.npy", "1 measurements of 3 x 2", "3 masks of m.npy", "1 x 3"});
     wrong = arrays();
     wrong.measurements.values[3] = HUGE_VAL;
-    expect_parts(problem_of(wrong), {"y.npy", "measurement 1 pixel (0, 0)", "inf is no number"});
+    expect_parts(problem_of(wrong), {"y.npy", "measurement 1 pixel (0, 0)", "inf is not a number"});
     wrong = arrays();
     wrong.masks.values[7] = -0.25;
-    expect_parts(problem_of(wrong), {"m.npy", "pixel (0, 1) slot 2", "-0.25 is no weight"});
+    expect_parts(problem_of(wrong), {"m.npy", "pixel (0, 1) slot 2", "-0.25 is not a weight"});
     wrong = arrays();
     wrong.measurements.values = {0, -1, 9, 0, 0, 9};
     expect_parts(problem_of(wrong), {"y.npy", "no measurement is above 0"});

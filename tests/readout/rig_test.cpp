@@ -80,7 +80,7 @@ TEST(RigTest, ShippedRigsAreUsable) {
 TEST(RigTest, RefusesWhatNoRigIs) {
     expect_parts(problem_of("name = 'x'"), {"sensors", "names no sensor"});
     expect_parts(problem_of("sensors = ['a', 'a']"), {"two sensors \"a\""});
-    expect_parts(problem_of("sensors = ['../a']"), {"\"../a\" is no name"});
+    expect_parts(problem_of("sensors = ['../a']"), {"\"../a\" is not a name"});
     expect_parts(problem_of("sensors = ['a']\n[b]\nshare = 1"), {":3: b.share", "unknown"});
     expect_parts(problem_of("sensors = ['a', 'b']\na.share = 0.7\nb.share = 0.4"),
                  {":3: b.share", "sum 1.1", "aperture"});

@@ -37,7 +37,8 @@ TEST(PatchMatchesTest, ReferencesCoverTheBlockAndDoNotOverlapInTime) {
         add(rows, group.reference.row);
         add(cols, group.reference.col);
     }
-    EXPECT_EQ(slots, (std::vector{0, 4, 6})) << "the last one overlaps, as 10 is no multiple of 4";
+    EXPECT_EQ(slots, (std::vector{0, 4, 6}))
+        << "the last one overlaps, as 10 is not a multiple of 4";
     EXPECT_EQ(rows, (std::vector{0, 3, 6, 8}));
     EXPECT_EQ(cols, (std::vector{0, 3, 6, 9, 11}));
     EXPECT_EQ(list.groups.size(), 60U);

@@ -239,7 +239,7 @@ TEST(ScheduleCatalogueTest, RefusesKeysOfAnotherKind) {
 
 TEST(ScheduleCatalogueTest, SendsArraysTooLargeForRandomToTiled) {
     const FrameShape large{.rows = 4320, .cols = 7680, .planes = 1};
-    expect_parts(problem_of("random", {}, large), {"4320 x 7680", "\"tiled\""});
+    expect_parts(problem_of("random", {}, large), {"7680 x 4320", "\"tiled\""});
     EXPECT_NO_THROW(read("tiled", {}, large));
 }
 

@@ -42,7 +42,7 @@ TEST(MaskScheduleTest, NamesPixelAndSlotOfWhatIsNoMask) {
     for (const double bad : {-0.5, std::nan(""), static_cast<double>(INFINITY), 1e7}) {
         const NpyVolume masks{2, 2, 1, {0, 1, 0.5, bad}};
         expect_parts(message_of<InputError>([&] { return mask_schedule(masks, "m.npy"); }),
-                     {"m.npy", "pixel (1, 0) slot 1", "is no weight: not in 0..1048576"});
+                     {"m.npy", "pixel (1, 0) slot 1", "is not a weight: it is outside 0..1048576"});
     }
     expect_parts(message_of<InputError>([] {
                      return mask_schedule({1, 1, 2, {0, 0}}, "m.npy");
