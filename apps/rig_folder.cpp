@@ -51,9 +51,10 @@ RigFolder open_rig_folder(const fs::path& folder, ReadPolicy policy) {
     for (const RigSensor& sensor : opened.rig.sensors) {
         const fs::path file = folder / sensor.file();
         if (!fs::is_regular_file(file))
-            throw InputError(file.string(),
-                             fmt::format("is not there as a file; {} names it as the stream of sensor \"{}\"",
-                                         (folder / kRigFile).string(), sensor.name));
+            throw InputError(
+                file.string(),
+                fmt::format("is missing or not a file; {} names it as the stream of sensor \"{}\"",
+                            (folder / kRigFile).string(), sensor.name));
         opened.readers.emplace_back(file, policy);
         check_stream(sensor, opened.readers.back(), opened.readers.front());
     }

@@ -57,7 +57,7 @@ class RigTest(ProgramTest):
         self.emulate()
         (self.folder / "rig/left.stipple").unlink()
         os.mkfifo(self.folder / "rig/left.stipple")
-        self.fails(INPUT, ["rig/left.stipple: is not there as a file"], "info", "rig")
+        self.fails(INPUT, ["rig/left.stipple: is missing or not a file"], "info", "rig")
 
     def test_a_stream_is_that_of_the_sensor_alone(self):
         self.emulate()

@@ -52,9 +52,10 @@ TEST_F(ResultsTableTest, ARowHasValuesFiguresAndTheProblem) {
 
 TEST_F(ResultsTableTest, TextsOfTheCsvAreQuotedWhereTheyMustBe) {
     const std::string text = csv_table(explored());
-    expect_parts(text, {"footage,sensor,schedule,method,seed,slots_per_second,",
-                        ",limited_by,compared_slots,rung,slots,problem\npan,paper,random,naive,1,",
-                        ",31.5,", ",slot,,1,12,\n", "\npan,paper,random,\"'=no, \"\"such\"\"\",1,,"});
+    expect_parts(
+        text, {"footage,sensor,schedule,method,seed,slots_per_second,",
+               ",limited_by,compared_slots,rung,slots,problem\npan,paper,random,naive,1,", ",31.5,",
+               ",slot,,1,12,\n", "\npan,paper,random,\"'=no, \"\"such\"\"\",1,,"});
 }
 
 }  // namespace

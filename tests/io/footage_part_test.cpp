@@ -76,7 +76,7 @@ TEST(FootagePartTest, WhatDoesNotFitIsRefused) {
                  {"clip: has 6 x 4 pixels, in which --crop 4x2+3+0 does not lie"});
     expect_parts(refusal({.crop = parse_crop_area("7x4")}, kShape), {"--crop 7x4 does not lie"});
     expect_parts(refusal({.bin = 4}, kShape),
-                 {"clip: has 6 x 4 pixels, no multiple of --bin 4; add --crop 4x4"});
+                 {"clip: has 6 x 4 pixels, not a multiple of --bin 4; add --crop 4x4"});
     expect_parts(refusal({.bin = 2, .size = FrameShape{2, 4}}, kShape),
                  {"has 3 x 2 pixels, which --resize 4x2 would enlarge"});
 }
