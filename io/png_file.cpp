@@ -133,11 +133,11 @@ PngImage image_of(png_structp png, png_infop info, std::uint64_t file_bytes,
     check_packed(png_get_rowbytes(png, info) * rows, file_bytes, where);
     const std::size_t unpacked = depth == 16 ? 2 : 1;
     check_memory((unpacked + sizeof(float)) * shape.sites(), where, "the image", file_bytes);
-    return {.pixels = {.rows = shape.rows,
-                       .cols = shape.cols,
-                       .channels = shape.planes,
-                       .bytes_a_sample = static_cast<int>(unpacked),
-                       .bytes = std::vector<std::uint8_t>(unpacked * shape.sites())},
+    return {.pixels = PngPixels{.rows = shape.rows,
+                                .cols = shape.cols,
+                                .channels = shape.planes,
+                                .bytes_a_sample = static_cast<int>(unpacked),
+                                .bytes = std::vector<std::uint8_t>(unpacked * shape.sites())},
             .traits = traits_of(png, info, grey),
             .as_stored = type == PNG_COLOR_TYPE_GRAY && depth >= 8};
 }

@@ -112,7 +112,7 @@ void bind_camera(py::module_& module) {
                 const auto& [frames, seconds] = limits;
                 return CameraTask{.address = address,
                                   .settings = settings_for(settings, config),
-                                  .buffers = {.frames = buffers},
+                                  .buffers = CameraBuffers{.frames = buffers},
                                   .session = session_of(address, incomplete, stall_ms, reconnect),
                                   .limits = limits_of(frames, seconds)};
             }));

@@ -45,9 +45,9 @@ ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
     if (!sensor.is_none())
         if (const auto timing = sensor_of(sensor).description.timing)
             addressing = timing->addressing;
-    ChosenSchedule schedule{.choice = {.schedule = path_in(name, "schedule").string(),
-                                       .schedule_settings = settings_of(settings),
-                                       .seed = whole_in(seed, "seed")},
+    ChosenSchedule schedule{.choice = SensorChoice{.schedule = path_in(name, "schedule").string(),
+                                                   .schedule_settings = settings_of(settings),
+                                                   .seed = whole_in(seed, "seed")},
                             .shape = checked_shape(size.first, size.second, 1, "size"),
                             .made = {"", {}, ExposureSchedule(1, 1, 1, {0, 0}, {})}};
     const auto make = [&] { return set_up_schedule(schedule.choice, schedule.shape, addressing); };

@@ -147,16 +147,17 @@ ImportedStream import_measurements(const MeasuredArrays& arrays, const std::file
     ExposureSchedule schedule = mask_schedule(arrays.masks, arrays.mask_file, arrays.white);
     const Scale scale = scale_of(range_of(arrays, schedule));
     const double light = arrays.light > 0 ? arrays.light : light_of(y, schedule);
-    ImportedStream result{.header = {.shape = {.rows = y.rows, .cols = y.cols, .planes = 1},
-                                     .slot_us = arrays.slot_us,
-                                     .calibration = calibration_of(arrays, scale, light),
-                                     .schedule = std::move(schedule),
-                                     .schedule_source = {},
-                                     .schedule_name = "masks",
-                                     .provenance = provenance_of(arrays, light),
-                                     .cfa = arrays.cfa},
-                          .measurements = y.layers,
-                          .light = light};
+    ImportedStream result{
+        .header = StreamHeader{.shape = FrameShape{.rows = y.rows, .cols = y.cols, .planes = 1},
+                               .slot_us = arrays.slot_us,
+                               .calibration = calibration_of(arrays, scale, light),
+                               .schedule = std::move(schedule),
+                               .schedule_source = {},
+                               .schedule_name = "masks",
+                               .provenance = provenance_of(arrays, light),
+                               .cfa = arrays.cfa},
+        .measurements = y.layers,
+        .light = light};
     for_each_pixel(result.header.schedule, [&](int, int, std::span<const Exposure> exposures) {
         if (exposures.empty()) ++result.unread_pixels;
     });

@@ -36,10 +36,11 @@ SensorParams ideal_sensor(const SciSensor& sensor) {
 void write_stream(const FluxVideo& video, const ExposureSchedule& schedule, const SciSensor& sensor,
                   const std::filesystem::path& file) {
     const SensorParams params = ideal_sensor(sensor);
-    const SensorSetup setup{.params = params,
-                            .schedule = {.name = "masks", .source = {}, .schedule = schedule},
-                            .shape = video.shape(),
-                            .footage = video.shape()};
+    const SensorSetup setup{
+        .params = params,
+        .schedule = NamedSchedule{.name = "masks", .source = {}, .schedule = schedule},
+        .shape = video.shape(),
+        .footage = video.shape()};
     StreamHeader header = stream_header_of(setup, "");
     header.calibration.noise_free = sensor.noise_free;
     StreamWriter writer(file, header);

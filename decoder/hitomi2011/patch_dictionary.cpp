@@ -36,7 +36,7 @@ PatchDictionary patch_dictionary(const ArrayShape& shape, std::span<const double
             fmt::format("{} x {} x {} values are not a dictionary (atom, slot, pixel) of square "
                         "patches of 1..{} slots; make one with \"stipple dictionary\"",
                         shape.layers, shape.rows, shape.cols, kMaxExposureSlots));
-    PatchDictionary result{.shape = {.slots = shape.rows, .side_px = side},
+    PatchDictionary result{.shape = AtomShape{.slots = shape.rows, .side_px = side},
                            .atoms = shape.layers,
                            .values = std::vector<float>(values.size())};
     const std::size_t voxels = result.shape.voxels();

@@ -12,7 +12,7 @@ StabilisedFrames stabilised(const DeliveredFrames& frames) {
     const FluxVideo& light = frames.light;
     const float offset = std::min(frames.noise.dark_variance / frames.noise.per_light, kMaxOffset);
     StabilisedFrames result{FluxVideo(light.slots(), light.shape()),
-                            {.offset = offset, .min_light = -offset},
+                            RootScale{.offset = offset, .min_light = -offset},
                             std::sqrt(frames.noise.per_light)};
     parallel_for(0, light.slots(), [&](int frame) {
         stabilise_variance(light.frame(frame), light.shape().planes, result.scale,

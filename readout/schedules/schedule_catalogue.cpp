@@ -63,7 +63,7 @@ NamedSchedule read_random(Config& config, const Made& made) {
                  fmt::format("random exposures of {} x {} pixels", shape.cols, shape.rows));
     ExposureSchedule schedule = random_schedule(shape.rows, shape.cols, lengths, made.seed);
     return {.name = "random",
-            .source = {ScheduleSource::Kind::kRandom, std::move(lengths), made.seed},
+            .source = ScheduleSource{ScheduleSource::Kind::kRandom, std::move(lengths), made.seed},
             .schedule = std::move(schedule)};
 }
 

@@ -18,9 +18,9 @@ StreamHeader header() {
 }
 
 ChipCalibration calibration() {
-    return {.shape = {.rows = 4, .cols = 6, .planes = 1},
+    return {.shape = FrameShape{.rows = 4, .cols = 6, .planes = 1},
             .bit_depth = 12,
-            .chip = {.name = "t6", .device_id = 1},
+            .chip = ChipIdentity{.name = "t6", .device_id = 1},
             .sites = std::vector<SiteCalibration>(24)};
 }
 

@@ -68,7 +68,7 @@ class LiveCameraTest : public ::testing::Test {
     }
     LiveCamera open(std::size_t waiting_frames, bool from_start = true) {
         return {opener(),
-                {.session = {.stall = milliseconds(0)},
+                {.session = SessionOptions{.stall = milliseconds(0)},
                  .waiting_frames = waiting_frames,
                  .from_start = from_start,
                  .tell = [](const SessionEvent&) {}}};

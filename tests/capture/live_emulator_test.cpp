@@ -26,7 +26,7 @@ class LiveEmulatorTest : public ::testing::Test {
     LiveEmulation emulate(std::deque<ScriptedStep> steps, LiveEmulatorOptions options,
                           std::size_t waiting_frames = 64) {
         steps.push_back(is_lost("unplugged"));
-        LiveCamera camera(plays({std::move(steps)}), {.session = {.reconnect = false},
+        LiveCamera camera(plays({std::move(steps)}), {.session = SessionOptions{.reconnect = false},
                                                       .waiting_frames = waiting_frames,
                                                       .from_start = true,
                                                       .tell = [](const SessionEvent&) {}});

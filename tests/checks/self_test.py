@@ -6,6 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import aggregates
 import citation
 import config_comments
 import extending
@@ -81,6 +82,13 @@ class ChecksTest(unittest.TestCase):
         self.assertEqual(self.includes(files), [])
         files["apps/c/c.h"] += '#include "apps/a/a.h"\n'
         self.assertEqual(self.includes(files), ["apps/a/a.cpp:1", "apps/b/b.h:1", "apps/c/c.h:2"])
+
+    def test_a_braced_member_before_a_call_has_its_type(self):
+        wrong = ["A a{.b = {.c = 1},\n    .d = f()};", "return {x, {.c = y()}, f()};", "g({.b{1}, .e = {}, .d = C{f()}});"]
+        right = ["A a{.b = B{.c = f()}, .d = f()};", "A a{.b = {}, .d = f()};", "A a{.d = f(), .b = {1}}; g();",
+                 "g({.b = {1}}, f());", 'A a{.b = {1}, .d = "f()"};  // f()', "a.b = {1}; c = A{1, f()};"]
+        files = {f"core/{number}.cpp": line for number, line in enumerate(wrong + right)}
+        self.assertEqual(self.places(aggregates.check, files), ["core/0.cpp:1", "core/1.cpp:1", "core/2.cpp:1"])
 
     def test_third_party_types_stay_out_of_headers(self):
         foreign = "#pragma once\n#include <vector>\n#include <opencv2/core.hpp>\n"

@@ -18,11 +18,12 @@ const SampleNoise& paper_noise() {
 Recorded record(const FluxVideo& video, const ExposureSchedule& schedule, SensorParams params,
                 std::uint64_t seed) {
     params.charge_stores = schedule.charge_stores();
-    const SensorSetup setup{.params = params,
-                            .schedule = {.name = "test", .source = {}, .schedule = schedule},
-                            .shape = video.shape(),
-                            .footage = video.shape(),
-                            .seed = seed};
+    const SensorSetup setup{
+        .params = params,
+        .schedule = NamedSchedule{.name = "test", .source = {}, .schedule = schedule},
+        .shape = video.shape(),
+        .footage = video.shape(),
+        .seed = seed};
     Recorded recorded{stream_header_of(setup, ""), {}};
     Emulator emulator(setup);
     for (int slot = 0; slot < video.slots(); ++slot)

@@ -94,6 +94,13 @@ class ChoiceTest(ProgramTest):
             with self.assertRaisesRegex(ValueError, "read_noise_e: (?!.*is text)"):
                 stipple.Sensor("paper", {"read_noise_e": value})
 
+    def test_a_size_that_no_array_has_is_a_ValueError(self):
+        for size in ((0, 4), (70000, 4), (65535, 65535), (2**40, 4)):
+            for make in (lambda size: stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), 1, size=size),
+                         lambda size: stipple.Schedule("a_rather_long_folder_name/a_long_file.toml", size=size)):
+                with self.subTest(size), self.assertRaisesRegex(ValueError, "size: a frame of"):
+                    make(size)
+
     def test_what_is_no_name_is_a_TypeError(self):
         for message, call in {"sensor: 3 is neither": lambda: stipple.Sensor(3),
                               "schedule: None is neither": lambda: stipple.Schedule(None),

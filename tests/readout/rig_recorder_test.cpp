@@ -25,7 +25,7 @@ std::vector<float> spot(int row, int col) {
 TEST(RigRecorderTest, SeesTheMovedLightFromItsFirstSlotOn) {
     const TemporaryFolder folder;
     const RigSensor sensor{.name = "a",
-                           .choice = {.sensor = "ideal", .schedule = "full1x"},
+                           .choice = SensorChoice{.sensor = "ideal", .schedule = "full1x"},
                            .from_reference = Homography::shift({.row = 1, .col = 2}),
                            .phase_slots = 2};
     const SensorSetup setup = set_up_sensor(sensor.choice, kShape);

@@ -57,7 +57,7 @@ TEST(StreamFiguresTest, TextsOnADecodedStreamAreEmptyWhereNothingIsAmiss) {
 
 // A reader with ReadPolicy::kCounts keeps one pixel of a random schedule, whose tile is the array.
 TEST(StreamFiguresTest, TheTileOfARandomScheduleIsTheArray) {
-    StreamHeader header{.shape = {.rows = 6, .cols = 8, .planes = 1},
+    StreamHeader header{.shape = FrameShape{.rows = 6, .cols = 8, .planes = 1},
                         .calibration = {},
                         .schedule = {1, 1, 1, {0, 1}, {{0, open_without_gap(1)}}},
                         .schedule_source = {},
