@@ -100,7 +100,7 @@ HWY_AFTER_NAMESPACE();
 namespace stipple {
 namespace {
 
-PixelModel checked_law(const SensorParams& params) {
+PixelModel checked_model(const SensorParams& params) {
     validate(params);
     return {.electrons_per_unit = static_cast<float>(params.photons_per_unit),
             .full_well_e = static_cast<float>(params.full_well_e),
@@ -121,7 +121,7 @@ Charge expose_one(const PixelModel& model, float light, std::uint32_t shot_word,
 }
 
 PixelArray::PixelArray(const SensorParams& params, std::uint64_t seed)
-    : law_(checked_law(params)), seed_(seed) {}
+    : model_(checked_model(params)), seed_(seed) {}
 
 void PixelArray::expose(std::span<const float> light, std::span<const std::uint32_t> pixel,
                         std::uint32_t slot, std::uint32_t plane,
@@ -129,7 +129,7 @@ void PixelArray::expose(std::span<const float> light, std::span<const std::uint3
     assert(light.size() == pixel.size() && light.size() == charges.electrons.size());
     assert(charges.clipped.empty() || charges.clipped.size() == light.size());
     const SampleAddress address{.seed = seed_, .slot = slot, .plane = plane};
-    HWY_DYNAMIC_DISPATCH(expose)(law_, address, light, pixel.data(), charges);
+    HWY_DYNAMIC_DISPATCH(expose)(model_, address, light, pixel.data(), charges);
 }
 
 }  // namespace stipple

@@ -43,7 +43,7 @@ class PixelArray {
                 std::uint32_t slot, std::uint32_t plane, const Charges& charges) const noexcept;
 
   private:
-    PixelModel law_;
+    PixelModel model_;
     std::uint64_t seed_;
 };
 
