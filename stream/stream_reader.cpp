@@ -239,9 +239,14 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
 std::optional<PacketFault> StreamReader::Impl::fault_of(const PacketHeader& found,
                                                         Bytes payload) const {
     if (index_offset) return PacketFault{"a packet after the index"};
-    if (found.kind == PacketKind::kSamples)
-        return sample_fault(stream.header, found, payload, order.expected(),
-                            {any_schedule, stream.counts ? &*stream.counts : nullptr});
+    if (found.kind == PacketKind::kSamples) {
+        auto fault = sample_fault(stream.header, found, payload, order.expected(),
+                                  {any_schedule, stream.counts ? &*stream.counts : nullptr});
+        if (!fault && slots && found.slot >= static_cast<std::uint64_t>(*slots))
+            fault = PacketFault{
+                fmt::format("slot {} is not one of the {} in the index", found.slot, *slots)};
+        return fault;
+    }
     if (found.kind != PacketKind::kIndex)
         return PacketFault{
             fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind))};

@@ -174,7 +174,8 @@ TEST(PacketFaultsTest, AnIndexMayLeaveSlotsOut) {
 TEST(PacketFaultsTest, AnIndexThatIsWrongIsReported) {
     const BrokenStream s;
     const auto& at = s.stream.begins;
-    expect_index_refused(s, with_index(s, 2, {}),
+    const std::string fewer = with_index(s, 2, {});
+    expect_index_refused(s, fewer.substr(0, fewer.size() - kEndMarkerBytes),
                          "the index counts 2 slots, but slot 3 row 0 is due next");
     expect_index_refused(s, with_index(s, 3, {{3, at[2]}}), impossible_entry(0, 3, at[2]));
     expect_index_refused(s, with_index(s, 3, {{0, at[0]}, {0, at[1]}}),
@@ -185,6 +186,16 @@ TEST(PacketFaultsTest, AnIndexThatIsWrongIsReported) {
     expect_index_refused(
         s, with_index(s, 3, {{0, at[1]}}),
         "the index says that slot 0 begins at byte " + std::to_string(at[1]) + ", but it does not");
+}
+
+TEST(PacketFaultsTest, SlotsThatTheIndexDoesNotCountAreDamage) {
+    const BrokenStream s;
+    const MemoryFile file(with_index(s, 2, {}));
+    StreamReader reader(file.path());
+    EXPECT_EQ(reader.slots(), 2);
+    EXPECT_EQ(read_packets(reader), (std::vector{s.packets[0], s.packets[1]}));
+    EXPECT_EQ(reader.report().slots, 2);
+    EXPECT_EQ(causes(reader.report()), "slot 2 is not one of the 2 in the index\n");
 }
 
 TEST(PacketFaultsTest, AnIndexLeadsToTheFirstRowsOfASlot) {
