@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -101,6 +102,9 @@ void bind_compare(py::module_& module) {
                          std::optional<double> pixels_per_degree) {
             if (until && *until < 1)
                 throw InputError("until", fmt::format("{} is not above 0", *until));
+            if (!(cd_per_unit > 0 && std::isfinite(cd_per_unit)))
+                throw InputError("cd_per_unit",
+                                 fmt::format("{} is not finite and above 0", cd_per_unit));
             return Comparison{.options = {.margin = margin,
                                           .max_value = max_value,
                                           .peak = peak,

@@ -43,14 +43,22 @@ struct DecodeTask {
     std::optional<std::filesystem::path> calibration = {};  ///< file or "none"; no value: beside
 };
 
-DecodeTask decode_task(const std::string& method, const py::dict& settings, bool fill_gaps,
+DecodeTask decode_task(const py::object& method, const py::dict& settings, bool fill_gaps,
                        bool strict, std::optional<std::int64_t> until) {
     if (until && *until < 1) throw InputError("until", fmt::format("{} is not above 0", *until));
+    if (!py::isinstance<py::str>(method))
+        throw py::type_error(fmt::format("method: {} is not a text", short_text(method)));
     Config config(settings_of(settings), "decoder");
-    DecodeTask task{.options = read_decode_options(decode_method_from_name(method), config),
-                    .given = config.as_toml(""),
-                    .strict = strict,
-                    .until = until};
+    DecodeTask task{
+        .options = read_decode_options(decode_method_from_name(method.cast<std::string>()), config),
+        .given = config.as_toml(""),
+        .strict = strict,
+        .until = until};
+    if (task.options.method == DecodeMethod::kHitomi2011 &&
+        task.options.hitomi2011.dictionary_file.empty())
+        throw InputError("options",
+                         "hitomi2011 needs {\"dictionary\": FILE}, which a command makes: "
+                         "stipple dictionary FOOTAGE -o FILE.npy");
     reading(task.options.hitomi2011.dictionary_file, [&] { read_dictionary(task.options); });
     task.options.fill_gaps = fill_gaps;
     return task;

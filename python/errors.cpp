@@ -16,15 +16,6 @@ namespace stipple::python {
 namespace fs = std::filesystem;
 namespace {
 
-/// How Python shows a value, of values that are long the begin.
-std::string short_text(const py::object& value) {
-    constexpr py::ssize_t kMaxLetters = 80;
-    const py::str text = py::repr(value);
-    const py::object begin = text[py::slice(0, kMaxLetters, 1)];
-    const bool is_whole = begin.equal(text);
-    return std::string(py::str(begin)) + (is_whole ? "" : " ...");
-}
-
 PyObject* class_of(int number) {
     if (number == ENOENT) return PyExc_FileNotFoundError;
     if (number == EACCES) return PyExc_PermissionError;
@@ -34,24 +25,39 @@ PyObject* class_of(int number) {
 
 }  // namespace
 
+std::string short_text(const py::object& value) {
+    constexpr py::ssize_t kMaxLetters = 80;
+    const py::str text = py::repr(value);
+    const py::object begin = text[py::slice(0, kMaxLetters, 1)];
+    const bool is_whole = begin.equal(text);
+    return std::string(py::str(begin)) + (is_whole ? "" : " ...");
+}
+
 std::string in_python(const std::string& message) {
     const std::pair<const char*, const char*> arguments[] = {
-        {"--set (sensor|schedule|decoder|camera)[.]", "$1 setting "},
+        {"--set (sensor|schedule|decoder|camera)[.]([\\w.-]*)", "$2 setting $3"},
         {"--force", "force=True"},
         {"--fill-gaps", "fill_gaps=True"},
-        {"--transfer (linear|gamma22|srgb|bt709|pq|hlg|auto)", "transfer=\"$1\""},
-        {"--resample (hold|blend|flow)", "resample=\"$1\""},
-        {"--(transfer|resample|scale|raw|luminance)", "$1"},
-        {"--(min|max)-value ([0-9.e+-]+)", "$1_value=$2"},
+        {"--transfer (linear|gamma22|srgb|bt709|pq|hlg|auto)", "transfer=\"$2\""},
+        {"--resample (hold|blend|flow)", "resample=\"$2\""},
+        {"--(transfer|resample|scale|raw|luminance|buffers|rank)", "$2"},
+        {"--(min|max)-value ([0-9.e+-]+)", "$2_value=$3"},
         {"--frames-hz", "frames_hz"},
         {"--overrun drop", "overrun=\"drop\""},
-        {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$1\")"},
-        {"--max-memory", "MaxMemory"},
-        {"unit_cd_per_m2", "cd_per_unit"}};
+        {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$2\")"},
+        {"--max-memory", "MaxMemory"}};
     std::string text = message;
     for (const auto& [option, argument] : arguments)
-        text = std::regex_replace(text, std::regex(option), argument);
+        text = std::regex_replace(text, std::regex(fmt::format("(^|[ (]){}(?![\\w./-])", option)),
+                                  fmt::format("$1{}", argument));
     return text;
+}
+
+std::string in_python(const InputError& error) {
+    const std::string_view where = error.where();
+    if (where.starts_with("--set ") || where == "--overrun drop" || where == "--rank")
+        return in_python(error.what());
+    return std::string(where) + in_python(error.what() + where.size());
 }
 
 namespace {
@@ -67,9 +73,9 @@ void translate(std::exception_ptr thrown) {
     try {
         if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const FileError& error) {
-        set_error(class_of(error.number()), in_python(error.what()));
+        set_error(class_of(error.number()), error.what());
     } catch (const InputError& error) {
-        set_error(PyExc_ValueError, in_python(error.what()));
+        set_error(PyExc_ValueError, in_python(error));
     } catch (const DeviceError& error) {
         set_error(PyExc_OSError, in_python(error.what()));
     } catch (const fs::filesystem_error& error) {
@@ -119,15 +125,15 @@ void check_name(const fs::path& file, const OutputName& name) {
 }
 
 void check_readable(const fs::path& file, const InputError& error) {
-    if (::access(file.c_str(), R_OK) != 0) throw FileError(errno, error.what());
+    if (::access(file.c_str(), R_OK) != 0) throw FileError(errno, in_python(error));
     std::error_code unknown;
-    if (fs::is_directory(file, unknown)) throw FileError(EISDIR, error.what());
+    if (fs::is_directory(file, unknown)) throw FileError(EISDIR, in_python(error));
 }
 
 void check_creatable(const fs::path& file, const InputError& error) {
     std::error_code unknown;
-    if (fs::exists(file, unknown)) throw FileError(EEXIST, error.what());
-    if (!fs::exists(folder_of(file), unknown)) throw FileError(ENOENT, error.what());
+    if (fs::exists(file, unknown)) throw FileError(EEXIST, in_python(error));
+    if (!fs::exists(folder_of(file), unknown)) throw FileError(ENOENT, in_python(error));
 }
 
 void bind_errors() {

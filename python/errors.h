@@ -16,8 +16,13 @@
 /// raises.
 namespace stipple::python {
 
-/// A message of the program as Python's users know its options: as arguments.
+/// A message of the program with its options as arguments. What is part of a name is no option:
+/// "shot--force.npy"; what an error names is a file unless it begins with an option.
 [[nodiscard]] std::string in_python(const std::string& message);
+[[nodiscard]] std::string in_python(const InputError& error);
+
+/// How Python shows a value, of values that are long the begin.
+[[nodiscard]] std::string short_text(const pybind11::object& value);
 
 /// \throws TypeError naming `argument` if it is neither a text nor a path, or holds a NUL.
 [[nodiscard]] std::filesystem::path path_in(const pybind11::object& value, const char* argument);

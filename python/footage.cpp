@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -50,9 +51,10 @@ Reading reading_of(const std::optional<std::string>& transfer, bool luminance,
 }
 
 void set_scale(Reading& reading, double scale) {
-    const auto factor = static_cast<float>(scale);
-    if (!(factor > 0 && std::isfinite(factor)))
-        throw InputError("scale", fmt::format("{} is no factor above 0", scale));
+    constexpr auto kMin = static_cast<double>(std::numeric_limits<float>::min());
+    constexpr auto kMax = static_cast<double>(std::numeric_limits<float>::max());
+    if (!(scale >= kMin && scale <= kMax))
+        throw InputError("scale", fmt::format("{} is outside {:.2g}..{:.2g}", scale, kMin, kMax));
     reading.options.scale = scale;
 }
 

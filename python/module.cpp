@@ -1,6 +1,26 @@
 #include "core/version.h"
 #include "python/bindings.h"
 
+namespace stipple::python {
+namespace {
+
+/// Instead of memory for an object that `__new__` made and `__init__` did not.
+void* refuse_uninitialised(std::size_t /*bytes*/) {
+    throw py::type_error("an object without a value: call its class, not __new__");
+}
+
+/// pybind11 gives such objects memory that no constructor has filled, when they are first used.
+void guard_classes(const py::module_& module) {
+    for (const auto& [name, member] : py::dict(module.attr("__dict__")))
+        if (py::isinstance<py::type>(member))
+            if (auto* type =
+                    py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(member.ptr())))
+                type->operator_new = &refuse_uninitialised;
+}
+
+}  // namespace
+}  // namespace stipple::python
+
 PYBIND11_MODULE(_stipple, module) {
     using namespace stipple::python;
     module.doc() = "The compiled part of the package stipple.";
@@ -24,4 +44,5 @@ PYBIND11_MODULE(_stipple, module) {
     bind_record(module);
     bind_live_preview(module);
     bind_live(module);
+    guard_classes(module);
 }

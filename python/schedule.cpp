@@ -42,17 +42,21 @@ ChosenSchedule choose_schedule(const py::object& name, const py::dict& settings,
                                const py::object& sensor) {
     const auto size = size_in(chosen_size, "size");
     ColumnAddressing addressing;
-    if (!sensor.is_none())
-        if (const auto timing = sensor_of(sensor).description.timing)
-            addressing = timing->addressing;
+    py::object chosen_sensor = py::none();
+    if (!sensor.is_none()) {
+        ChosenSensor chosen = sensor_of(sensor);
+        if (const auto& timing = chosen.description.timing) addressing = timing->addressing;
+        chosen_sensor = py::cast(std::move(chosen));
+    }
     ChosenSchedule schedule{.choice = SensorChoice{.schedule = path_in(name, "schedule").string(),
                                                    .schedule_settings = settings_of(settings),
                                                    .seed = whole_in(seed, "seed")},
                             .shape = checked_shape(size.first, size.second, 1, "size"),
-                            .made = {"", {}, ExposureSchedule(1, 1, 1, {0, 0}, {})}};
+                            .made = NamedSchedule{"", {}, ExposureSchedule(1, 1, 1, {0, 0}, {})},
+                            .sensor = std::move(chosen_sensor)};
     const auto make = [&] { return set_up_schedule(schedule.choice, schedule.shape, addressing); };
-    const fs::path path(schedule.choice.schedule);
-    schedule.made = path.has_parent_path() || path.has_extension() ? reading(path, make) : make();
+    schedule.made =
+        is_path(schedule.choice.schedule) ? reading(schedule.choice.schedule, make) : make();
     return schedule;
 }
 
@@ -66,6 +70,16 @@ void save(const ChosenSchedule& schedule, const fs::path& file, bool force) {
         output.close();
         pending.commit();
     });
+}
+
+/// What makes it again in another process: arguments of the constructor, or of a file, which may
+/// not be there, the text of a file of its exposures.
+py::object content_of(const ChosenSchedule& schedule) {
+    if (is_path(schedule.choice.schedule))
+        return py::str(code_text(schedule.made.schedule, schedule.made.name));
+    return py::make_tuple(
+        schedule.choice.schedule, settings_dict(schedule.choice.schedule_settings),
+        Tile(schedule.shape.rows, schedule.shape.cols), schedule.choice.seed, schedule.sensor);
 }
 
 /// Why the sensor cannot do it, or None.
@@ -90,8 +104,9 @@ void set_weights(ExposureSchedule& schedule,
 /// `weights_of` make them.
 std::string text_of(const py::array_t<ExposureRow>& rows, Tile tile, int period_slots,
                     const std::string& name, const py::object& weights) {
-    if (tile.first < 1 || tile.second < 1 || rows.ndim() != 1)
-        throw InputError("exposures", "give one axis, and a tile of at least 1 x 1 pixels");
+    if (tile.first < 1 || tile.second < 1 || rows.ndim() != 1 || rows.size() == 0)
+        throw InputError("exposures",
+                         "give a list of at least one, and a tile of at least 1 x 1 pixels");
     if (name.size() > kMaxNameBytes || !is_plain_text(name, false))
         throw InputError(
             "name", fmt::format("give at most {} bytes without control characters", kMaxNameBytes));
@@ -241,6 +256,7 @@ mask. A sample is the sum of weight x light over the open slots of its exposure.
              "Why the sensor cannot do it: too few charge stores or too little time; or None.")
         .def("save", &save, py::arg("path"), py::arg("force") = false,
              "Writes it as a file of kind \"code\", which the program reads too.")
+        .def("_content", &content_of)
         .def("__repr__", [](const ChosenSchedule& self) {
             const ExposureSchedule& plan = self.made.schedule;
             return fmt::format("<stipple.Schedule {}: tile {} x {}, period {} slots>",

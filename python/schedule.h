@@ -16,6 +16,7 @@ struct ChosenSchedule {
     SensorChoice choice;  ///< `schedule`, `schedule_settings` and `seed`
     FrameShape shape;
     NamedSchedule made;
+    pybind11::object sensor;  ///< whose columns it suits, a ChosenSensor of Python; else None
 };
 
 /// All exposures of the tile: an array with the fields row, col, first_slot and open_slots.

@@ -2,6 +2,7 @@
 
 #include <pybind11/pytypes.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,14 @@ struct ChosenSensor {
     SensorDescription description;
 };
 
+/// Whether the name of a sensor or schedule is that of a file.
+[[nodiscard]] bool is_path(const std::filesystem::path& name);
+
 /// "key=value" of a dict: texts as on the command line, other values as TOML writes them.
 [[nodiscard]] std::vector<std::string> settings_of(const pybind11::dict& settings);
+
+/// The dict of which `settings_of` makes these texts.
+[[nodiscard]] pybind11::dict settings_dict(const std::vector<std::string>& texts);
 
 /// \throws InputError as read_sensor_file, FileError for a path that leads nowhere.
 [[nodiscard]] ChosenSensor choose_sensor(const pybind11::object& name,

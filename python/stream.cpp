@@ -26,6 +26,37 @@ py::dict counts_of(const StreamFile& stream) {
     });
 }
 
+std::string repr_of(StreamFile& stream) {
+    const std::string name = stream.is_temporary() ? "(temporary)" : stream.path().string();
+    if (!stream.is_open()) return fmt::format("<stipple.Stream {}: closed>", name);
+    const FrameShape shape = stream.header().shape;
+    return fmt::format("<stipple.Stream {}: {} slot{} of {} x {} x {}>", name, stream.slots(),
+                       stream.slots() == 1 ? "" : "s", shape.cols, shape.rows, shape.planes);
+}
+
+/// What lets it stand where Python wants a context, a path, an iterable, or what pickle takes.
+void bind_protocols(py::class_<StreamFile>& stream) {
+    stream.def("__repr__", &repr_of)
+        .def("close", &StreamFile::close,
+             "Closes the file, as the end of a with block does. A temporary one is gone then.")
+        .def("__enter__", [](const py::object& self) { return self; })
+        .def("__exit__", [](StreamFile& self, const py::args& /*exception*/) { self.close(); })
+        .def(
+            "__fspath__",
+            [](const StreamFile& self) { return py::cast(self.saved_path()).attr("__fspath__")(); })
+        .def("__reduce__",
+             [](const StreamFile& self) {
+                 const auto call = py::module_::import("operator").attr("methodcaller");
+                 return py::make_tuple(call("open", self.saved_path()),
+                                       py::make_tuple(py::type::of<StreamFile>()));
+             })
+        .def("__len__", &StreamFile::slots)
+        .def("__iter__", [](const py::object& self) {
+            const py::module_ python = py::module_::import("builtins");
+            return python.attr("map")(self.attr("samples"), python.attr("range")(py::len(self)));
+        });
+}
+
 }  // namespace
 
 void bind_sample_rows();
@@ -44,7 +75,9 @@ py::dict header_dict(const StreamHeader& header) {
 
 void bind_stream(py::module_& module) {
     bind_sample_rows();
-    py::class_<StreamFile>(module, "Stream", "A sample stream: what leaves the chip, in a file.")
+    py::class_<StreamFile> stream(module, "Stream",
+                                  "A sample stream: what leaves the chip, in a file.");
+    stream
         .def_static(
             "open",
             [](const py::object& path) {
@@ -89,14 +122,8 @@ of the readout. Fast from slot to slot; going back begins at the first. Raises I
              "Reads the stream through: what it holds and what is damaged, as \"stipple info\".")
         .def("save", &StreamFile::save, py::arg("path"), py::arg("force") = false,
              py::call_guard<py::gil_scoped_release>(),
-             "Copies it to a file. force: replace one that is there. Raises OSError.")
-        .def("__repr__", [](StreamFile& self) {
-            const FrameShape shape = self.header().shape;
-            return fmt::format("<stipple.Stream {}: {} slot{} of {} x {} x {}>",
-                               self.is_temporary() ? "(temporary)" : self.path().string(),
-                               self.slots(), self.slots() == 1 ? "" : "s", shape.cols, shape.rows,
-                               shape.planes);
-        });
+             "Copies it to a file. force: replace one that is there. Raises OSError.");
+    bind_protocols(stream);
 }
 
 }  // namespace stipple::python

@@ -43,10 +43,13 @@ class StreamFile {
     /// A reader at its beginning.
     [[nodiscard]] StreamReader reader(ReadPolicy policy = ReadPolicy::kTolerant) const;
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    [[nodiscard]] bool is_temporary() const { return temporary_ != nullptr; }
+    [[nodiscard]] bool is_temporary() const { return is_temporary_; }
+    /// Its path, by which other processes can open it. \throws InputError of a temporary file.
+    [[nodiscard]] std::filesystem::path saved_path() const;
     /// For messages.
     [[nodiscard]] std::string name() const;
-    [[nodiscard]] const StreamHeader& header() const { return reader_.header(); }
+    /// \throws InputError if it is closed, as all that follows but `figures`.
+    [[nodiscard]] const StreamHeader& header() const { return opened().header(); }
 
     /// Of its emulation, a dict; None if it was opened.
     [[nodiscard]] const pybind11::object& figures() const { return figures_; }
@@ -61,15 +64,21 @@ class StreamFile {
     /// Copies it to a file. \throws FileError, DeviceError.
     void save(const std::filesystem::path& file, bool force) const;
 
+    [[nodiscard]] bool is_open() const { return reader_.has_value(); }
+    /// Deletes a temporary file.
+    void close();
+
   private:
+    [[nodiscard]] const StreamReader& opened() const;
     bool advance();
 
     std::unique_ptr<TemporaryFile> temporary_;
+    bool is_temporary_;
     std::filesystem::path path_;
     pybind11::object figures_;
-    StreamReader reader_;
-    SamplePacket packet_;      ///< that `reader_` has read last
-    bool has_packet_ = false;  ///< else `reader_` has read none, or is at the end
+    std::optional<StreamReader> reader_;  ///< until it is closed
+    SamplePacket packet_;                 ///< that `reader_` has read last
+    bool has_packet_ = false;             ///< else `reader_` has read none, or is at the end
     std::optional<std::int64_t> slots_;
 };
 

@@ -72,17 +72,38 @@ void TemporaryFile::unname() {
 }
 
 StreamFile::StreamFile(fs::path file, py::object figures)
-    : path_(std::move(file)),
+    : is_temporary_(false),
+      path_(std::move(file)),
       figures_(std::move(figures)),
       reader_(reading(path_, [&] { return StreamReader(path_); })) {}
 
 StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file, py::object figures)
     : temporary_(std::move(file)),
+      is_temporary_(true),
       path_(temporary_->path()),
       figures_(std::move(figures)),
       reader_(path_) {}
 
+fs::path StreamFile::saved_path() const {
+    if (is_temporary_)
+        throw InputError(name(),
+                         "is in a temporary file, which other processes cannot open; give "
+                         "it a name by save or output, and open that");
+    return fs::absolute(path_);
+}
+
+const StreamReader& StreamFile::opened() const {
+    if (!reader_) throw InputError(name(), "is closed");
+    return *reader_;
+}
+
+void StreamFile::close() {
+    reader_.reset();
+    temporary_.reset();
+}
+
 StreamReader StreamFile::reader(ReadPolicy policy) const {
+    static_cast<void>(opened());
     StreamReader reader = reading(path_, [&] { return StreamReader(path_, policy); });
     reader.use_name(name());
     return reader;
@@ -93,7 +114,8 @@ std::string StreamFile::name() const {
 }
 
 bool StreamFile::advance() {
-    has_packet_ = reader_.next(packet_);
+    static_cast<void>(opened());
+    has_packet_ = reader_->next(packet_);
     return has_packet_;
 }
 
@@ -111,7 +133,7 @@ StreamReport StreamFile::read_through() const {
 }
 
 std::int64_t StreamFile::slots() {
-    if (!slots_) slots_ = reader_.slots();
+    if (!slots_) slots_ = opened().slots();
     if (!slots_) slots_ = read_through().slots;
     return *slots_;
 }
@@ -133,6 +155,7 @@ py::array StreamFile::samples(std::int64_t slot) {
 }
 
 void StreamFile::save(const fs::path& file, bool force) const {
+    static_cast<void>(opened());
     check_name(file, kStreamName);
     creating(file, [&] {
         PendingOutput pending(file, force);

@@ -44,12 +44,29 @@ def _rows(exposures: Any) -> npt.NDArray[np.void]:
     return np.array(rows, dtype=EXPOSURE)
 
 
+def _with_file(text: str, size: Tuple[int, int]) -> "Schedule":
+    """Of the text of a file. The program knows schedules as files, so there is one that goes with the object."""
+    folder = Path(tempfile.mkdtemp(prefix="stipple_"))
+    try:
+        file = folder / "custom.toml"
+        file.write_text(text, encoding="utf-8")
+        schedule = Schedule(file, size=size)
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
+    weakref.finalize(schedule, shutil.rmtree, folder)
+    return schedule
+
+
 class Schedule(_stipple.Schedule):
     __doc__ = _stipple.Schedule.__doc__
 
-    @classmethod
+    def __reduce__(self) -> Tuple[Any, ...]:
+        content = self._content()
+        return (_with_file, (content, self.size)) if isinstance(content, str) else (Schedule, content)
+
+    @staticmethod
     def from_exposures(
-        cls,
         exposures: npt.ArrayLike,
         tile: Tuple[int, int],
         period_slots: int,
@@ -71,19 +88,7 @@ class Schedule(_stipple.Schedule):
 
         Raises ValueError where two exposures of a pixel share a slot or an exposure is longer than the period.
         """
-        rows = _rows(exposures)
-        # The program knows schedules as files, so this is one that goes with the object.
-        folder = Path(tempfile.mkdtemp(prefix="stipple_"))
-        try:
-            file = folder / "custom.toml"
-            text = _stipple.schedule_text(rows, tile, period_slots, name, weights)
-            file.write_text(text, encoding="utf-8")
-            schedule = cls(file, size=size)
-        except BaseException:
-            shutil.rmtree(folder)
-            raise
-        weakref.finalize(schedule, shutil.rmtree, folder)
-        return schedule
+        return _with_file(_stipple.schedule_text(_rows(exposures), tile, period_slots, name, weights), size)
 
 
 def load(

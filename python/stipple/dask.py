@@ -24,6 +24,7 @@ from ._workers import Fingerprint, _fingerprint, check_workers, require_same
 __all__ = ["check_workers", "decode", "decode_to", "explore", "require_same"]
 
 Name = Union[str, "PathLike[str]"]
+Source = Union[Stream, Name]
 
 
 class _Job(NamedTuple):
@@ -72,7 +73,7 @@ def _calibration_of(stream: str, calibration: Optional[Name]) -> str:
     return "none" if calibration == "none" else path.abspath(fsdecode(calibration))
 
 
-def _job(client: Any, stream: Name, method: str, more: Mapping[str, Any]) -> _Job:
+def _job(client: Any, stream: Source, method: str, more: Mapping[str, Any]) -> _Job:
     caller = check_workers(client)
     name = path.abspath(fsdecode(stream))
     chip = _calibration_of(name, more["calibration"])
@@ -93,7 +94,7 @@ def _gather(client: Any, tasks: List[Any]) -> List[Any]:
 
 
 def decode(
-    stream: Name,
+    stream: Source,
     client: Any,
     method: str = "best",
     options: Mapping[str, object] = {},
@@ -104,7 +105,7 @@ def decode(
 ) -> npt.NDArray[np.float32]:
     """The video of a stream, as `stipple.decode` gives it; each block of 48 slots is a task of the cluster.
 
-    stream: the path of a file, which holds its number of slots: one that was written to its end.
+    stream: the path of a file, or a Stream of one. It holds its number of slots: it was written to its end.
     client: a dask.distributed.Client.
     method, options, fill_gaps, calibration: as for `stipple.decode`.
     threads: of each task; 0 means all cores of its worker.
@@ -120,7 +121,7 @@ def decode(
 
 def decode_to(
     output: Name,
-    stream: Name,
+    stream: Source,
     client: Any,
     method: str = "best",
     options: Mapping[str, object] = {},

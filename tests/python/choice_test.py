@@ -1,5 +1,7 @@
 """Sensors and schedules are those of config/, with settings as on the command line."""
 
+import os
+import pickle
 import unittest
 
 import numpy as np
@@ -54,7 +56,7 @@ class ChoiceTest(ProgramTest):
         self.assertEqual(stream.exposures().tolist(), made.exposures().tolist())
 
     def test_exposures_of_ones_own_must_be_legal(self):
-        for message, exposures in {"share|already open": [(0, 0, 0, 0b11), (0, 0, 1, 0b1)],
+        for message, exposures in {"exposures: give a list of at least one": [], "share|already open": [(0, 0, 0, 0b11), (0, 0, 1, 0b1)],
                                    "outside the tile": [(1, 0, 0, 1)], "period": [(0, 0, 0, 2**20 - 1)],
                                    "": [(0, 0, 0, 0b10)]}.items():
             with self.subTest(exposures), self.assertRaisesRegex(ValueError, message):
@@ -89,10 +91,16 @@ class ChoiceTest(ProgramTest):
         with self.assertRaisesRegex(ValueError, "size: -1 is outside"):
             stipple.Schedule(size=(-1, 4))
 
-    def test_numbers_that_are_none_are_told_as_such(self):
+    def test_values_that_no_setting_takes_are_told_as_what_they_are(self):
         for value in (float("nan"), np.float32("inf")):
             with self.assertRaisesRegex(ValueError, "read_noise_e: (?!.*is text)"):
                 stipple.Sensor("paper", {"read_noise_e": value})
+        for value in (10**400, 2**63, -2**63 - 1, [10**400]):
+            with self.assertRaisesRegex(ValueError, r"setting bit_depth: -?\d+( [.]{3})? is outside -2\^63"):
+                stipple.Sensor("paper", {"bit_depth": value})
+        for value in (None, {"a": 1}, [1, None]):
+            with self.assertRaisesRegex(TypeError, "setting bit_depth: .* is not a text, a number, True"):
+                stipple.Sensor("paper", {"bit_depth": value})
 
     def test_a_size_that_no_array_has_is_a_ValueError(self):
         for size in ((0, 4), (70000, 4), (65535, 65535), (2**40, 4)):
@@ -100,6 +108,38 @@ class ChoiceTest(ProgramTest):
                          lambda size: stipple.Schedule("a_rather_long_folder_name/a_long_file.toml", size=size)):
                 with self.subTest(size), self.assertRaisesRegex(ValueError, "size: a frame of"):
                     make(size)
+
+    def test_a_pickled_sensor_has_its_settings(self):
+        sensor = stipple.Sensor("lux1310", {"read_noise_e": 2.5, "name": "a=b", "timing.addressing": "group"})
+        again = pickle.loads(pickle.dumps(sensor))
+        self.assertEqual((repr(again), again.name, again.read_noise_e), (repr(sensor), "a=b", 2.5))
+        (self.folder / "mine.toml").write_text("bit_depth = 11\n")
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        pickled = pickle.dumps(stipple.Sensor("mine.toml"))
+        os.chdir("/")
+        self.assertEqual(pickle.loads(pickled).bit_depth, 11)
+
+    def test_a_pickled_schedule_makes_the_same_stream(self):
+        light = np.random.default_rng(1).random((20, 32, 64), dtype=np.float32)
+        mine = stipple.Schedule.from_exposures([(0, 0, 0, 0b1011), (0, 1, 1, 1)], (1, 2), 4, name="mine", size=(32, 64))
+        grey = stipple.Schedule.from_exposures(mine.exposures(), (1, 2), 4, weights=mine.weights() / 3, size=(32, 64))
+        for schedule, sensor in ((mine, "paper"), (stipple.Schedule("random", size=(32, 64), seed=3), "paper"),
+                                 (stipple.Schedule("hardware_tiled", {"tile_rows": 8}, (32, 64), 3, "lux1310"), "lux1310"),
+                                 (grey, "paper")):
+            with self.subTest(schedule):
+                expected = stipple.emulate(light, sensor, schedule, 3)
+                pickled = pickle.dumps(schedule)
+                again = pickle.loads(pickled)
+                self.assertEqual((again.name, again.size), (schedule.name, schedule.size))
+                stream = stipple.emulate(light, sensor, again, 3)
+                self.assertEqual(stream.header["schedule"], expected.header["schedule"])
+                np.testing.assert_array_equal(stream.weights(), expected.weights())
+                for slot in range(20):
+                    np.testing.assert_array_equal(stream.samples(slot), expected.samples(slot))
+        pickled = pickle.dumps(mine)
+        del mine  # and its file
+        self.assertEqual(pickle.loads(pickled).exposures().tolist(), [(0, 0, 0, 0b1011), (0, 1, 1, 1)])
 
     def test_what_is_no_name_is_a_TypeError(self):
         for message, call in {"sensor: 3 is neither": lambda: stipple.Sensor(3),
@@ -111,6 +151,7 @@ class ChoiceTest(ProgramTest):
                               "seed: 1.5 is no whole": lambda: stipple.emulate(np.zeros((2, 8, 8)), seed=1.5),
                               "seed: 'a' is no whole": lambda: stipple.Schedule(seed="a"),
                               "size: '8x8' is not": lambda: stipple.Schedule(size="8x8"),
+                              "method: 2 is not a text": lambda: stipple.decode("clip.stipple", 2),
                               "size: 1.5 is no whole": lambda: stipple.timing("lux1310", size=(8, 1.5)),
                               r"video: 'a\\x00": lambda: stipple.load("a\0")}.items():
             with self.subTest(message), self.assertRaisesRegex(TypeError, message):

@@ -54,9 +54,19 @@ class DaskTest(ProgramTest):
             with self.subTest(slots=slots):
                 clip = self.write_clip(slots, planes)
                 for method in ("naive", "fast"):
-                    np.testing.assert_array_equal(stipple.dask.decode(clip, PickledTasks(), method),
-                                                  stipple.decode(clip, method))
+                    for source in (clip, stipple.Stream.open(clip)):
+                        np.testing.assert_array_equal(stipple.dask.decode(source, PickledTasks(), method),
+                                                      stipple.decode(clip, method))
                 clip.unlink()
+
+    def test_a_stream_without_a_file_is_refused(self):
+        stream = stipple.emulate(np.full((5, 6, 10), 0.2))
+        for call in (stipple.dask.decode, functools.partial(stipple.dask.decode_to, self.folder / "windows")):
+            with self.assertRaisesRegex(ValueError, "stream: is in a temporary file"):
+                call(stream, PickledTasks())
+        stream.save(self.folder / "clip.stipple")
+        stream = stipple.Stream.open(self.folder / "clip.stipple")
+        self.assertEqual(stipple.dask.decode_to(self.folder / "windows", stream, PickledTasks(), "naive"), 1)
 
     def test_options_reach_the_workers(self):
         clip = self.write_clip(100)

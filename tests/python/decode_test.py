@@ -122,6 +122,8 @@ class DecodeTest(ProgramTest):
             self.decodes("nave")
         with self.assertRaisesRegex(ValueError, "decoder setting round: is unknown"):
             self.decodes("fast", {"round": 1})
+        with self.assertRaisesRegex(ValueError, 'options: hitomi2011 needs {"dictionary": FILE}'):
+            self.decodes("hitomi2011")
         with self.assertRaisesRegex(ValueError, "until: 0 is not above 0"):
             self.decodes("fast", until=0)
         with self.assertRaises(FileNotFoundError):

@@ -175,10 +175,25 @@ class EmulateTest(ProgramTest):
                 "was made for 480 x 640 pixels": dict(video=light(), schedule=stipple.Schedule()),
                 "is none of stretch, drop": dict(video=light(), overrun="bend"),
                 "is none of linear, gamma22, srgb": dict(video=light(), transfer="log"),
+                "scale: 1e[+]300 is outside 1.2e-38..3.4e[+]38": dict(video=light(), scale=1e300),
+                "scale: 0 is outside": dict(video=light(), scale=0),
                 "max_value: -1 is not above 0": dict(video=light(), max_value=-1),
                 "max_value: 1e-50 is not above 0": dict(video=light(), max_value=1e-50)}.items():
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 stipple.emulate(**arguments)
+
+    def test_names_in_messages_are_those_that_were_given(self):
+        self.write_array("light.npy", light())
+        for name in ("shot--force.npy", "run --scale2.npy", "--force", "a --frames-hz.npy", "a --transfer srgb b", "unit_cd_per_m2"):
+            for call in (stipple.load, stipple.decode,
+                         lambda file: stipple.decode("light.npy", "hitomi2011", {"dictionary": file}),
+                         lambda file: stipple.emulate(light(), file + ".toml")):
+                with self.subTest(name), self.assertRaises(FileNotFoundError) as raised:
+                    call(name)
+                self.assertTrue(str(raised.exception).startswith(name), raised.exception)
+            (self.folder / f"c {name}.stipple").touch()
+            with self.subTest(name), self.assertRaisesRegex(FileExistsError, f"c {name}.stipple: exists already.* force=True"):
+                stipple.emulate(light(), output=self.folder / f"c {name}.stipple")
 
     def test_masked_values_are_refused(self):
         light = np.ma.array(np.full((2, 4, 4), 0.5), mask=False)

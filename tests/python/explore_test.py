@@ -134,7 +134,7 @@ class ExploreTest(ProgramTest):
         self.write_space(SPACE)
         with self.assertRaisesRegex(ValueError, "budget: \"soon\" is neither a time"):
             stipple.explore(self.folder / "space.toml", self.folder / "results", budget="soon")
-        with self.assertRaisesRegex(ValueError, "\"beauty\" is none of slots_per_second"):
+        with self.assertRaisesRegex(ValueError, "^rank: \"beauty\" is none of slots_per_second"):
             stipple.explore(self.folder / "space.toml", self.folder / "results", rank="beauty")
         with self.assertRaisesRegex(TypeError, "client is a NoneType.*python3-distributed"):
             stipple.dask.explore(self.folder / "space.toml", self.folder / "results", None)

@@ -1,11 +1,12 @@
 """Recordings of cameras, frame by frame."""
 
+import json
 import unittest
 import warnings
 
 import numpy as np
 import stipple
-from program import ProgramTest
+from program import ProgramTest, project_path
 
 
 class RecordingTest(ProgramTest):
@@ -32,6 +33,12 @@ class RecordingTest(ProgramTest):
                                       for frame in frames}, {(name, "complete", "none", 0)})
                     self.assertEqual(frames[0].significant_bits, 8 * dn.itemsize)
                     self.assertEqual(frames[1].device_ns - frames[0].device_ns, 5_000_000)
+
+    def test_padding_at_the_end_of_rows_is_no_pixel(self):
+        frame, = stipple.Recording.open(project_path("tests/golden/recording/padded_rows.strec"))
+        expected = json.loads(project_path("tests/golden/recording/padded_rows.json").read_text())["frames"][0]
+        self.assertGreater(expected["stride_bytes"], 2 * expected["width"])
+        np.testing.assert_array_equal(frame.dn, expected["samples"])
 
     def test_is_footage(self):
         dn = np.full((30, 8, 8), 52428, np.uint16)

@@ -1,10 +1,23 @@
 """What a stream tells is what the program tells, and what its schedule says."""
 
+import multiprocessing
+import os
+import pickle
+import struct
 import unittest
 
 import numpy as np
 import stipple
 from program import ProgramTest
+
+
+def crc32c(data, seed=0):
+    crc = seed ^ 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ 0x82F63B78 * (crc & 1)
+    return crc ^ 0xFFFFFFFF
 
 
 class StreamTest(ProgramTest):
@@ -69,6 +82,68 @@ class StreamTest(ProgramTest):
         counts = stream.counts()
         self.assertFalse(counts["complete"])
         self.assertEqual(stream.slots(), counts["slots"])
+
+    def test_slots_that_the_index_does_not_count_are_damage(self):
+        path = self.folder / self.write_stream(slots=30)
+        content = path.read_bytes()
+        begin, seed = struct.unpack("<Q", content[-16:-8])[0], content[struct.unpack("<I", content[12:16])[0] - 4:][:4]
+        entries = content[begin + 36:][:16 * 20]
+        index = content[begin:begin + 8] + struct.pack("<QHHIII", 20, 0, 0, 20, len(entries), crc32c(entries))
+        marker = content[-20:-4]
+        for head, payload in ((index, entries), (marker, b"")):
+            content = content[:begin] + head + struct.pack("<I", crc32c(head, *struct.unpack("<I", seed))) + payload
+            begin = len(content)
+        path.write_bytes(content)
+        stream = stipple.Stream.open(path)
+        self.assertEqual(stream.slots(), 20)
+        counts = stream.counts()
+        self.assertEqual((counts["slots"], counts["samples"]), (20, sum(map(len, stream))))
+        self.assertEqual(counts["damage"][0]["cause"], "slot 20 is not one of the 20 in the index")
+
+    def test_is_a_sequence_of_slots(self):
+        stream = stipple.emulate(np.full((7, 6, 10), 0.2))
+        self.assertEqual(len(stream), 7)
+        for slot, samples in enumerate(stream):
+            np.testing.assert_array_equal(samples, stream.samples(slot))
+        self.assertEqual(slot, 6)
+
+    def test_is_closed_after_its_block(self):
+        files = set(os.listdir("/proc/self/fd"))
+        with stipple.emulate(np.full((5, 6, 10), 0.2)) as stream:
+            self.assertEqual(len(stream), 5)
+        self.assertEqual(set(os.listdir("/proc/self/fd")), files)
+        self.assertEqual(repr(stream), "<stipple.Stream (temporary): closed>")
+        for use in (stream.counts, lambda: stream.samples(0), lambda: stream.save(self.folder / "a"), stream.exposures,
+                    lambda: stream.header, lambda: stipple.decode(stream)):
+            with self.assertRaisesRegex(ValueError, "stream: is closed"):
+                use()
+        stream.close()
+
+    def test_is_pickled_by_its_path(self):
+        stream = stipple.emulate(np.full((5, 6, 10), 0.2))
+        for use in (pickle.dumps, os.fspath):
+            with self.assertRaisesRegex(ValueError, "stream: is in a temporary file"):
+                use(stream)
+        self.write_stream()
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        stream = stipple.Stream.open("clip.stipple")
+        with multiprocessing.get_context("spawn").Pool(1, initializer=os.chdir, initargs=("/",)) as pool:
+            decoded = pool.apply(stipple.decode, (stream, "naive"))
+        np.testing.assert_array_equal(decoded, stipple.decode(stream, "naive"))
+
+    def test_an_object_that_no_constructor_made_is_a_TypeError(self):
+        for kind in (stipple.Stream, stipple.Sensor, stipple.Schedule, stipple.Frame, stipple.Recording, stipple.MaxMemory,
+                     stipple.ComparedVideos):
+            made = kind.__new__(kind)
+            for name in set(dir(kind)) & {"samples", "slots", "bit_depth", "tile", "dn", "features", "__enter__", "psnr_db"}:
+                with self.subTest(kind, name=name), self.assertRaisesRegex(TypeError, "an object without a value"):
+                    value = getattr(made, name)
+                    if name == "__enter__" and kind is stipple.Stream:
+                        made.slots()
+                    value(0) if name == "samples" else value()
+        with self.assertRaisesRegex(TypeError, "without a value"):
+            stipple.emulate(np.full((5, 6, 10), 0.2), stipple.Sensor.__new__(stipple.Sensor))
 
     def test_does_not_replace_a_file_unless_told(self):
         self.write_stream()
