@@ -88,7 +88,7 @@ LivePreviewOptions show_in(const std::string& file) {
                 },
             .tell =
                 [](const std::string& failure) {
-                    say_note("no preview: {}; the recording goes on", failure);
+                    say_warning("no preview: {}; the recording goes on", failure);
                 },
             .keep_going = [] { return stop_signal() == 0; }};
 }

@@ -57,9 +57,9 @@ std::string gaps_text(const RecordingFootage& footage) {
 void say_what_is_wrong(const std::string& file, const RecordingFootage& footage) {
     const RecordingReport& report = footage.recording().report();
     if (footage.missing_frames() > 0)
-        say_note("{}: {} missing or incomplete: {}", file,
-                 counted(footage.missing_frames(), "frame"), gaps_text(footage));
-    if (!footage.recording().end()) say_note("{}: was cut off before its end", file);
+        say_warning("{}: {} missing or incomplete: {}", file,
+                    counted(footage.missing_frames(), "frame"), gaps_text(footage));
+    if (!footage.recording().end()) say_warning("{}: was cut off before its end", file);
     const std::size_t places = report.damage.size() + report.unlisted_damage;
     if (places == 0) return;
     std::string text = "the recording is damaged";

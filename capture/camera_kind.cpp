@@ -32,10 +32,10 @@ std::span<const CameraKind> camera_kinds() {
 const CameraKind& camera_kind(std::string_view address) {
     for (const CameraKind& kind : kKinds)
         if (address.starts_with(fmt::format("{}:", kind.prefix))) return kind;
-    throw InputError(address,
-                     fmt::format("is no address of a camera: write {} (\"stipple capture list\" "
-                                 "shows what there is)",
-                                 address_forms()));
+    throw InputError(
+        address, fmt::format("is not the address of a camera: write {} (\"stipple capture list\" "
+                             "shows what there is)",
+                             address_forms()));
 }
 
 std::string address_forms() {

@@ -150,7 +150,7 @@ Series series_of(const std::vector<ImageStack>& stacks, int bits) {
     for (const ImageStack& stack : stacks) {
         const std::string name = fmt::format("images[{}]", series.groups.size());
         if (stack.dn.ndim() != 3 || stack.dn.shape(0) < 2 || stack.dn.size() == 0)
-            throw InputError(name, "is no array (image, row, col) of two images or more");
+            throw InputError(name, "is not an array (image, row, col) of two images or more");
         series.rows = static_cast<int>(stack.dn.shape(1));
         series.cols = static_cast<int>(stack.dn.shape(2));
         auto& group = series.groups.emplace_back();

@@ -98,7 +98,8 @@ std::uint64_t whole_in(const py::object& value, const char* argument) {
     const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (!index) {
         PyErr_Clear();
-        throw py::type_error(fmt::format("{}: {} is no whole number", argument, short_text(value)));
+        throw py::type_error(
+            fmt::format("{}: {} is not a whole number", argument, short_text(value)));
     }
     const unsigned long long number = PyLong_AsUnsignedLongLong(index.ptr());
     if (PyErr_Occurred() != nullptr) {

@@ -94,9 +94,10 @@ void set_weights(ExposureSchedule& schedule,
     const std::vector<py::ssize_t> shape{schedule.period_slots(), schedule.tile_rows(),
                                          schedule.tile_cols()};
     if (!std::equal(shape.begin(), shape.end(), weights.shape(), weights.shape() + weights.ndim()))
-        throw InputError("weights", fmt::format("are no array (slots, rows, columns) of {} x {} x "
-                                                "{}, the period and the tile",
-                                                shape[0], shape[1], shape[2]));
+        throw InputError("weights",
+                         fmt::format("are not an array (slots, rows, columns) of {} x {} x "
+                                     "{}, the period and the tile",
+                                     shape[0], shape[1], shape[2]));
     schedule.set_weights({weights.data(), weights.data() + weights.size()});
 }
 

@@ -77,7 +77,7 @@ std::vector<std::string> settings_of(const py::dict& settings) {
     for (const auto& [key, value] : settings) {
         if (!py::isinstance<py::str>(key))
             throw py::type_error(
-                fmt::format("key {} of a setting is no text", std::string(py::repr(key))));
+                fmt::format("key {} of a setting is not a text", std::string(py::repr(key))));
         texts.push_back(fmt::format(
             "{}={}", key.cast<std::string>(),
             setting_text(py::reinterpret_borrow<py::object>(value), key.cast<std::string>())));

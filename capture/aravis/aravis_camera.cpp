@@ -72,7 +72,7 @@ int packet_bytes_of(const std::string& address, const std::string& text) {
     const auto bytes = parsed_number<int>(text);
     if (!bytes || *bytes < 220 || *bytes > 65500)
         throw InputError(fmt::format("{}: {}", address, kPacketSize),
-                         fmt::format("\"{}\" is no number from 220 to 65500", text));
+                         fmt::format("\"{}\" is not a number from 220 to 65500", text));
     return *bytes;
 }
 

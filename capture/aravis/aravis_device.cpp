@@ -138,7 +138,7 @@ AravisDevice::AravisDevice(std::string address, void* device)
     GlibError error;
     impl_->camera = arv_camera_new_with_device(static_cast<ArvDevice*>(device), error.slot());
     if (impl_->camera == nullptr)
-        throw DeviceError(address_, fmt::format("is no usable camera: {}", error.text()));
+        throw DeviceError(address_, fmt::format("is not a usable camera: {}", error.text()));
     impl_->device = arv_camera_get_device(impl_->camera);
     arv_device_set_range_check_policy(impl_->device, ARV_RANGE_CHECK_POLICY_ENABLE);
 }

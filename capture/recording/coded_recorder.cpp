@@ -35,7 +35,7 @@ CodedHeader header_of(const CameraDescription& camera) {
     return decode_coded_header(digits->second, camera.address + ": " + kFeature);
 }
 
-/// What is no number says nothing.
+/// What is not a number says nothing.
 std::optional<std::int64_t> slots_to_come(const CameraDescription& camera,
                                           const CaptureLimits& limits) {
     std::optional<std::int64_t> slots = limits.total();

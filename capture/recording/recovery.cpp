@@ -50,9 +50,10 @@ Recovered recover(const fs::path& partial, const fs::path& output,
                   const std::function<void()>& check) {
     const Recoverable kind = recoverable(partial);
     if (kind == Recoverable::kNo)
-        throw InputError(partial.string(),
-                         "cannot be recovered: it is no stream or recording with a whole header, "
-                         "and other files are whole at their end only; delete it");
+        throw InputError(
+            partial.string(),
+            "cannot be recovered: it is not a stream or recording with a whole header, "
+            "and other files are whole at their end only; delete it");
     const bool stream = kind == Recoverable::kStream;
     const Recovered whole =
         stream ? whole_of_stream(partial, check) : whole_of_recording(partial, check);

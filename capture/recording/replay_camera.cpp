@@ -37,14 +37,14 @@ ReplaySettings parse(const CameraSettings& settings) {
         } else if (name == "AcquisitionFrameRate") {
             result.rate_hz = number_setting(value);
             if (!result.rate_hz || *result.rate_hz < 0 || *result.rate_hz > 1e6)
-                throw InputError(name, fmt::format("\"{}\" is no rate of 0..1e6 Hz", value));
+                throw InputError(name, fmt::format("\"{}\" is not a rate of 0..1e6 Hz", value));
         } else if (name == "Loop") {
             if (value != "0" && value != "1")
                 throw InputError(name, fmt::format("\"{}\" is neither 0 nor 1", value));
             result.loop = value == "1";
         } else {
             throw InputError(name,
-                             "is no setting of a replay; it has AcquisitionFrameRate, Loop and "
+                             "is not a setting of a replay; it has AcquisitionFrameRate, Loop and "
                              "PixelFormat");
         }
     }
@@ -195,7 +195,7 @@ std::unique_ptr<Camera> open_replay_camera(const std::string& address,
                                            const CameraSettings& settings,
                                            const CameraBuffers& buffers) {
     const std::string_view file = replayed_file(address);
-    if (file.empty()) throw InputError(address, "is no replay: write replay:FILE");
+    if (file.empty()) throw InputError(address, "is not a replay: write replay:FILE");
     return std::make_unique<ReplayCamera>(std::string(file), parse(settings), buffers);
 }
 

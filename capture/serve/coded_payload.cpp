@@ -115,11 +115,11 @@ CodedHeader decode_coded_header(const std::string& digits, const std::string& wh
     for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
         const int high = digit_value(digits[i]);
         const int low = digit_value(digits[i + 1]);
-        if (high < 0 || low < 0) throw InputError(where, "is no hexadecimal number");
+        if (high < 0 || low < 0) throw InputError(where, "is not a hexadecimal number");
         bytes.push_back(static_cast<std::uint8_t>(16 * high + low));
     }
     if (bytes.size() < kHeaderStartBytes || header_bytes(bytes, where) != bytes.size())
-        throw InputError(where, "is no whole header of a sample stream");
+        throw InputError(where, "is not a whole header of a sample stream");
     return {decode_header(bytes, where), framing_of(bytes)};
 }
 

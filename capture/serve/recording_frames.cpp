@@ -18,7 +18,7 @@ void check_format(const FrameLayout& layout, const std::string& where) {
                                             "served; use \"stipple capture replay\"",
                                             format.name));
     if (layout.width * format.bits_per_pixel % 8 != 0)
-        throw InputError(where, fmt::format("rows of {} pixels of {} are no whole bytes, so they "
+        throw InputError(where, fmt::format("rows of {} pixels of {} are not whole bytes, so they "
                                             "cannot be served",
                                             layout.width, format.name));
 }

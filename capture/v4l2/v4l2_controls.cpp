@@ -132,7 +132,7 @@ class ControlSetter {
         const std::int64_t max = mask ? std::int64_t{0xFFFFFFFF} : control.maximum;
         if (!value || *value < min || *value > max)
             refuse(control.name,
-                   fmt::format("\"{}\" is no whole number from {} to {}", text, min, max));
+                   fmt::format("\"{}\" is not a whole number from {} to {}", text, min, max));
         const auto above = static_cast<std::uint64_t>(*value) - static_cast<std::uint64_t>(min);
         if (!mask && control.step > 1 && above % control.step != 0)
             refuse(control.name,
@@ -175,7 +175,7 @@ class ControlSetter {
         const auto max = static_cast<double>(exposure->maximum) * kExposureUnitUs;
         if (!wanted || !(*wanted >= min && *wanted <= max))
             refuse("ExposureTime",
-                   fmt::format("\"{}\" is no number from {} to {} us", text, min, max));
+                   fmt::format("\"{}\" is not a number from {} to {} us", text, min, max));
         const double units = std::round(*wanted / kExposureUnitUs);
         if (units * kExposureUnitUs != *wanted)
             refuse("ExposureTime",

@@ -32,7 +32,7 @@ std::string what_to_do_about(int error) {
         case EBUSY:
             return "another program uses it; close that first";
         case ENOTTY:
-            return "this is no video device";
+            return "this is not a video device";
         default:
             return "unplug and plug in the camera, then see what the kernel says: dmesg";
     }

@@ -108,7 +108,7 @@ class FormatSetter {
         if (text == nullptr) return otherwise;
         const auto value = integer_setting(*text);
         if (!value || *value < min || *value > kMaxFrameSide)
-            refuse(name, fmt::format("\"{}\" is no whole number from {} to {}", *text, min,
+            refuse(name, fmt::format("\"{}\" is not a whole number from {} to {}", *text, min,
                                      kMaxFrameSide));
         return static_cast<std::uint32_t>(*value);
     }
@@ -136,7 +136,7 @@ class FormatSetter {
             format_ = pixel_format_named(*name);
             if (format_ == nullptr || format_->v4l2 == 0)
                 refuse("PixelFormat",
-                       fmt::format("\"{}\" is no format of V4L2 that is read here; {}", *name,
+                       fmt::format("\"{}\" is not a format of V4L2 that is read here; {}", *name,
                                    offer()));
             wanted.fourcc = format_->v4l2;
         } else {
@@ -247,7 +247,7 @@ class FormatSetter {
             const auto wanted = number_setting(*text);
             if (!wanted || !(*wanted >= 0.001 && *wanted <= 1e6))
                 refuse("AcquisitionFrameRate",
-                       fmt::format("\"{}\" is no number from 0.001 to 1e6", *text));
+                       fmt::format("\"{}\" is not a number from 0.001 to 1e6", *text));
             period = {1000, static_cast<__u32>(std::lround(*wanted * 1000))};
             if (device_.call(VIDIOC_S_PARM, &rate) != 0)
                 refuse("AcquisitionFrameRate", "the device does not let itself be told a rate");

@@ -86,7 +86,7 @@ class WindowFolder:
         if not file.exists():
             for path in self.folder.iterdir():
                 if not path.name.startswith(".") and path.name != IDENTITY:
-                    raise ValueError(f"{self.folder}: holds {path.name}, and is no folder of windows; "
+                    raise ValueError(f"{self.folder}: holds {path.name}, and is not a folder of windows; "
                                      "give another name")
             return False
         try:

@@ -249,7 +249,7 @@ class CaptureRecordTest(ProgramTest):
         self.serve()
         camera = ("capture", "record", self.address, "-o", "clip.strec")
         self.fails(INPUT, ["Wdith: the camera has no such feature"], *camera, "--set", "camera.Wdith=64")
-        self.fails(INPUT, ["is no address of a camera"], "capture", "record", "lan:1", "-o", "x")
+        self.fails(INPUT, ["is not the address of a camera"], "capture", "record", "lan:1", "-o", "x")
         self.fails(DEVICE, ["no camera answers"], "capture", "record", "gige:127.254.254.253", "-o",
                    "x")
         self.fails(USAGE, ["--stall excludes --coded"], *camera, "--coded", "--stall", 0)

@@ -142,7 +142,8 @@ class ExploreTest(ProgramTest):
         problems = Counter(row["problem"] for row in self.rows() if row["problem"])
         self.assertEqual(sorted(problems.values()), [2, 4])
         for problem, count in problems.items():
-            self.assertRegex(told, rf'\n{count} points failed, first ".*": {re.escape(problem.removeprefix("'"))}\n')
+            text = re.escape(problem.removeprefix("'"))
+            self.assertRegex(told, rf'\n{count} points failed, first ".*": {text}\n')
 
     def test_many_reasons_are_told_in_part(self):
         names = ", ".join(f'"none{i}"' for i in range(11))

@@ -95,7 +95,7 @@ class RecordingTest(ProgramTest):
         done = self.run_program(*emulate)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        for part in ("video.mp4: has 30 frames/s", "6.67x as fast", "--set sensor.slot_us=33333 or --resample flow"):
+        for part in ("video.mp4: has 30 frames/s", "6.67x as fast", "--set sensor.slot_us=33333 keeps the speed; --resample flow"):
             self.assertIn(part, done.stderr)
         self.assertEqual(self.run_program(*emulate, "--set", "sensor.slot_us=33333").stderr, "")
 

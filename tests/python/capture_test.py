@@ -346,7 +346,7 @@ class SearchTest(CameraTest):
 
     def test_what_has_no_features_is_named(self):
         for address, message in (("replay:a.npy", "replay:a.npy: has no features"),
-                                 ("none:1", "is no address of a camera")):
+                                 ("none:1", "is not the address of a camera")):
             with self.assertRaisesRegex(ValueError, message):
                 stipple.capture.features(address)
 

@@ -56,8 +56,8 @@ class CharacterizeTest(ProgramTest):
         pair = np.zeros((2, 3, 4), np.uint16)
         for message, images, bits in (
                 (r"images\[0\]: is neither uint8 nor uint16", [(1.0, 0.0, pair.astype(int))], 12),
-                (r"images\[1\]: is no array \(image, row, col\)", [(1.0, 0.0, pair), (1.0, 5.0, pair[0])], 12),
-                (r"images\[0\]: is no array", [(1.0, 0.0, pair[:, :0])], 12),
+                (r"images\[1\]: is not an array \(image, row, col\)", [(1.0, 0.0, pair), (1.0, 5.0, pair[0])], 12),
+                (r"images\[0\]: is not an array", [(1.0, 0.0, pair[:, :0])], 12),
                 (r"bits: 17 is outside 1..16", [(1.0, 0.0, pair)], 17),
                 (r"images\[0\]\[1\]: holds the DN 300", [(1.0, 0.0, pair + [[[0]], [[300]]])], 8),
                 (r"images\[0\]\[0\]: is 4 x 3, but", [(1.0, 0.0, pair), (1.0, 5.0, pair[:, :2])], 8),

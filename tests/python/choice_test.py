@@ -148,11 +148,11 @@ class ChoiceTest(ProgramTest):
                               "setting read_noise_e: <object": lambda: stipple.Sensor("paper", {"read_noise_e": object()}),
                               r"(?s)path: array\(.* [.]{3} is neither": lambda: stipple.decode(np.zeros((9, 9, 9))),
                               "path: 3 is neither": lambda: stipple.Recording.open(3),
-                              "seed: 1.5 is no whole": lambda: stipple.emulate(np.zeros((2, 8, 8)), seed=1.5),
-                              "seed: 'a' is no whole": lambda: stipple.Schedule(seed="a"),
+                              "seed: 1.5 is not a whole": lambda: stipple.emulate(np.zeros((2, 8, 8)), seed=1.5),
+                              "seed: 'a' is not a whole": lambda: stipple.Schedule(seed="a"),
                               "size: '8x8' is not": lambda: stipple.Schedule(size="8x8"),
                               "method: 2 is not a text": lambda: stipple.decode("clip.stipple", 2),
-                              "size: 1.5 is no whole": lambda: stipple.timing("lux1310", size=(8, 1.5)),
+                              "size: 1.5 is not a whole": lambda: stipple.timing("lux1310", size=(8, 1.5)),
                               r"video: 'a\\x00": lambda: stipple.load("a\0")}.items():
             with self.subTest(message), self.assertRaisesRegex(TypeError, message):
                 call()

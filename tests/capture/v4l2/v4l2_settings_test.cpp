@@ -97,7 +97,7 @@ TEST(V4l2SettingsTest, RefusesFormatsThatAreNotRaw) {
     EXPECT_THAT(error_of<InputError>({}),
                 HasSubstr("set to YUYV, which is not read here; it has Mono8"));
     EXPECT_THAT(error_of<InputError>({{"PixelFormat", "YUYV"}}),
-                HasSubstr("\"YUYV\" is no format"));
+                HasSubstr("\"YUYV\" is not a format"));
 }
 
 TEST(V4l2SettingsTest, RefusesASizeThatTheDriverWouldReplace) {
@@ -217,12 +217,12 @@ TEST(V4l2SettingsTest, RefusesControlsAndValuesThatAreNone) {
     const std::vector<std::pair<std::pair<const char*, const char*>, const char*>> cases{
         {{"contrast", "1"},
          "contrast: the device has no such setting; its controls are brightness"},
-        {{"brightness", "256"}, "brightness: \"256\" is no whole number from 0 to 255"},
+        {{"brightness", "256"}, "brightness: \"256\" is not a whole number from 0 to 255"},
         {{"brightness", "12"}, "brightness: \"12\" is not 0 plus a multiple of 5"},
-        {{"brightness", "bright"}, "brightness: \"bright\" is no whole number"},
+        {{"brightness", "bright"}, "brightness: \"bright\" is not a whole number"},
         {{"exposure_auto", "2"}, "\"2\" is none of 1 (Manual Mode), 3 (Aperture Priority Mode)"},
         {{"ExposureTime", "2550"}, "the device counts in 100 us"},
-        {{"ExposureTime", "1e9"}, "is no number from 100 to 500000 us"}};
+        {{"ExposureTime", "1e9"}, "is not a number from 100 to 500000 us"}};
     for (const auto& [setting, message] : cases)
         EXPECT_THAT(error_of<InputError>({{setting.first, setting.second}}), HasSubstr(message));
 }
