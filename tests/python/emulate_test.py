@@ -194,6 +194,9 @@ class EmulateTest(ProgramTest):
             (self.folder / f"c {name}.stipple").touch()
             with self.subTest(name), self.assertRaisesRegex(FileExistsError, f"c {name}.stipple: exists already.* force=True"):
                 stipple.emulate(light(), output=self.folder / f"c {name}.stipple")
+        self.write_array("shot--force.npy", 1000 * light())
+        with self.assertWarnsRegex(UserWarning, "shot--force.npy: "):
+            stipple.load(self.folder / "shot--force.npy")
 
     def test_masked_values_are_refused(self):
         light = np.ma.array(np.full((2, 4, 4), 0.5), mask=False)
