@@ -73,7 +73,7 @@ class TextsTest(ProgramTest):
     def test_schedule(self):
         text, figures = self.told("schedule", "show", "pixel_flutter")
         self.assertLess(figures["light_throughput"], 1)
-        self.check(text, "compression #, light throughput # %", figures["compression_ratio"],
+        self.check(text, "compression # in steady state, light throughput # %", figures["compression_ratio"],
                    100 * figures["light_throughput"])
 
     def test_compare(self):

@@ -143,7 +143,7 @@ TEST(ReplayCameraTest, WhatItCannotDoIsRefused) {
             [&] { return open_replay_camera(address(folder / name), settings, {}); });
     };
     expect_parts(refusal("a", {{"ExposureTime", "10"}}),
-                 {"ExposureTime", "no setting of a replay"});
+                 {"ExposureTime", "not a setting of a replay"});
     expect_parts(refusal("a", {{"Loop", "yes"}}), {"Loop", "0 nor 1"});
     expect_parts(refusal("a", {{"AcquisitionFrameRate", "-1"}}), {"AcquisitionFrameRate", "-1"});
     expect_parts(refusal("a", {{"PixelFormat", "Mono8"}}), {"PixelFormat", "Mono16"});
