@@ -131,7 +131,7 @@ std::string opcode_names(tiff* file) {
         }
     }
     std::ranges::sort(names);
-    names.erase(std::ranges::unique(names).begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     names.resize(std::min(names.size(), kNames.size()));
     return joined(names);
 }

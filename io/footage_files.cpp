@@ -46,7 +46,7 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
 /// Of a folder without images: what is in it that others can read.
 std::string remedy_in(const fs::path& folder) {
     for (const fs::path& file : list_folder(folder)) {
-        if (const std::string remedy = conversion_of(file); !remedy.empty()) return remedy;
+        if (std::string remedy = conversion_of(file); !remedy.empty()) return remedy;
         if (lower_extension(file) == ".stipple")
             return fmt::format("; name one of its sample streams, as {}", file.string());
     }
