@@ -17,10 +17,11 @@ class WithoutCamerasTest(ProgramTest):
             self.fails(DEVICE, (address, "built without", fix), "capture", "features", address)
 
     def test_the_list_and_the_doctor_say_it_too(self):
-        for words in (("list",), ("doctor", "gige:127.0.0.1")):
+        for words, reasons in ((["list"], [NO_ARAVIS, NO_V4L2]), (["doctor"], [NO_V4L2]),
+                               (["doctor", "gige:127.0.0.1"], [NO_ARAVIS])):
             said = self.run_program("capture", *words)
-            self.assertIn(NO_ARAVIS, said.stdout + said.stderr)
-            self.assertIn(NO_V4L2, said.stdout + said.stderr)
+            for reason in reasons:
+                self.assertIn(reason, said.stdout + said.stderr)
 
     def test_recordings_are_played_as_ever(self):
         self.write_array("light.npy", np.random.default_rng(1).random((5, 16, 16)))
