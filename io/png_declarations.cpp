@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "io/video_planes.h"
 
 namespace stipple {
 namespace {
@@ -45,29 +46,6 @@ std::optional<Bytes> find(const Chunks& chunks, std::string_view kind, std::size
     const auto found = chunks.find(kind);
     if (found == chunks.end() || found->second.size() < bytes) return {};
     return found->second;
-}
-
-/// Code points of ITU-T H.273.
-std::optional<Transfer> transfer_of_code(int code) {
-    switch (code) {
-        case 1:
-        case 6:
-        case 14:
-        case 15:
-            return Transfer::kBt709;
-        case 4:
-            return Transfer::kGamma22;
-        case 8:
-            return Transfer::kLinear;
-        case 13:
-            return Transfer::kSrgb;
-        case 16:
-            return Transfer::kPq;
-        case 18:
-            return Transfer::kHlg;
-        default:
-            return {};
-    }
 }
 
 void declare(SourceTraits& traits, std::optional<Transfer> transfer, std::string curve) {

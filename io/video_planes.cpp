@@ -120,29 +120,6 @@ struct Scale {
     }
 };
 
-/// The transfer function of a curve; none of those that are not read.
-std::optional<Transfer> transfer_of(AVColorTransferCharacteristic curve) {
-    switch (curve) {
-        case AVCOL_TRC_BT709:
-        case AVCOL_TRC_SMPTE170M:
-        case AVCOL_TRC_BT2020_10:
-        case AVCOL_TRC_BT2020_12:
-            return Transfer::kBt709;
-        case AVCOL_TRC_GAMMA22:
-            return Transfer::kGamma22;
-        case AVCOL_TRC_IEC61966_2_1:
-            return Transfer::kSrgb;
-        case AVCOL_TRC_LINEAR:
-            return Transfer::kLinear;
-        case AVCOL_TRC_SMPTE2084:
-            return Transfer::kPq;
-        case AVCOL_TRC_ARIB_STD_B67:
-            return Transfer::kHlg;
-        default:
-            return {};
-    }
-}
-
 /// The name of primaries far from those of Rec. 709; those of SD video are near.
 std::string other_primaries(AVColorPrimaries primaries) {
     switch (primaries) {
@@ -166,7 +143,7 @@ SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
     traits.gamma_coded = is_declared
                              ? curve != AVCOL_TRC_LINEAR
                              : about.comp[0].depth <= 8 || colours_of(about) == Colours::kYcbcr;
-    traits.declared = transfer_of(curve);
+    traits.declared = transfer_of_code(curve);
     if (is_declared && av_color_transfer_name(curve) != nullptr)
         traits.curve = av_color_transfer_name(curve);
     traits.bt2020 = frame.color_primaries == AVCOL_PRI_BT2020;
@@ -184,6 +161,28 @@ float clipped(float value) {
 }
 
 }  // namespace
+
+std::optional<Transfer> transfer_of_code(int code) {
+    switch (code) {
+        case AVCOL_TRC_BT709:
+        case AVCOL_TRC_SMPTE170M:
+        case AVCOL_TRC_BT2020_10:
+        case AVCOL_TRC_BT2020_12:
+            return Transfer::kBt709;
+        case AVCOL_TRC_GAMMA22:
+            return Transfer::kGamma22;
+        case AVCOL_TRC_IEC61966_2_1:
+            return Transfer::kSrgb;
+        case AVCOL_TRC_LINEAR:
+            return Transfer::kLinear;
+        case AVCOL_TRC_SMPTE2084:
+            return Transfer::kPq;
+        case AVCOL_TRC_ARIB_STD_B67:
+            return Transfer::kHlg;
+        default:
+            return {};
+    }
+}
 
 struct VideoPlanes::Impl {
     int width = 0;

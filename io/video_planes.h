@@ -1,15 +1,21 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/geometry.h"
+#include "core/light.h"
 #include "io/image.h"
 
 struct AVFrame;  // of FFmpeg's libavutil
 
 namespace stipple {
+
+/// The transfer function of a code point of ITU-T H.273, as FFmpeg and PNG have them; none of those
+/// that are not read.
+[[nodiscard]] std::optional<Transfer> transfer_of_code(int code);
 
 /// Converts the frames of a video to planes of numbers, 0..1 at the bit depth of the video: grey to
 /// one plane, all others to red, green and blue. Y'CbCr is converted with the matrix and the range

@@ -5,6 +5,11 @@
 namespace stipple {
 namespace {
 
+/// From it on, slots of the same phase are alike.
+std::int64_t first_steady_slot(const ExposureSchedule& schedule) {
+    return std::max(schedule.longest_span_slots(), 1) - 1;
+}
+
 double transmittance(const CalibrationTile& tile, int row, int col) {
     if (tile.pixels.empty()) return 1;
     return tile
@@ -54,17 +59,16 @@ double light_due(const ExposureSchedule& schedule, const CalibrationTile& tile,
 }
 
 std::int64_t kind_of_slot(const ExposureSchedule& schedule, std::int64_t slot) {
-    const std::int64_t steady = std::max(schedule.longest_span_slots(), 1) - 1;
+    const std::int64_t steady = first_steady_slot(schedule);
     return slot < steady ? slot : steady + (slot - steady) % schedule.period_slots();
 }
 
 double light_due_in_clip(const ExposureSchedule& schedule, const CalibrationTile& tile,
                          FrameShape shape, std::int64_t slots) {
     const std::int64_t period = schedule.period_slots();
-    const std::int64_t steady = std::max(schedule.longest_span_slots(), 1) - 1;
+    const std::int64_t steady = first_steady_slot(schedule);
     double light = 0;
     for (std::int64_t slot = 0; slot < std::min(slots, steady + period); ++slot) {
-        // From `steady` on, slots of the same phase are alike.
         const std::int64_t times = slot < steady ? 1 : 1 + (slots - 1 - slot) / period;
         light += static_cast<double>(times) *
                  light_due(schedule, tile, {slot, 0, shape.rows, shape.cols});

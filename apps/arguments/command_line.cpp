@@ -80,10 +80,10 @@ void check_names(const DeclaredOptions& declared) {
                                        ? nullptr
                                        : "\"-\" is not a file; standard output does not take it, "
                                          "give it a name");
-    if (written_to_standard_output(declared).size() > 1)
-        throw UsageError(written_to_standard_output(declared)[0],
-                         fmt::format("\"-\" is the output of {} too; give one of them a name",
-                                     written_to_standard_output(declared)[1]));
+    if (const auto names = written_to_standard_output(declared); names.size() > 1)
+        throw UsageError(
+            names[0],
+            fmt::format("\"-\" is the output of {} too; give one of them a name", names[1]));
 }
 
 /// The file or folder that an input stands for: of a pattern the folder.

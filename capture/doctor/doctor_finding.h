@@ -11,8 +11,7 @@ struct DoctorFinding {
     Level level = Level::kGood;
     std::string subject;  ///< "receive buffer", "group video"
     std::string fact;     ///< finding, with numbers
-    std::string
-        fix;  ///< advice, if possible a command; empty if none is needed or it was given before
+    std::string fix;      ///< advice, if possible a command; empty if none is needed here
 };
 
 }  // namespace stipple
