@@ -86,8 +86,8 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
                         [] { return stop_signal() == 0; });
     }
     if (at_end)
-        for (const std::string& note : end_notes(options.footage, input.footage(), setup.params,
-                                                 options.resampling.has_value()))
+        for (const Message& note : end_notes(options.footage, input.footage(), setup.params,
+                                             options.resampling.has_value()))
             say_warning(note);
     say_warning(
         zero_warning(options.output, recorder.zero_fraction(), calibration_of(setup.params)));

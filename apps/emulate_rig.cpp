@@ -106,7 +106,7 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
     const auto setups = set_up_rig(rig, footage.shape(), footage.filter());
     const SensorSetup& first = setups.front();
     say_warning(mosaic_warning(first, footage.filter()));
-    for (const std::string& note :
+    for (const Message& note :
          sensor_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
         say_warning(note);
     ResampledFootage slots = slots_of(footage, arguments, first.params.slot_us);
@@ -134,7 +134,7 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
                 rig_text(config, rig, folder.partial()));
     folder.commit();
     if (at_end)
-        for (const std::string& note :
+        for (const Message& note :
              end_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
             say_warning(note);
     tell(arguments, run, json, runs, static_cast<double>(progress.done()) / progress.seconds());

@@ -16,7 +16,7 @@ EmulationInput::EmulationInput(const EmulateArguments& arguments)
         say_warning("slots of {:g} us are {:.3g} a second; is slot_us in microseconds?",
                     setup_.params.slot_us, 1e6 / setup_.params.slot_us);
     say_warning(mosaic_warning(setup_, footage_.filter()));
-    for (const std::string& note :
+    for (const Message& note :
          sensor_notes(arguments.footage, footage_, setup_.params, arguments.resampling.has_value()))
         say_warning(note);
 }

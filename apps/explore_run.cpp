@@ -46,7 +46,7 @@ std::string name_of(const Exploration& exploration, std::uint64_t number) {
 /// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
 void run_point(Exploration& exploration, std::uint64_t number, Progress& progress) {
     const Trial* const trial = exploration.begin(number);
-    for (const std::string& warning : exploration.take_warnings()) say_warning(warning);
+    for (const Message& warning : exploration.take_warnings()) say_warning(warning);
     const double work = exploration.work_of(number);
     if (trial == nullptr) return progress.skip(work);
     const double before = progress.work_done();
@@ -59,7 +59,7 @@ void run_point(Exploration& exploration, std::uint64_t number, Progress& progres
             }));
     } catch (const InputError& e) {
         if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
-        exploration.fail(number, e.what());
+        exploration.fail(number, e.message().text(in_options));
     }
     progress.reach(before + work, progress.done() + 1);
 }

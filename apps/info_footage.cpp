@@ -48,7 +48,7 @@ struct Light {
 };
 
 void pass_warnings_on(FootageReader& reader) {
-    for (const std::string& warning : reader.take_warnings()) say_warning(warning);
+    for (const Message& warning : reader.take_warnings()) say_warning(warning);
 }
 
 void read_all(FootageReader& reader, const std::string& source, const RunOptions& run,

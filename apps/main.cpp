@@ -59,6 +59,14 @@ int fail(ExitCode code, std::string_view message) {
     return code;
 }
 
+int fail(ExitCode code, const Error& error) {
+    try {
+        return fail(code, std::string_view(error.message().text(in_options)));
+    } catch (const std::bad_alloc&) {
+        return fail(code, std::string_view(error.what()));
+    }
+}
+
 /// The handler of std::terminate(): noexcept functions of libraries end here if there is no memory,
 /// some of libstdc++ without an exception.
 [[noreturn]] void end_in_a_library() {
@@ -116,7 +124,9 @@ int main(int argc, char** argv) {
         if (run(argc, argv) == CommandLine::Parsed::kWrong) return kUsage;
     } catch (const InputError& e) {
         // A signal cuts inputs short: then the input is not to blame.
-        return stop_signal() == 0 ? fail(kInput, e.what()) : stop("stopped");
+        return stop_signal() == 0 ? fail(kInput, e) : stop("stopped");
+    } catch (const DeviceError& e) {
+        return fail(kDevice, e);
     } catch (const Interrupted& e) {
         return stop(e.left.empty() ? "stopped" : fmt::format("stopped; {}", e.left));
     } catch (const std::bad_alloc&) {

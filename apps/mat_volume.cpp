@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/index.h"
@@ -265,8 +266,10 @@ void read_for(std::FILE* reply, const std::string& file, const std::string& name
               .cols = volume.cols},
              std::as_bytes(std::span(volume.values)));
     } catch (const InputError& e) {
-        send(reply, {.kind = Reply::Kind::kInputError, .where_bytes = e.where().size()},
-             std::as_bytes(std::span(std::string_view(e.what()))));
+        const std::string text = e.message().text(in_options);
+        send(reply,
+             {.kind = Reply::Kind::kInputError, .where_bytes = e.where().text(in_options).size()},
+             std::as_bytes(std::span(text)));
     } catch (const std::bad_alloc&) {
         send(reply, {.kind = Reply::Kind::kNoMemory}, {});
     } catch (...) {  // without a reply, the file counts as damaged

@@ -92,9 +92,12 @@ nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderK
                                      kind.identity, kind.verb));
     auto json = nlohmann::ordered_json::parse(identity_text(folder, kind), nullptr, false);
     bool whole = json.is_object();
+    const auto same_kind = [](const auto& found, const auto& wanted) {
+        if (wanted.is_number_integer()) return found.is_number_integer();
+        return wanted.is_number() ? found.is_number() : found.type() == wanted.type();
+    };
     for (const auto& [key, value] : pattern.items())
-        whole = whole && json.contains(key) &&
-                (value.is_number() ? json[key].is_number() : json[key].type() == value.type());
+        whole = whole && json.contains(key) && same_kind(json[key], value);
     if (!whole)
         throw InputError(file.string(), fmt::format("does not describe {} {}; remove the "
                                                     "folder, and {} again",

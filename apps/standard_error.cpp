@@ -93,6 +93,15 @@ void say_warning(std::string_view text) noexcept {
     }
 }
 
+std::string in_options(const Parameter& parameter) {
+    const auto& [name, value] = parameter;
+    if (name.find('.') != std::string::npos)
+        return "--set " + name + (value.empty() ? "" : "=" + value);
+    std::string option = "--" + name;
+    std::ranges::replace(option, '_', '-');
+    return value.empty() || value == "true" ? option : option + " " + value;
+}
+
 std::vector<std::string> said_warnings() {
     const std::lock_guard lock(warnings_mutex);
     return warnings;

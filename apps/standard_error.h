@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
 #include <new>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/message.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -41,6 +43,15 @@ void say_error(std::string_view text) noexcept;
 
 /// The same for a warning, "stipple: warning: "; nothing if it is empty.
 void say_warning(std::string_view text) noexcept;
+
+/// A parameter as an option of the command line: "--fill-gaps", "--set sensor.slot_us=5000".
+[[nodiscard]] std::string in_options(const Parameter& parameter);
+
+/// The same with parameters as options.
+template <std::same_as<Message> Text>
+void say_warning(const Text& message) noexcept {
+    say_warning(std::string_view(message.text(in_options)));
+}
 
 /// The warnings so far, each once.
 [[nodiscard]] std::vector<std::string> said_warnings();

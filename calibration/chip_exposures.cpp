@@ -44,8 +44,9 @@ std::vector<FieldExposure> dark_exposures(const CalibrationSeries& series) {
             throw InputError(series.dark_name,
                              fmt::format("shows pixels in the dark at one exposure time only ({:g} "
                                          "ms), which does not tell their dark current; add frames "
-                                         "of another time, or give --no-dark-current",
-                                         1e3 * dark.front().seconds));
+                                         "of another time, or give ",
+                                         1e3 * dark.front().seconds) +
+                                 Parameter{"no_dark_current", "true"});
     return dark;
 }
 

@@ -25,7 +25,7 @@ struct CameraDescription {
     std::string genicam_xml_hash;                 ///< XXH3 as hex; empty without GenICam
     std::map<std::string, std::string> features;  ///< every readable feature or control, as text
     std::map<std::string, std::string> transport_facts;  ///< packet size, MTU, socket buffer, ...
-    std::vector<std::string> warnings = {};  ///< risks of lost frames, each with its fix
+    std::vector<Message> warnings = {};  ///< risks of lost frames, each with its fix
 };
 
 /// Nothing arrived within the timeout.
@@ -38,7 +38,7 @@ struct DeviceLost {
     bool at_end = false;  ///< end of a replay, no fault
     /// Replay: why its file cannot be read further.
     std::optional<InputError> bad_file = {};
-    std::string warning = {};  ///< replay at its end: faults of its file
+    Message warning = {};  ///< replay at its end: faults of its file
 };
 
 /// Result of `Camera::wait`. The camera fills these fields of the frame record: wire_id, status,

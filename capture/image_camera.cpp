@@ -19,11 +19,10 @@ std::unique_ptr<Camera> open_image_camera(const std::string& address,
     if (camera_kind(address).is_replay)
         throw InputError(where,
                          "what was recorded is a coded stream, not images; record the camera "
-                         "anew with \"stipple capture record --coded\"");
-    throw InputError(where,
-                     fmt::format("the camera sends a coded stream, not images; write it "
-                                 "with \"stipple capture record --coded {} -o FILE.stipple\"",
-                                 address));
+                         "anew with " +
+                             Parameter{"coded", "true"});
+    throw InputError(where, "the camera sends a coded stream, not images; record it with " +
+                                Parameter{"coded", "true"});
 }
 
 SessionOptions session_options(const std::string& address, SessionOptions options) {

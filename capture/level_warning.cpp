@@ -18,17 +18,18 @@ int used_bits(double white_dn) {
 
 }  // namespace
 
-std::string black_level_warning(const std::string& file, const SourceTraits& footage,
-                                const SensorParams& sensor) {
+Message black_level_warning(const std::string& file, const SourceTraits& footage,
+                            const SensorParams& sensor) {
     const double sensor_dn = sensor.physical.black_level_dn;
     if (sensor.mode != SensorMode::kPhysical || !footage.black_dn || !footage.white_dn) return {};
     if (used_bits(*footage.white_dn) != sensor.bit_depth ||
         std::abs(*footage.black_dn - sensor_dn) <= kToleranceDn)
         return {};
     return fmt::format(
-        "{}: its black level is {:g} DN, that of sensor \"{}\" {:g} DN, both of {} bits: light is "
-        "right, but if the sensor stands for this camera, use --set sensor.black_level_dn={:g}",
-        file, *footage.black_dn, sensor.name, sensor_dn, sensor.bit_depth, *footage.black_dn);
+               "{}: its black level is {:g} DN, that of sensor \"{}\" {:g} DN, both of {} bits: "
+               "light is right, but if the sensor stands for this camera, use ",
+               file, *footage.black_dn, sensor.name, sensor_dn, sensor.bit_depth) +
+           Parameter{"sensor.black_level_dn", fmt::format("{:g}", *footage.black_dn)};
 }
 
 }  // namespace stipple

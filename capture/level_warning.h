@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/message.h"
 #include "io/image.h"
 #include "sensor_model/sensor_params.h"
 
@@ -10,7 +11,7 @@ namespace stipple {
 /// Warning that a camera file has its black level elsewhere than a sensor of as many bits, by more
 /// than a DN; else empty. Numbers of other bits do not compare, and a sensor in paper mode has no
 /// black level.
-[[nodiscard]] std::string black_level_warning(const std::string& file, const SourceTraits& footage,
-                                              const SensorParams& sensor);
+[[nodiscard]] Message black_level_warning(const std::string& file, const SourceTraits& footage,
+                                          const SensorParams& sensor);
 
 }  // namespace stipple

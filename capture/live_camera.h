@@ -68,8 +68,8 @@ class LiveCamera {
 
     LiveCameraOptions options_;
     WaitingFrames waiting_;
-    std::string short_queue_;  ///< a warning; empty if it has the wanted length
-    CaptureSession session_;   ///< behind what is planned when it opens the camera
+    Message short_queue_;     ///< a warning; empty if it has the wanted length
+    CaptureSession session_;  ///< behind what is planned when it opens the camera
     FrameLayout layout_;
     CameraDescription description_;
     FrameQueue frames_;

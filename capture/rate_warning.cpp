@@ -27,36 +27,40 @@ std::string slot_text(const SensorParams& sensor) {
                        sensor.slot_us, 1e6 / sensor.slot_us);
 }
 
+/// The setting by which a slot is a frame.
+Parameter slot_of(double frames_hz) {
+    return {"sensor.slot_us", fmt::format("{:.5g}", 1e6 / frames_hz)};
+}
+
 }  // namespace
 
-std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sensor) {
+Message camera_rate_warning(const FrameRate& frames, const SensorParams& sensor) {
     const auto hz = other_rate(frames, sensor);
     if (!hz) return {};
     return fmt::format(
-        "the camera sends {:.4g} frames/s, but {}: times in the stream are wrong; "
-        "use --set camera.AcquisitionFrameRate={:.4g} or --set sensor.slot_us={:.5g}",
-        *hz, slot_text(sensor), 1e6 / sensor.slot_us, 1e6 / *hz);
+               "the camera sends {:.4g} frames/s, but {}: times in the stream are wrong; use ", *hz,
+               slot_text(sensor)) +
+           Parameter{"camera.AcquisitionFrameRate", fmt::format("{:.4g}", 1e6 / sensor.slot_us)} +
+           " or " + slot_of(*hz);
 }
 
-std::string recording_rate_warning(const std::string& file, const FrameRate& frames,
-                                   const SensorParams& sensor) {
-    const auto hz = other_rate(frames, sensor);
-    if (!hz) return {};
-    return fmt::format(
-        "{}: the camera sent {:.4g} frames/s, but {}: times in the stream are wrong; "
-        "use --set sensor.slot_us={:.5g}",
-        file, *hz, slot_text(sensor), 1e6 / *hz);
-}
-
-std::string video_rate_warning(const std::string& file, double frames_hz,
+Message recording_rate_warning(const std::string& file, const FrameRate& frames,
                                const SensorParams& sensor) {
-    if (agree(frames_hz, sensor)) return {};
+    const auto hz = other_rate(frames, sensor);
+    if (!hz) return {};
     return fmt::format(
-        "{}: has {:.4g} frames/s, but {}: motion in the stream is {:.3g}x as fast. "
-        "--set sensor.slot_us={:.5g} keeps the speed; {} makes frames of {:.4g} a second",
-        file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz, 1e6 / frames_hz,
-        frames_hz * sensor.slot_us < 1e6 ? "--resample flow" : "--resample blend",
-        1e6 / sensor.slot_us);
+               "{}: the camera sent {:.4g} frames/s, but {}: times in the stream are wrong; use ",
+               file, *hz, slot_text(sensor)) +
+           slot_of(*hz);
+}
+
+Message video_rate_warning(const std::string& file, double frames_hz, const SensorParams& sensor) {
+    if (agree(frames_hz, sensor)) return {};
+    return fmt::format("{}: has {:.4g} frames/s, but {}: motion in the stream is {:.3g}x as fast. ",
+                       file, frames_hz, slot_text(sensor), 1e6 / sensor.slot_us / frames_hz) +
+           slot_of(frames_hz) + " keeps the speed; " +
+           Parameter{"resample", frames_hz * sensor.slot_us < 1e6 ? "flow" : "blend"} +
+           fmt::format(" makes frames of {:.4g} a second", 1e6 / sensor.slot_us);
 }
 
 std::string exposure_warning(const std::string& file, double exposure_us,

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "capture/frame_rate.h"
+#include "core/message.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {
@@ -11,15 +12,15 @@ namespace stipple {
 // if the rates agree within 2 %, or if there are too few frames for a rate.
 
 /// Warning for a running camera.
-[[nodiscard]] std::string camera_rate_warning(const FrameRate& frames, const SensorParams& sensor);
+[[nodiscard]] Message camera_rate_warning(const FrameRate& frames, const SensorParams& sensor);
 
 /// Warning for the recording of a camera.
-[[nodiscard]] std::string recording_rate_warning(const std::string& file, const FrameRate& frames,
-                                                 const SensorParams& sensor);
+[[nodiscard]] Message recording_rate_warning(const std::string& file, const FrameRate& frames,
+                                             const SensorParams& sensor);
 
 /// Warning for a video. The difference may be intended, as in slow motion.
-[[nodiscard]] std::string video_rate_warning(const std::string& file, double frames_hz,
-                                             const SensorParams& sensor);
+[[nodiscard]] Message video_rate_warning(const std::string& file, double frames_hz,
+                                         const SensorParams& sensor);
 
 /// Warning for footage whose exposure time is longer than a slot; else empty.
 [[nodiscard]] std::string exposure_warning(const std::string& file, double exposure_us,

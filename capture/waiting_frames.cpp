@@ -22,20 +22,21 @@ WaitingFrames waiting_frames(const Camera& camera, const WaitingFrames& wanted) 
     const std::size_t others = camera.buffer_bytes() + kOtherFrames * frame;
     if (others + frame > max_memory())  // asking for a description takes time
         check_memory(others + frame, camera.description().address,
-                     fmt::format("the buffers of the camera ({:.1f} MB, --buffers) and {} frames "
-                                 "behind them ({:.1f} MB)",
+                     fmt::format("the buffers of the camera ({:.1f} MB) and {} frames behind them "
+                                 "({:.1f} MB)",
                                  mb(camera.buffer_bytes()), kOtherFrames + 1,
                                  mb((kOtherFrames + 1) * frame)));
     const std::size_t bytes = std::min<std::size_t>(wanted.bytes, max_memory() - others);
     return {std::clamp<std::size_t>(bytes / frame, 1, wanted.frames), bytes};
 }
 
-std::string short_queue_text(const Camera& camera, std::size_t frames, std::size_t wanted) {
+Message short_queue_text(const Camera& camera, std::size_t frames, std::size_t wanted) {
     return fmt::format(
-        "{} frames may wait, not {}: so many ({:.1f} MB) and the buffers of the camera ({:.1f} MB) "
-        "together exceed {:.1f} MB, see --max-memory",
-        frames, wanted, mb(wanted * camera.layout().payload_bytes()), mb(camera.buffer_bytes()),
-        mb(max_memory()));
+               "{} frames may wait, not {}: so many ({:.1f} MB) and the buffers of the camera "
+               "({:.1f} MB) together exceed {:.1f} MB, see ",
+               frames, wanted, mb(wanted * camera.layout().payload_bytes()),
+               mb(camera.buffer_bytes()), mb(max_memory())) +
+           Parameter{"max_memory"};
 }
 
 }  // namespace stipple

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <limits>
-#include <string>
 
 #include "capture/camera.h"
+#include "core/message.h"
 
 namespace stipple {
 
@@ -20,7 +20,7 @@ struct WaitingFrames {
 [[nodiscard]] WaitingFrames waiting_frames(const Camera& camera, const WaitingFrames& wanted);
 
 /// Warns that fewer frames may wait than were wanted.
-[[nodiscard]] std::string short_queue_text(const Camera& camera, std::size_t frames,
-                                           std::size_t wanted);
+[[nodiscard]] Message short_queue_text(const Camera& camera, std::size_t frames,
+                                       std::size_t wanted);
 
 }  // namespace stipple

@@ -130,7 +130,7 @@ struct Config::Impl {
             take(*node);
         return true;
     }
-    [[nodiscard]] std::string where(std::string_view key) const;
+    [[nodiscard]] Message where(std::string_view key) const;
 
     template <typename Value>
     void check_range(std::string_view key, Value value, Value min, Value max) const {
@@ -146,7 +146,7 @@ struct Config::Impl {
 void Config::Impl::set(const std::string& assignment) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-        throw InputError(fmt::format("--set {}{}", section, assignment), "write key=value");
+        throw InputError(Parameter{section + assignment}, "write key=value");
     const std::string key = assignment.substr(0, equals);
     tables.push_back(parse_value(std::string_view(assignment).substr(equals + 1)));
     entries[key] = Entry{tables.back().get("value"), {Place::Source::kOverride, tables.size()}};
@@ -163,12 +163,12 @@ const toml::node* Config::Impl::find(const ConfigKey& key, std::string fallback,
     return found->second.value;
 }
 
-std::string Config::Impl::where(std::string_view key) const {
+Message Config::Impl::where(std::string_view key) const {
     const auto found = entries.find(key);
     if (found == entries.end())
         return file.empty() ? std::string(key) : fmt::format("{}: {}", file, key);
     const Place place = found->second.place;
-    if (place.source == Place::Source::kOverride) return fmt::format("--set {}{}", section, key);
+    if (place.source == Place::Source::kOverride) return Parameter{section + std::string(key)};
     return fmt::format("{}:{}: {}", file, place.number, key);
 }
 
@@ -351,7 +351,7 @@ std::vector<KnownKey> Config::known_keys() const {
     return keys;
 }
 
-std::string Config::where(std::string_view key) const {
+Message Config::where(std::string_view key) const {
     return impl_->where(key);
 }
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/message.h"
+
 namespace stipple {
 
 /// Closed interval of the accepted values of a number; of an integer within +-2^53.
@@ -43,8 +45,8 @@ struct KnownKey {
 class Config {
   public:
     /// Reads `file` and applies `overrides` in their order ("read_noise_e=5", "adc.bit_depth=10").
-    /// A value has TOML syntax; a bare word is a string. Messages call an override "--set
-    /// SECTION.KEY", with `section` such as "sensor".
+    /// A value has TOML syntax; a bare word is a string. Messages name an override by the Parameter
+    /// "SECTION.KEY", with `section` such as "sensor".
     /// \throws InputError naming file, line and column, or the override.
     Config(const std::filesystem::path& file, const std::vector<std::string>& overrides,
            std::string_view section = {});
@@ -91,8 +93,8 @@ class Config {
     /// The keys that readers asked for, sorted by name.
     [[nodiscard]] std::vector<KnownKey> known_keys() const;
 
-    /// Place of a key for messages: "file:line: key", or "--set section.key".
-    [[nodiscard]] std::string where(std::string_view key) const;
+    /// Place of a key for messages: "file:line: key", or the Parameter "section.key".
+    [[nodiscard]] Message where(std::string_view key) const;
 
   private:
     struct Impl;

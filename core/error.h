@@ -1,34 +1,40 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
 #include <stdexcept>
-#include <string>
-#include <string_view>
+#include <utility>
+
+#include "core/message.h"
 
 namespace stipple {
 
-/// An input of the user (a file, an option, a key) is not usable. `what()` is "where: problem".
-/// `where` names the file and, if known, the key or byte offset; `problem` names the fault and the
-/// remedy. Exit code 1.
-class InputError : public std::runtime_error {
+/// A run cannot go on. `what()` is "where: fault", with parameters as in C++; `where` names the
+/// file or device and, if known, the key or byte offset, `fault` also the remedy.
+class Error : public std::runtime_error {
   public:
-    InputError(std::string_view where, std::string_view problem)
-        : std::runtime_error(std::string(where).append(": ").append(problem)),
-          where_bytes_(where.size()) {}
+    Error(Message where, Message fault)
+        : std::runtime_error((where + ": " + fault).text()),
+          parts_(std::make_shared<const Parts>(std::move(where), std::move(fault))) {}
 
-    [[nodiscard]] std::string_view where() const {
-        return std::string_view(what()).substr(0, where_bytes_);
-    }
+    [[nodiscard]] const Message& where() const { return parts_->first; }
+    [[nodiscard]] const Message& fault() const { return parts_->second; }
+    [[nodiscard]] Message message() const { return where() + ": " + fault(); }
 
   private:
-    std::size_t where_bytes_;  ///< of what(); a text of its own could throw when it is copied
+    using Parts = std::pair<Message, Message>;
+    std::shared_ptr<const Parts> parts_;  ///< copies of exceptions must not throw
+};
+
+/// An input of the user (a file, an option, a key) is not usable. Exit code 1.
+class InputError : public Error {
+  public:
+    using Error::Error;
 };
 
 /// A camera or an output device failed, for example a full disk. Exit code 3.
-class DeviceError : public std::runtime_error {
+class DeviceError : public Error {
   public:
-    DeviceError(std::string_view where, std::string_view problem)
-        : std::runtime_error(std::string(where).append(": ").append(problem)) {}
+    using Error::Error;
 };
 
 }  // namespace stipple

@@ -89,11 +89,13 @@ void check_light(std::span<const float> light, FrameShape shape, std::string_vie
     const char* problem = std::isnan(light[site])   ? "light is not a number"
                           : std::isinf(light[site]) ? "light is infinite"
                                                     : "light is negative";
-    const char* remedy =
-        std::isfinite(light[site]) ? "clip it with --min-value 0" : "repair the footage first";
+    const Message remedy = std::isfinite(light[site])
+                               ? "clip it with " + Parameter{"min_value", "0"}
+                               : Message("repair the footage first");
     throw InputError(
-        where, fmt::format("row {}, column {}, plane {}: {} ({}); {}", pixel / width, pixel % width,
-                           site / shape.pixels(), problem, light[site], remedy));
+        where, fmt::format("row {}, column {}, plane {}: {} ({}); ", pixel / width, pixel % width,
+                           site / shape.pixels(), problem, light[site]) +
+                   remedy);
 }
 
 void scale_light(std::span<float> light, double factor, std::string_view where) {
@@ -104,9 +106,9 @@ void scale_light(std::span<float> light, double factor, std::string_view where) 
         finite &= value <= std::numeric_limits<float>::max();
     }
     if (!finite)
-        throw InputError(
-            where,
-            fmt::format("light becomes infinite by --scale {}; give a smaller factor", factor));
+        throw InputError(where, "light becomes infinite by " +
+                                    Parameter{"scale", fmt::to_string(factor)} +
+                                    "; give a smaller factor");
 }
 
 void reduce_to_luminance(std::span<const float> rgb, std::span<float> luminance) {

@@ -66,18 +66,18 @@ std::uint64_t max_memory(std::uint64_t input_bytes) {
     return input_bytes < kSmallInput ? std::min(quarter, kMaxOfSmallInputs) : quarter;
 }
 
-void check_memory(std::uint64_t bytes, std::string_view where, std::string_view what,
+void check_memory(std::uint64_t bytes, const Message& where, std::string_view what,
                   std::uint64_t input_bytes) {
     const std::uint64_t allowed = max_memory(input_bytes);
     if (bytes <= allowed) return;
-    const char* const whose = told_bytes > 0 ? "--max-memory says"
-                              : allowed == max_memory()
-                                  ? "a run may take, a quarter of this machine's memory"
-                                  : "a file of less than 1 MB may take";
-    throw InputError(where,
-                     fmt::format("needs {} of memory for {}, more than the {} that {}; "
-                                 "--max-memory {} allows it",
-                                 text_of(bytes), what, text_of(allowed), whose, option_of(bytes)));
+    const Message whose = told_bytes > 0 ? Parameter{"max_memory"} + " says"
+                          : allowed == max_memory()
+                              ? "a run may take, a quarter of this machine's memory"
+                              : "a file of less than 1 MB may take";
+    throw InputError(where, fmt::format("needs {} of memory for {}, more than the {} that ",
+                                        text_of(bytes), what, text_of(allowed)) +
+                                whose + "; " + Parameter{"max_memory", option_of(bytes)} +
+                                " allows it");
 }
 
 std::uint64_t machine_memory(const fs::path& proc, const fs::path& groups) {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "core/message.h"
+
 namespace stipple {
 
 /// While it lives, `max_memory` is so many bytes, whatever the machine has. Not for more than one
@@ -36,7 +38,7 @@ inline constexpr std::uint64_t kSmallInput = 1'000'000;
 
 /// Before memory is taken. \throws InputError at `where` if `bytes` for `what` are more than
 /// `max_memory(input_bytes)`: it names both, and the option that allows it.
-void check_memory(std::uint64_t bytes, std::string_view where, std::string_view what,
+void check_memory(std::uint64_t bytes, const Message& where, std::string_view what,
                   std::uint64_t input_bytes = kEndlessInput);
 
 /// Bytes of RAM, or of the lowest limit of the control groups that the process is in.

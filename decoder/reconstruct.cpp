@@ -69,8 +69,9 @@ class PacketBuffer {
         if (!options_.fill_gaps && missing_ > max_missing)
             throw InputError(reader_.name(),
                              fmt::format("slots {} to {} are missing, which makes {} of {}; to "
-                                         "decode them too, give --fill-gaps",
-                                         slots_, slot - 1, missing_, missing_ + present_));
+                                         "decode them too, give ",
+                                         slots_, slot - 1, missing_, missing_ + present_) +
+                                 Parameter{"fill_gaps", "true"});
         slots_ = slot;
     }
 
@@ -251,8 +252,9 @@ void check_proportion(const StreamReader& reader, const DecodeOptions& options, 
     if (options.fill_gaps || light <= 0x1p25 || sampled) return;
     throw InputError(reader.name(),
                      fmt::format("slots up to {} hold {} samples only, for {:.0f} MB of frames; "
-                                 "to decode them nevertheless, give --fill-gaps",
-                                 slots - 1, samples, light * sizeof(float) * 1e-6));
+                                 "to decode them nevertheless, give ",
+                                 slots - 1, samples, light * sizeof(float) * 1e-6) +
+                         Parameter{"fill_gaps", "true"});
 }
 
 /// \throws InputError as check_memory for a block of slots. A small file is one for it that has

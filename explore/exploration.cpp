@@ -35,7 +35,7 @@ ExploreOptions checked(ExploreOptions options) {
     std::string names;
     for (const FigureColumn& column : kFigureColumns)
         names += fmt::format("{}{}", names.empty() ? "" : ", ", column.name);
-    throw InputError("--rank", fmt::format("\"{}\" is none of {}", name, names));
+    throw InputError(Parameter{"rank"}, fmt::format("\"{}\" is none of {}", name, names));
 }
 
 Space replaced(Space space, const std::vector<SpaceAxis>& axes) {

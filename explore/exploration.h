@@ -91,7 +91,7 @@ class Exploration {
     /// The slots that this trial compares.
     [[nodiscard]] ComparedSlots compared() const { return trial_->compared; }
     /// Of the footage that was read since the last call.
-    [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+    [[nodiscard]] std::vector<Message> take_warnings() { return std::exchange(warnings_, {}); }
     /// What determines a trial that was begun. Precondition: neither `put` nor `fail` was called.
     [[nodiscard]] const std::string& identity(std::uint64_t number) const {
         return begun_.at(number).identity;
@@ -176,7 +176,7 @@ class Exploration {
     std::string footage_;                     ///< of light_
     std::optional<TrialLight> light_;
     std::map<int, ComparedSlots> compared_;  ///< of light_, by the number of its slots
-    std::vector<std::string> warnings_;
+    std::vector<Message> warnings_;
     std::optional<Trial> trial_;
     std::map<std::uint64_t, Begun> begun_;  ///< trials that may be running
 };

@@ -36,8 +36,8 @@ struct TrialStopped {};
 struct TrialLight {
     FluxVideo video;
     FootageOrigin origin;
-    bool is_whole = true;                    ///< false: the footage has more slots
-    std::vector<std::string> warnings = {};  ///< of the reader
+    bool is_whole = true;                ///< false: the footage has more slots
+    std::vector<Message> warnings = {};  ///< of the reader
 };
 
 /// Whether `footage` names an embedded scene.

@@ -270,10 +270,12 @@ std::vector<double> read_time_stamps(const std::vector<std::uint64_t>& stamps,
     const double stamped_hz = 1 / period_s;
     const bool same = traits.frames_hz && std::abs(stamped_hz / *traits.frames_hz - 1) <= rounding;
     if (traits.frames_hz && !same)
-        traits.warnings.push_back(fmt::format(
-            "declares {:.10g} frames per second, but its time stamps are {:.4g} s apart; "
-            "{:.5g} per second are taken; --frames-hz sets another rate",
-            *traits.frames_hz, period_s, stamped_hz));
+        traits.warnings.push_back(
+            fmt::format(
+                "declares {:.10g} frames per second, but its time stamps are {:.4g} s apart; "
+                "{:.5g} per second are taken; ",
+                *traits.frames_hz, period_s, stamped_hz) +
+            Parameter{"frames_hz"} + " sets another rate");
     if (!same) traits.frames_hz = stamped_hz;
     std::vector<double> times;
     for (const std::uint64_t stamp : stamps)

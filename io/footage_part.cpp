@@ -104,32 +104,34 @@ FrameReduction::FrameReduction(const FootagePart& part, FrameShape source, Colou
         return fmt::format("{} x {} pixels", shape.cols, shape.rows);
     };
     if (is_mosaic && (part.bin > 1 || part.size))
-        throw InputError(name, fmt::format("is the mosaic of a colour filter array, whose colours "
-                                           "--{} would mix",
-                                           part.bin > 1 ? "bin" : "resize"));
+        throw InputError(name, "is the mosaic of a colour filter array, whose colours " +
+                                   Parameter{part.bin > 1 ? "bin" : "resize"} + " would mix");
     if (part.crop) {
         corner_ = part.crop->corner.value_or(middle_of(*part.crop, source, is_mosaic));
         if (!fits(*part.crop, corner_, source))
-            throw InputError(name, fmt::format("has {}, in which --crop {} does not lie",
-                                               size_text(source), text_of(*part.crop)));
+            throw InputError(name, fmt::format("has {}, in which ", size_text(source)) +
+                                       Parameter{"crop", text_of(*part.crop)} + " does not lie");
         if (is_mosaic && (corner_.row % 2 != 0 || corner_.col % 2 != 0))
-            throw InputError(name, fmt::format("is the mosaic of a colour filter array: --crop {} "
-                                               "must begin at an even column and row",
-                                               text_of(*part.crop)));
+            throw InputError(name, "is the mosaic of a colour filter array: " +
+                                       Parameter{"crop", text_of(*part.crop)} +
+                                       " must begin at an even column and row");
         cropped_ = {part.crop->rows, part.crop->cols, source.planes};
     }
     if (cropped_.rows % part.bin != 0 || cropped_.cols % part.bin != 0)
-        throw InputError(name,
-                         fmt::format("has {0}, not a multiple of --bin {1}; add --crop {2}x{3}",
-                                     size_text(cropped_), part.bin,
-                                     std::max(cropped_.cols / part.bin, 1) * part.bin,
-                                     std::max(cropped_.rows / part.bin, 1) * part.bin));
+        throw InputError(
+            name,
+            fmt::format("has {}, not a multiple of ", size_text(cropped_)) +
+                Parameter{"bin", fmt::to_string(part.bin)} + "; add " +
+                Parameter{"crop",
+                          fmt::format("{}x{}", std::max(cropped_.cols / part.bin, 1) * part.bin,
+                                      std::max(cropped_.rows / part.bin, 1) * part.bin)});
     binned_ = {cropped_.rows / part.bin, cropped_.cols / part.bin, source.planes};
     resized_ = part.size ? FrameShape{part.size->rows, part.size->cols, source.planes} : binned_;
     if (resized_.rows > binned_.rows || resized_.cols > binned_.cols)
-        throw InputError(name, fmt::format("has {}, which --resize {}x{} would enlarge; it only "
-                                           "makes frames smaller",
-                                           size_text(binned_), resized_.cols, resized_.rows));
+        throw InputError(
+            name, fmt::format("has {}, which ", size_text(binned_)) +
+                      Parameter{"resize", fmt::format("{}x{}", resized_.cols, resized_.rows)} +
+                      " would enlarge; it only makes frames smaller");
     if (cropped_ != source_) crop_.resize(cropped_.sites());
     if (binned_ != cropped_) bin_.resize(binned_.sites());
 }

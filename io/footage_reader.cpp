@@ -116,7 +116,7 @@ class ImageSequence {
 using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
 
 /// Why a file cannot be footage, by its extension.
-std::string not_footage(const fs::path& source) {
+Message not_footage(const fs::path& source) {
     const std::string extension = lower_extension(source);
     if (extension == ".stipple")
         return "is a sample stream, not footage; \"stipple decode\" makes video of it";
@@ -125,7 +125,8 @@ std::string not_footage(const fs::path& source) {
     if (const std::string remedy = conversion_of(source); !remedy.empty())
         return "is not a recognised footage format" + remedy;
     return "is not a recognised footage format; give a folder or pattern of PNG, TIFF, EXR or DNG "
-           "images, a video or camera file, or .npy; a file without a header needs --raw";
+           "images, a video or camera file, or .npy; a file without a header needs " +
+           Parameter{"raw"};
 }
 
 Source open_source(const fs::path& source, const FootageOptions& options) {
@@ -161,7 +162,7 @@ struct FootageReader::Impl {
     FrameShape source_shape;
     SourceTraits traits;
     Transfer transfer = Transfer::kLinear;
-    std::vector<std::string> warnings;  ///< not yet taken
+    std::vector<Message> warnings;  ///< not yet taken
     bool looked_at_brightness = false;
     bool at_end = false;
     std::vector<float> colour;  ///< the frame before its reduction to luminance
@@ -181,7 +182,7 @@ struct FootageReader::Impl {
     bool read_whole(std::span<float> frame);
     void skip(int frames);
     void make_linear(std::span<float> light) const;
-    void warn(std::string text) {
+    void warn(Message text) {
         if (!text.empty()) warnings.push_back(std::move(text));
     }
 };
@@ -205,14 +206,14 @@ FootageReader::Impl::Impl(const fs::path& path, const FootageOptions& wanted)
     }
     if (options.frames_hz) traits.frames_hz = options.frames_hz;
     if (options.luminance && traits.filter != ColourFilter::kNone)
-        throw InputError(name,
-                         "is the mosaic of a colour filter array, of which there is "
-                         "no --luminance");
+        throw InputError(name, "is the mosaic of a colour filter array, of which there is no " +
+                                   Parameter{"luminance"});
     if (options.min_value && options.max_value && *options.min_value > *options.max_value)
-        throw InputError(name, fmt::format("--min-value {} is above --max-value {}",
-                                           *options.min_value, *options.max_value));
+        throw InputError(name, Parameter{"min_value", fmt::to_string(*options.min_value)} +
+                                   " is above " +
+                                   Parameter{"max_value", fmt::to_string(*options.max_value)});
     transfer = transfer_of(options, traits, std::holds_alternative<VideoReader>(source), name);
-    for (std::string& text : reading_warnings(traits, options, name)) warn(std::move(text));
+    for (Message& text : reading_warnings(traits, options, name)) warn(std::move(text));
     check_frames();
     if (options.part.has_whole_frames()) return;
     constexpr std::uint64_t kSiteBytes = 12;  // the whole frame and two steps of its reduction
@@ -235,8 +236,8 @@ void FootageReader::Impl::check_frames() const {
     const FrameRange& frames = options.part.frames;
     const auto slots = source_slots();
     if (slots && std::max(frames.begin + 1, frames.end.value_or(0)) > *slots)
-        throw InputError(
-            name, fmt::format("has {} frames, so not all of --frames {}", *slots, text_of(frames)));
+        throw InputError(name, fmt::format("has {} frames, so not all of ", *slots) +
+                                   Parameter{"frames", text_of(frames)});
 }
 
 /// Light of HDR video has the primaries of BT.709 afterwards, as all other.
@@ -301,7 +302,7 @@ bool FootageReader::gamma_coded() const {
     return impl_->traits.gamma_coded;
 }
 
-std::vector<std::string> FootageReader::take_warnings() {
+std::vector<Message> FootageReader::take_warnings() {
     return std::exchange(impl_->warnings, {});
 }
 
@@ -323,7 +324,7 @@ bool FootageReader::Impl::read_whole(std::span<float> frame) {
             if (const std::string text = images->exposure_warning(); !text.empty())
                 warn(fmt::format("{}: {}", name, text));
         if (const auto* video = std::get_if<VideoReader>(&source)) {
-            for (std::string& text : video->warnings()) warn(std::move(text));
+            for (Message& text : video->warnings()) warn(std::move(text));
             warn(unequal_times_warning(video->unequal_times(), options, name));
         }
         return false;
@@ -358,10 +359,10 @@ bool FootageReader::read(std::span<float> frame) {
     }
     if (!impl.read_whole(whole)) {
         if (impl.position == frames.begin && frames.begin > 0)
-            throw InputError(impl.name, fmt::format("ends before --frames {}", text_of(frames)));
+            throw InputError(impl.name, "ends before " + Parameter{"frames", text_of(frames)});
         if (frames.end)
             throw InputError(impl.name,
-                             fmt::format("ends before the end of --frames {}", text_of(frames)));
+                             "ends before the end of " + Parameter{"frames", text_of(frames)});
         return false;
     }
     if (impl.reduction) (*impl.reduction)(whole, frame);

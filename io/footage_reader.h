@@ -10,6 +10,7 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/light.h"
+#include "core/message.h"
 #include "io/footage_part.h"
 #include "io/image.h"
 #include "io/raw_format.h"
@@ -72,7 +73,7 @@ class FootageReader {
     /// What the source is: "PNG images", "video", ".cine file".
     [[nodiscard]] std::string kind() const;
     /// What the user should know of the source and of its reading that is new since the last call.
-    [[nodiscard]] std::vector<std::string> take_warnings();
+    [[nodiscard]] std::vector<Message> take_warnings();
 
     /// Reads the next frame, order (plane, row, col), into `frame` (shape().sites() floats).
     /// Returns false at the end. \throws InputError naming the file (and for a value the row,

@@ -15,32 +15,31 @@ Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits, 
     if (traits.declared) return *traits.declared;
     if (traits.gamma_coded && (is_video || !traits.curve.empty()))
         throw InputError(name, traits.curve.empty()
-                                   ? "declares no transfer function, so --transfer auto has none; "
-                                     "name it, as --transfer bt709 of most cameras"
-                                   : fmt::format("declares the transfer function {}, which is not "
-                                                 "known; convert it first, e.g. by ffmpeg",
-                                                 traits.curve));
+                                   ? "declares no transfer function, so " +
+                                         Parameter{"transfer", "auto"} + " has none; name it, as " +
+                                         Parameter{"transfer", "bt709"} + " of most cameras"
+                                   : Message("declares the transfer function " + traits.curve +
+                                             ", which is not known; convert it first, e.g. by "
+                                             "ffmpeg"));
     return traits.gamma_coded ? Transfer::kSrgb : Transfer::kLinear;
 }
 
-std::vector<std::string> reading_warnings(const SourceTraits& traits, const FootageOptions& options,
-                                          const std::string& name) {
-    std::vector<std::string> warnings;
+std::vector<Message> reading_warnings(const SourceTraits& traits, const FootageOptions& options,
+                                      const std::string& name) {
+    std::vector<Message> warnings;
     const Transfer transfer = options.transfer.value_or(Transfer::kLinear);
     const bool hdr = traits.declared == Transfer::kPq || traits.declared == Transfer::kHlg;
     if (hdr && transfer != Transfer::kAuto && transfer != traits.declared)
-        warnings.push_back(fmt::format("{}: is HDR in the curve {}: add --transfer {}", name,
-                                       traits.curve, name_of(*traits.declared)));
+        warnings.push_back(fmt::format("{}: is HDR in the curve {}: add ", name, traits.curve) +
+                           Parameter{"transfer", std::string(name_of(*traits.declared))});
     else if (traits.gamma_coded && !options.transfer)
-        warnings.push_back(
-            fmt::format("{}: looks gamma-coded: add --transfer srgb, or --transfer "
-                        "linear if its numbers are linear light",
-                        name));
+        warnings.push_back(name + ": looks gamma-coded: add " + Parameter{"transfer", "srgb"} +
+                           ", or " + Parameter{"transfer", "linear"} +
+                           " if its numbers are linear light");
     if (traits.floating && transfer != Transfer::kLinear && transfer != Transfer::kAuto)
-        warnings.push_back(
-            fmt::format("{}: holds floating-point numbers, which are linear light as "
-                        "a rule; --transfer {} bends them",
-                        name, name_of(transfer)));
+        warnings.push_back(name +
+                           ": holds floating-point numbers, which are linear light as a rule; " +
+                           Parameter{"transfer", std::string(name_of(transfer))} + " bends them");
     constexpr double kMicrosecondsASecond = 1e6;
     const double period_us = kMicrosecondsASecond / traits.frames_hz.value_or(0);
     if (traits.frames_hz && traits.exposure_us && *traits.exposure_us < period_us / 2)
@@ -55,24 +54,21 @@ std::vector<std::string> reading_warnings(const SourceTraits& traits, const Foot
             fmt::format("{}: declares the primaries {}, which are not converted to those of Rec. "
                         "709; convert it first, as video by ffmpeg -vf colorspace=bt709",
                         name, traits.primaries));
-    if (std::string text = unequal_times_warning(traits.unequal_times, options, name);
-        !text.empty())
+    if (Message text = unequal_times_warning(traits.unequal_times, options, name); !text.empty())
         warnings.push_back(std::move(text));
-    for (const std::string& text : traits.warnings)
-        warnings.push_back(fmt::format("{}: {}", name, text));
-    if (traits.has_alpha) warnings.push_back(name + ": its alpha channel is left out");
+    for (const Message& text : traits.warnings) warnings.push_back(name + ": " + text);
+    if (traits.has_alpha) warnings.emplace_back(name + ": its alpha channel is left out");
     return warnings;
 }
 
-std::string unequal_times_warning(const std::string& apart, const FootageOptions& options,
-                                  const std::string& name) {
+Message unequal_times_warning(const std::string& apart, const FootageOptions& options,
+                              const std::string& name) {
     if (apart.empty() || (options.at_their_times && !options.frames_hz)) return {};
-    return fmt::format(
-        "{}: its frames are {}, but {}", name, apart,
-        options.at_their_times
-            ? "--frames-hz makes them equally long"
-            : "each becomes one slot; \"emulate --resample blend\" puts them at their "
-              "times");
+    const Message remedy = options.at_their_times
+                               ? Parameter{"frames_hz"} + " makes them equally long"
+                               : "each becomes one slot; " + Parameter{"resample", "blend"} +
+                                     " of the emulation puts them at their times";
+    return fmt::format("{}: its frames are {}, but ", name, apart) + remedy;
 }
 
 std::string brightness_warning(std::span<const float> light, const std::string& where) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "io/footage_reader.h"
 #include "io/image.h"
 
@@ -16,14 +17,13 @@ namespace stipple {
                                    bool is_video, const std::string& name);
 
 /// Effects of `options` on numbers of this kind that users may not expect; each begins with `name`.
-[[nodiscard]] std::vector<std::string> reading_warnings(const SourceTraits& traits,
-                                                        const FootageOptions& options,
-                                                        const std::string& name);
+[[nodiscard]] std::vector<Message> reading_warnings(const SourceTraits& traits,
+                                                    const FootageOptions& options,
+                                                    const std::string& name);
 
 /// A warning if frames are `apart` unequally and `options` do not heed it; else empty.
-[[nodiscard]] std::string unequal_times_warning(const std::string& apart,
-                                                const FootageOptions& options,
-                                                const std::string& name);
+[[nodiscard]] Message unequal_times_warning(const std::string& apart, const FootageOptions& options,
+                                            const std::string& name);
 
 /// A warning if the mean of `light` is far above 1.0, as with digital numbers stored in floating
 /// point; else empty.

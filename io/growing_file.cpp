@@ -26,9 +26,11 @@ std::optional<std::filesystem::path> GrowingFile::wait_for_file() {
         if (auto partial = partial_of(name_)) return partial;
         if (more(0)) continue;
         if (!timed_out_) return std::nullopt;
-        throw InputError(name_.string(), fmt::format("has not appeared within {:g} s; start its "
-                                                     "writer first, or raise --timeout",
-                                                     timeout_s()));
+        throw InputError(
+            name_.string(),
+            fmt::format("has not appeared within {:g} s; start its writer first, or raise ",
+                        timeout_s()) +
+                Parameter{"timeout"});
     }
 }
 

@@ -8,6 +8,7 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/light.h"
+#include "core/message.h"
 
 namespace stipple {
 
@@ -29,7 +30,7 @@ struct SourceTraits {
     std::string curve = {};      ///< from light to numbers, declared; undone unless `gamma_coded`
     std::string primaries = {};  ///< of a video, if far from those of Rec. 709
     std::string unequal_times = {};  ///< how far apart frames are, if unequally: "1 to 2 s apart"
-    std::vector<std::string> warnings = {};  ///< what else it declares that users should know
+    std::vector<Message> warnings = {};  ///< what else it declares that users should know
 };
 
 /// One decoded image, order (plane, row, col). Integers are scaled to 0..1 (255 or 65535 = 1),

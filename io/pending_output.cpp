@@ -116,7 +116,7 @@ fs::path link_target(const fs::path& path) {
         if (statfs(folder_of(target).c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC)
             throw InputError(path.string(),
                              "stands for a file that is open, which no other can replace; give "
-                             "a name, or for --json \"-\"");
+                             "another name");
         target = folder_of(target) / fs::read_symlink(target, error);
     }
     if (target == path) return path;
@@ -152,9 +152,7 @@ PendingOutput::PendingOutput(const fs::path& final_path, bool force, OutputKind 
 }
 
 void PendingOutput::check_replaceable() const {
-    const auto refuse = [&](const std::string& problem) {
-        throw InputError(final_.string(), problem);
-    };
+    const auto refuse = [&](const Message& problem) { throw InputError(final_.string(), problem); };
     std::error_code error;
     const auto status = fs::symlink_status(final_, error);
     if (kind_ == OutputKind::kFile && fs::is_directory(status))
@@ -163,7 +161,9 @@ void PendingOutput::check_replaceable() const {
         refuse("exists already and is not a regular file; give another name");
     if (kind_ == OutputKind::kFolder && fs::is_directory(status) && fs::is_empty(final_, error))
         return;
-    if (!force_) refuse("exists already; give another name, or --force to replace it");
+    if (!force_)
+        refuse("exists already; give another name, or " + Parameter{"force", "true"} +
+               " to replace it");
     if (kind_ == OutputKind::kFile) return;
     if (!fs::is_directory(status)) refuse("is not a folder; give another name");
     try {

@@ -207,12 +207,15 @@ void check_grey(const Header& header, std::uint32_t stored, std::uint32_t depth)
                          fmt::format("declares colour (\"{}\"); only grey is supported", colour));
     const bool in_words = depth >= 10 && depth < stored && depth % 2 == 0 && !is_at_top(header);
     const std::string bits = stored == 12 ? "12msb" : fmt::to_string(in_words ? depth : stored);
+    const std::string size = fmt::format("{}x{}", header.count(kWidth), header.count(kHeight));
     throw InputError(
         header.name(),
-        fmt::format("declares raw pixels of a camera that is not known to be grey ({0}); give the "
-                    ".mraw file with --raw {1}x{2}:bayerrg{3} (or bayergr, bayergb, bayerbg, as "
-                    "its filter array begins), or --raw {1}x{2}:mono{3} if it is grey",
-                    camera, header.count(kWidth), header.count(kHeight), bits));
+        fmt::format("declares raw pixels of a camera that is not known to be grey ({}); give the "
+                    ".mraw file with ",
+                    camera) +
+            Parameter{"raw", size + ":bayerrg" + bits} +
+            " (or bayergr, bayergb, bayerbg, as its filter array begins), or " +
+            Parameter{"raw", size + ":mono" + bits} + " if it is grey");
 }
 
 /// The format, and its highest number.
@@ -243,8 +246,9 @@ void read_times(const Header& header, SourceTraits& traits) {
         *traits.frames_hz /= step;
         traits.warnings.push_back(
             fmt::format("has one in {:.10g} of the {:.10g} frames per second recorded, so {:.10g} "
-                        "per second; --frames-hz sets another rate",
-                        step, *header.number(kRate), *traits.frames_hz));
+                        "per second; ",
+                        step, *header.number(kRate), *traits.frames_hz) +
+            Parameter{"frames_hz"} + " sets another rate");
     }
     constexpr double kSecondsANanosecond = 1e-9;
     constexpr double kMicrosecondsASecond = 1e6;

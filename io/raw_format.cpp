@@ -122,11 +122,11 @@ std::uint64_t count_frames(const RawFormat& raw, std::uint64_t size, const std::
     throw InputError(
         name,
         fmt::format("has {} bytes{}, which are {:.6g} frames of {} x {} {} ({} bytes each{}); "
-                    "check size, pixel format and offset of --raw{}",
+                    "check size, pixel format and offset of ",
                     size, from, static_cast<double>(bytes) / static_cast<double>(stride), raw.cols,
                     raw.rows, raw.format.name, frame,
-                    raw.stride ? fmt::format(", stride {}", stride) : "",
-                    remedies(raw, bytes, stride, fitting)));
+                    raw.stride ? fmt::format(", stride {}", stride) : "") +
+            Parameter{"raw"} + remedies(raw, bytes, stride, fitting));
 }
 
 }  // namespace

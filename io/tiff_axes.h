@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message.h"
+
 namespace stipple {
 
 /// What a TIFF file holds: its directories, and the samples of the first one, all channels.
@@ -18,7 +20,7 @@ struct TiffExtent {
 /// What a description declares of pages that are moments in time.
 struct TiffTimes {
     std::optional<double> frames_hz = {};
-    std::vector<std::string> warnings = {};  ///< without the name of the file
+    std::vector<Message> warnings = {};  ///< without the name of the file
 };
 
 /// Reads the ImageDescription of the first page as ImageJ, OME-XML or tifffile write it; nothing is

@@ -321,8 +321,8 @@ int VideoDecoder::quarter_turns() const {
     return (static_cast<int>(quarters) + 4) % 4;
 }
 
-std::vector<std::string> VideoDecoder::warnings() const {
-    std::vector<std::string> texts;
+std::vector<Message> VideoDecoder::warnings() const {
+    std::vector<Message> texts;
     const int count = impl_->errors.count;
     if (count > 0)
         texts.push_back(fmt::format(
@@ -335,7 +335,7 @@ std::vector<std::string> VideoDecoder::warnings() const {
         texts.push_back(fmt::format(
             "{}: declares pixels {:.4g} times as wide as high; they are taken for square ones",
             impl_->name, av_q2d(pixel)));
-    if (!impl_->shortfall.empty()) texts.push_back(impl_->shortfall);
+    if (!impl_->shortfall.empty()) texts.emplace_back(impl_->shortfall);
     return texts;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 struct AVFrame;  // of FFmpeg's libavutil
 
 namespace stipple {
@@ -37,7 +39,7 @@ class VideoDecoder {
     /// As FrameTimes::unequal, of the frames so far.
     [[nodiscard]] std::string unequal_times() const;
     /// Number of signs of damaged or missing frames so far.
-    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::vector<Message> warnings() const;
 
   private:
     struct Impl;

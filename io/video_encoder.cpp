@@ -89,8 +89,9 @@ void check_size(FrameShape shape, const VideoCoding& coding, const std::string& 
     if (!hevc || std::min(shape.rows, shape.cols) >= kMinSide) return;
     throw InputError(where,
                      fmt::format("frames of {} x {} are too small for HEVC, which is encoded "
-                                 "from {} x {} on; AV1 (--codec av1) is for any size",
-                                 shape.cols, shape.rows, kMinSide, kMinSide));
+                                 "from {} x {} on; AV1 (",
+                                 shape.cols, shape.rows, kMinSide, kMinSide) +
+                         Parameter{"codec", "av1"} + ") is for any size");
 }
 
 AVDictionary* options_of(const VideoCoding& coding) {

@@ -53,7 +53,7 @@ const SourceTraits& VideoReader::traits() const {
     return impl_->planes.traits();
 }
 
-std::vector<std::string> VideoReader::warnings() const {
+std::vector<Message> VideoReader::warnings() const {
     return impl_->decoder.warnings();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/message.h"
 #include "io/image.h"
 
 namespace stipple {
@@ -38,7 +39,7 @@ class VideoReader {
     /// As FrameTimes::unequal, of the frames so far.
     [[nodiscard]] std::string unequal_times() const;
     /// Number of signs of damaged or missing frames so far.
-    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::vector<Message> warnings() const;
     /// The file and the last frame read, for messages.
     [[nodiscard]] std::string where() const;
 

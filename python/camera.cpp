@@ -79,18 +79,18 @@ void SessionWarnings::take(const SessionEvent& event) {
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) take(lost->warning);
 }
 
-void SessionWarnings::take(std::string text) {
+void SessionWarnings::take(Message text) {
     const std::lock_guard lock(mutex_);
     texts_.push_back(std::move(text));
 }
 
 void SessionWarnings::pass_on() {
-    std::vector<std::string> texts;
+    std::vector<Message> texts;
     {
         const std::lock_guard lock(mutex_);
         texts.swap(texts_);
     }
-    for (const std::string& text : texts) warn(text);
+    for (const Message& text : texts) warn(text);
 }
 
 py::dict lost_dict(const SessionTotals& totals) {

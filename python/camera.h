@@ -55,13 +55,13 @@ class SessionWarnings {
   public:
     /// Without the GIL.
     void take(const SessionEvent& event);
-    void take(std::string text);
+    void take(Message text);
     /// Has Python warn. With the GIL.
     void pass_on();
 
   private:
     std::mutex mutex_;
-    std::vector<std::string> texts_;
+    std::vector<Message> texts_;
 };
 
 /// Missing frames by cause, and the counts of the transport: the keys `lost` and `transport` of

@@ -5,10 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <regex>
 #include <string>
-#include <utility>
 
+#include "core/parsed_number.h"
 #include "io/partial_output.h"
 #include "python/bindings.h"
 
@@ -33,31 +32,21 @@ std::string short_text(const py::object& value) {
     return std::string(py::str(begin)) + (is_whole ? "" : " ...");
 }
 
-std::string in_python(const std::string& message) {
-    const std::pair<const char*, const char*> arguments[] = {
-        {"--set (sensor|schedule|decoder|camera)[.]([\\w.-]*)", "$2 setting $3"},
-        {"--force", "force=True"},
-        {"--fill-gaps", "fill_gaps=True"},
-        {"--transfer (linear|gamma22|srgb|bt709|pq|hlg|auto)", "transfer=\"$2\""},
-        {"--resample (hold|blend|flow)", "resample=\"$2\""},
-        {"--(transfer|resample|scale|raw|luminance|buffers|rank)", "$2"},
-        {"--(min|max)-value ([0-9.e+-]+)", "$2_value=$3"},
-        {"--frames-hz", "frames_hz"},
-        {"--overrun drop", "overrun=\"drop\""},
-        {"--max-memory ([0-9.]+[KMGT])", "stipple.MaxMemory(\"$2\")"},
-        {"--max-memory", "MaxMemory"}};
-    std::string text = message;
-    for (const auto& [option, argument] : arguments)
-        text = std::regex_replace(text, std::regex(fmt::format("(^|[ (]){}(?![\\w./-])", option)),
-                                  fmt::format("$1{}", argument));
-    return text;
+std::string as_argument(const Parameter& parameter) {
+    const auto& [name, value] = parameter;
+    if (const auto dot = name.find('.'); dot != std::string::npos)
+        return fmt::format("{} setting {}{}", name.substr(0, dot), name.substr(dot + 1),
+                           value.empty() ? "" : "=" + value);
+    if (name == "max_memory")
+        return value.empty() ? "MaxMemory" : fmt::format("stipple.MaxMemory(\"{}\")", value);
+    if (value.empty()) return name;
+    if (value == "true") return name + "=True";
+    const bool is_number = parsed_number<double>(value).has_value();
+    return fmt::format(is_number ? "{}={}" : "{}=\"{}\"", name, value);
 }
 
-std::string in_python(const InputError& error) {
-    const std::string_view where = error.where();
-    if (where.starts_with("--set ") || where == "--overrun drop" || where == "--rank")
-        return in_python(error.what());
-    return std::string(where) + in_python(error.what() + where.size());
+std::string in_python(const Message& message) {
+    return message.text(as_argument);
 }
 
 namespace {
@@ -75,9 +64,9 @@ void translate(std::exception_ptr thrown) {
     } catch (const FileError& error) {
         set_error(class_of(error.number()), error.what());
     } catch (const InputError& error) {
-        set_error(PyExc_ValueError, in_python(error));
+        set_error(PyExc_ValueError, in_python(error.message()));
     } catch (const DeviceError& error) {
-        set_error(PyExc_OSError, in_python(error.what()));
+        set_error(PyExc_OSError, in_python(error.message()));
     } catch (const fs::filesystem_error& error) {
         set_error(class_of(error.code().value()), error.what());
     }
@@ -126,15 +115,15 @@ void check_name(const fs::path& file, const OutputName& name) {
 }
 
 void check_readable(const fs::path& file, const InputError& error) {
-    if (::access(file.c_str(), R_OK) != 0) throw FileError(errno, in_python(error));
+    if (::access(file.c_str(), R_OK) != 0) throw FileError(errno, in_python(error.message()));
     std::error_code unknown;
-    if (fs::is_directory(file, unknown)) throw FileError(EISDIR, in_python(error));
+    if (fs::is_directory(file, unknown)) throw FileError(EISDIR, in_python(error.message()));
 }
 
 void check_creatable(const fs::path& file, const InputError& error) {
     std::error_code unknown;
-    if (fs::exists(file, unknown)) throw FileError(EEXIST, in_python(error));
-    if (!fs::exists(folder_of(file), unknown)) throw FileError(ENOENT, in_python(error));
+    if (fs::exists(file, unknown)) throw FileError(EEXIST, in_python(error.message()));
+    if (!fs::exists(folder_of(file), unknown)) throw FileError(ENOENT, in_python(error.message()));
 }
 
 void bind_errors() {

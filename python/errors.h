@@ -16,10 +16,8 @@
 /// raises.
 namespace stipple::python {
 
-/// A message of the program with its options as arguments. What is part of a name is no option:
-/// "shot--force.npy"; what an error names is a file unless it begins with an option.
-[[nodiscard]] std::string in_python(const std::string& message);
-[[nodiscard]] std::string in_python(const InputError& error);
+/// Parameters as arguments: "fill_gaps=True".
+[[nodiscard]] std::string in_python(const Message& message);
 
 /// How Python shows a value, of values that are long the begin.
 [[nodiscard]] std::string short_text(const pybind11::object& value);

@@ -17,6 +17,7 @@
 #include "explore/results_table.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/errors.h"
 #include "python/footage.h"
 
 namespace stipple::python {
@@ -82,7 +83,7 @@ class RunExploration {
     bool begin(std::uint64_t number) {
         const Trial* trial = nullptr;
         unlocked([&] { trial = exploration_.begin(number); });
-        for (const std::string& text : exploration_.take_warnings()) warn(text);
+        for (const Message& text : exploration_.take_warnings()) warn(text);
         if (trial == nullptr) advance();
         return trial != nullptr;
     }
@@ -95,7 +96,7 @@ class RunExploration {
                                                    exploration_.store().stream_of(trial.identity),
                                                    [this] { return progress_->reach(done_); }));
             } catch (const InputError& e) {
-                exploration_.fail(number, e.what());
+                exploration_.fail(number, in_python(e.message()));
             }
         });
         advance();

@@ -30,10 +30,10 @@ std::optional<fs::path> path_of(const py::object& video) {
 }
 
 std::unique_ptr<ReadAhead> open(const fs::path& path, const FootageOptions& options,
-                                std::vector<std::string>& warnings) {
+                                std::vector<Message>& warnings) {
     const auto open_it = [&] {
-        return std::make_unique<ReadAhead>(
-            path, options, [&](const std::string& text) { warnings.push_back(text); });
+        return std::make_unique<ReadAhead>(path, options,
+                                           [&](const Message& text) { warnings.push_back(text); });
     };
     // Folders and printf patterns are no files.
     const bool is_file = path.string().find('%') == std::string::npos && !fs::is_directory(path);
@@ -106,7 +106,7 @@ py::array as_array(std::unique_ptr<std::vector<float>> frames, FrameShape shape)
     return py::array(planar.attr("transpose")(0, 2, 3, 1));
 }
 
-void warn(const std::string& text, int level) {
+void warn(const Message& text, int level) {
     if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, in_python(text).c_str(), level) != 0)
         throw py::error_already_set();
 }
@@ -176,17 +176,17 @@ FootageOrigin Footage::origin() const {
 
 void Footage::warn_of(const SensorParams& sensor) const {
     if (!files_) return;
-    for (const std::string& text :
+    for (const Message& text :
          sensor_notes(path_, *files_, sensor, reading_.resampling.has_value()))
         warn(text);
 }
 
 void Footage::pass_warnings_on(const SensorParams* sensor) {
-    for (const std::string& text : std::exchange(warnings_, {})) warn(text);
+    for (const Message& text : std::exchange(warnings_, {})) warn(text);
     if (array_) warn(array_->warning());
     if (!files_) return;
     if (sensor == nullptr) return warn(recording_note(path_, *files_));
-    for (const std::string& text :
+    for (const Message& text :
          end_notes(path_, *files_, *sensor, reading_.resampling.has_value()))
         warn(text);
 }

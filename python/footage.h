@@ -13,6 +13,7 @@
 #include "capture/recording/resampled_footage.h"
 #include "core/colour_filter.h"
 #include "core/geometry.h"
+#include "core/message.h"
 #include "io/footage_reader.h"
 #include "io/frame_resampler.h"
 #include "readout/provenance.h"
@@ -88,7 +89,7 @@ class Footage {
   private:
     Reading reading_;
     std::string path_;  ///< empty of an array
-    std::vector<std::string> warnings_;
+    std::vector<Message> warnings_;
     std::optional<ArrayFrames> array_;
     std::unique_ptr<ReadAhead> files_;
 };
@@ -100,6 +101,6 @@ class Footage {
 
 /// Has Python warn, unless the text is empty. `level` as warnings.warn: 1 blames who has called us,
 /// 2 who has called that. With the GIL.
-void warn(const std::string& text, int level = 2);
+void warn(const Message& text, int level = 2);
 
 }  // namespace stipple::python

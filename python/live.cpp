@@ -114,7 +114,7 @@ py::dict write_live(const CameraTask& task, const LiveTask& live, const fs::path
             file, setup,
             StreamRecorderOptions{.force = force, .provenance = provenance_of(setup, origin)});
     });
-    for (const std::string& text : camera->camera.description().warnings) warn(text);
+    for (const Message& text : camera->camera.description().warnings) warn(text);
     warn(mosaic_warning(setup, to_light.filter()));
     if (live.preview)
         camera->preview.emplace(*live.preview, stream_header_of(setup, {}), camera->warnings);

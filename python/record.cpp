@@ -31,7 +31,7 @@ auto creating_from_camera(const CameraTask& task, const fs::path& file, Create&&
     try {
         return opening(task, std::forward<Create>(create));
     } catch (const InputError& error) {
-        if (error.where() == file.string()) check_creatable(file, error);
+        if (error.where().text() == file.string()) check_creatable(file, error);
         throw;
     }
 }
@@ -65,7 +65,7 @@ RecordingFile record(const CameraTask& task, const fs::path& file, bool force,
                     .tell = [&](const SessionEvent& event) { warnings.take(event); }});
         });
     }
-    for (const std::string& text : recorder->description().warnings) warn(text);
+    for (const Message& text : recorder->description().warnings) warn(text);
     CallProgress progress(tell, task.limits.total(), CallProgress::Early::kYes);
     CameraRecording recording;
     {

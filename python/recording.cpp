@@ -177,7 +177,7 @@ footage, too: stipple.emulate(recording).)")
         .def_readonly("path", &RecordingFile::path, "Its file.")
         .def_readonly(
             "figures", &RecordingFile::figures,
-            "The keys of \"capture record --json\", of a recording that was just made; else None.")
+            "The figures of a recording that was just made, as the command prints; else None.")
         .def("__fspath__", [](const RecordingFile& self) { return self.path.string(); })
         .def_property_readonly(
             "camera",

@@ -81,7 +81,7 @@ Homography read_map(Config& config, const std::string& prefix) {
 void read_settings(Config& config, const std::string& name, SensorChoice& choice) {
     constexpr std::string_view kSensor = "sensor.", kSchedule = "schedule.";
     for (const std::string& setting :
-         config.texts({name, {}, "", "changed keys, as of --set: [\"sensor.read_noise_e=5\"]"})) {
+         config.texts({name, {}, "", "changed keys: [\"sensor.read_noise_e=5\"]"})) {
         if (setting.starts_with(kSensor))
             choice.settings.push_back(setting.substr(kSensor.size()));
         else if (setting.starts_with(kSchedule))

@@ -54,7 +54,7 @@ bool is_program(const std::filesystem::path& file) {
 
 NamedSchedule read_program(const SensorChoice& choice) {
     if (!choice.schedule_settings.empty())
-        throw InputError("--set schedule." + choice.schedule_settings.front(),
+        throw InputError(Parameter{"schedule." + choice.schedule_settings.front()},
                          fmt::format("{} is a compiled schedule, which has no keys; set them in "
                                      "\"stipple schedule compile\"",
                                      choice.schedule));
@@ -130,7 +130,7 @@ SensorSetup set_up_sensor(const SensorDescription& sensor, const SensorChoice& c
     const FrameShape shape = array_of(sensor.params, footage, mosaic);
     if (sensor.timing) check_window(*sensor.timing, shape);
     if (!sensor.timing && choice.overrun == OverrunPolicy::kDrop)
-        throw InputError("--overrun drop",
+        throw InputError(Parameter{"overrun", "drop"},
                          fmt::format("sensor \"{}\" {}", sensor.params.name, no_timing_text()));
     const ColumnAddressing addressing =
         sensor.timing ? sensor.timing->addressing : ColumnAddressing{};

@@ -50,8 +50,9 @@ PixelArea report_area(FrameShape frame, const std::optional<PixelArea>& wanted) 
     if (wanted) {
         if (wanted->rows > frame.rows - wanted->first_row ||
             wanted->cols > frame.cols - wanted->first_col)
-            throw InputError("--crop", fmt::format("does not lie in the frame of {} x {} pixels",
-                                                   frame.cols, frame.rows));
+            throw InputError(
+                Parameter{"crop"},
+                fmt::format("does not lie in the frame of {} x {} pixels", frame.cols, frame.rows));
         return *wanted;
     }
     return middle_area(frame, kLargestReportArea.rows, kLargestReportArea.cols);

@@ -35,11 +35,10 @@ constexpr int kLanes = 12;               ///< pixels of the schedule's diagram
 constexpr std::int64_t kLaneSlots = 64;  ///< the most slots of it
 
 [[noreturn]] void fail_size(std::uint64_t most, std::string_view content) {
-    throw InputError(
-        "--max-size",
-        fmt::format("{} do not fit into {:.1f} MB; allow more, or show less with --crop "
-                    "or --until",
-                    content, 1e-6 * static_cast<double>(most)));
+    throw InputError(Parameter{"max_size"},
+                     fmt::format("{} do not fit into {:.1f} MB; allow more, or show less with ",
+                                 content, 1e-6 * static_cast<double>(most)) +
+                         Parameter{"crop"} + " or " + Parameter{"until"});
 }
 
 /// Which plane of colour each pixel of a 2 x 2 cell measures; null without a filter array.
@@ -182,9 +181,8 @@ RunReport::RunReport(RunReportOptions options, FrameShape shape, const FluxVideo
     const PixelArea& area = impl_->area;
     if (area.rows < shape.rows || area.cols < shape.cols)
         impl_->notes.push_back(fmt::format(
-            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on (report "
-            "--crop).",
-            area.cols, area.rows, shape.cols, shape.rows, area.first_col, area.first_row));
+            "The pictures show {} x {} of {} x {} pixels, from column {} and row {} on.", area.cols,
+            area.rows, shape.cols, shape.rows, area.first_col, area.first_row));
     if (truth == nullptr) return;
     impl_->videos.add({"truth", "the light that the sensor saw", {}});
     for (int slot = 0; slot < truth->slots(); ++slot) put(0, slot, truth->frame(slot));
@@ -204,8 +202,8 @@ std::size_t RunReport::add_run(const std::filesystem::path& stream, const std::s
     run->read(impl_->options);
     impl_->slots = std::max(impl_->slots, run->loads.slots());
     if (const auto all = run->reader.slots(); all && *all > impl_->options.slots)
-        impl_->notes.push_back(fmt::format("{}: the first {} of {} slots are shown (--until).",
-                                           name, impl_->options.slots, *all));
+        impl_->notes.push_back(fmt::format("{}: the first {} of {} slots are shown.", name,
+                                           impl_->options.slots, *all));
     if (!undamaged(run->reader.report()))
         impl_->notes.push_back(
             fmt::format("{}: the stream is damaged; its whole samples are shown.", name));
@@ -248,8 +246,8 @@ void RunReport::fit() {
     const std::int64_t step = impl_->videos.step();
     if (step == 1) return;
     impl_->notes.push_back(fmt::format(
-        "Pictures are of every {}{} slot only, to stay within {:.0f} MB (--max-size); samples and "
-        "quality are of all slots.",
+        "Pictures are of every {}{} slot only, to stay within {:.0f} MB; samples and quality are "
+        "of all slots.",
         step, step == 2 ? "nd" : "th", 1e-6 * static_cast<double>(impl_->options.max_bytes)));
 }
 

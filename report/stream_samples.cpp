@@ -73,8 +73,9 @@ std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, i
     const auto [kind, is_new] = kind_of_.try_emplace(open_slots, next);
     if (is_new) open_slots_.push_back(open_slots);
     if (open_slots_.size() == std::numeric_limits<std::uint16_t>::max())
-        throw InputError("exposure schedule",
-                         "has too many kinds of exposures for a report; show a part with --crop");
+        throw InputError(
+            "exposure schedule",
+            "has too many kinds of exposures for a report; show a part with " + Parameter{"crop"});
     return kind->second;
 }
 

@@ -101,7 +101,7 @@ void add_part_arguments(Command& command, FootageOptions& options) {
 }
 
 ReadAhead read_footage(const std::string& source, const FootageOptions& options) {
-    return ReadAhead(source, options, [](std::string_view warning) { say_warning(warning); });
+    return ReadAhead(source, options, [](const Message& warning) { say_warning(warning); });
 }
 
 void add_scene_arguments(Command& command, SceneOptions& options) {

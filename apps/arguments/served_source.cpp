@@ -21,7 +21,7 @@ namespace {
 
 void say_warnings_of_footage(const ServedSourceChoice& choice) {
     FootageReader reader(choice.path, choice.reading);
-    for (const std::string& warning : reader.take_warnings()) say_warning(warning);
+    for (const Message& warning : reader.take_warnings()) say_warning(warning);
 }
 
 std::unique_ptr<FrameSource> open_footage(const ServedSourceChoice& choice) {

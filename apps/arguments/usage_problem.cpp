@@ -62,8 +62,7 @@ std::string option_problem(const std::vector<const CLI::App*>& commands, const C
 
 /// The message for a surplus word. A shell that expands a pattern is the usual cause.
 std::string surplus_problem(const std::vector<const CLI::App*>& commands, const std::string& word) {
-    std::string problem =
-        fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
+    std::string problem = fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
     std::error_code error;
     if (!std::filesystem::is_regular_file(word, error)) return problem;
     return problem + (image_format(word) == ImageFormat::kNone

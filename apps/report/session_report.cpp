@@ -48,7 +48,7 @@ void say_event(const SessionEvent& event) {
 }
 
 void say_warnings(const CameraDescription& camera) {
-    for (const std::string& warning : camera.warnings) say_warning(warning);
+    for (const Message& warning : camera.warnings) say_warning(warning);
 }
 
 }  // namespace stipple

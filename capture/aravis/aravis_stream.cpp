@@ -156,10 +156,10 @@ void AravisStream::Impl::check_buffers() const {
     if (has_room_for(bytes)) return;
     throw InputError(
         fmt::format("{}: PayloadSize", device.address()),
-        fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes "
-                    "(--max-memory), and each {}; set fewer --buffers, or a smaller Width and "
-                    "Height",
-                    buffers.frames, bytes, max_memory(), kMaxPayloadBytes));
+        fmt::format("{} buffers of {} bytes are too large: together they may have {} bytes (",
+                    buffers.frames, bytes, max_memory()) +
+            Parameter{"max_memory"} + fmt::format("), and each {}; set fewer ", kMaxPayloadBytes) +
+            Parameter{"buffers"} + ", or a smaller Width and Height");
 }
 
 /// A leader may be forged: its size is trusted up to the bytes that came, or up to the size that
@@ -330,8 +330,8 @@ std::map<std::string, std::string> AravisStream::facts() const {
     return impl_->link ? impl_->link->facts() : std::map<std::string, std::string>();
 }
 
-std::vector<std::string> AravisStream::warnings() const {
-    return impl_->link ? impl_->link->warnings() : std::vector<std::string>();
+std::vector<Message> AravisStream::warnings() const {
+    return impl_->link ? impl_->link->warnings() : std::vector<Message>();
 }
 
 TransportCounts AravisStream::counts() const {

@@ -27,7 +27,7 @@ class AravisStream {
     [[nodiscard]] TransportCounts counts() const;
     /// Sizes of packets and buffers, for CameraDescription.
     [[nodiscard]] std::map<std::string, std::string> facts() const;
-    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::vector<Message> warnings() const;
 
     void start();  ///< \throws DeviceError
     /// CLOCK_MONOTONIC just before the camera was told to begin.

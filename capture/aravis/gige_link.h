@@ -31,7 +31,7 @@ class GigeLink {
 
     /// For CameraDescription.
     [[nodiscard]] const std::map<std::string, std::string>& facts() const { return facts_; }
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<Message>& warnings() const { return warnings_; }
 
   private:
     void watch_interface(std::uint32_t packet_bytes);
@@ -44,7 +44,7 @@ class GigeLink {
     std::uint16_t filtered_port_ = 0;  ///< of the socket with the filter; 0: none
     std::uint64_t link_faults_before_ = 0;
     std::map<std::string, std::string> facts_;
-    std::vector<std::string> warnings_;
+    std::vector<Message> warnings_;
 };
 
 }  // namespace stipple

@@ -64,7 +64,7 @@ void examine_format(const AravisDevice& device, std::vector<DoctorFinding>& find
         return;
     }
     findings.push_back({Level::kWarning, "pixel format", fmt::format("0x{:08x} is not read", code),
-                        "--set camera.PixelFormat=... when recording"});
+                        "set another PixelFormat of the camera when recording"});
 }
 
 /// \throws DeviceError.

@@ -30,8 +30,10 @@ CodedHeader header_of(const CameraDescription& camera) {
     if (digits == camera.features.end())
         throw InputError(camera.address,
                          fmt::format("has no feature {}, so it sends no coded stream; record it "
-                                     "without --coded, or serve one with --mode coded",
-                                     kFeature));
+                                     "without ",
+                                     kFeature) +
+                             Parameter{"coded", "true"} + ", or serve one with " +
+                             Parameter{"mode", "coded"});
     return decode_coded_header(digits->second, camera.address + ": " + kFeature);
 }
 

@@ -11,15 +11,15 @@
 namespace stipple {
 namespace {
 
-void add(std::vector<std::string>& notes, std::string note) {
+void add(std::vector<Message>& notes, Message note) {
     if (!note.empty()) notes.push_back(std::move(note));
 }
 
 }  // namespace
 
-std::vector<std::string> sensor_notes(const std::string& name, const ReadAhead& footage,
-                                      const SensorParams& sensor, bool resampled) {
-    std::vector<std::string> notes;
+std::vector<Message> sensor_notes(const std::string& name, const ReadAhead& footage,
+                                  const SensorParams& sensor, bool resampled) {
+    std::vector<Message> notes;
     const auto hz = footage.frames_hz();
     if (hz && !resampled) add(notes, video_rate_warning(name, *hz, sensor));
     if (const auto exposure_us = footage.exposure_us())
@@ -41,9 +41,9 @@ std::string recording_note(const std::string& name, const ReadAhead& footage) {
     return fmt::format("{}: {}; \"stipple capture replay\" lists the places", name, joined(faults));
 }
 
-std::vector<std::string> end_notes(const std::string& name, const ReadAhead& footage,
-                                   const SensorParams& sensor, bool resampled) {
-    std::vector<std::string> notes;
+std::vector<Message> end_notes(const std::string& name, const ReadAhead& footage,
+                               const SensorParams& sensor, bool resampled) {
+    std::vector<Message> notes;
     add(notes, recording_note(name, footage));
     if (!resampled && footage.ended() && footage.recording() != nullptr)
         add(notes, recording_rate_warning(name, footage.recording()->rate(), sensor));

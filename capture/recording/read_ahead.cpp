@@ -22,7 +22,7 @@ std::variant<FootageReader, RecordingFootage> open_footage(const std::filesystem
 }  // namespace
 
 ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& options,
-                     std::function<void(const std::string&)> warn)
+                     std::function<void(const Message&)> warn)
     : warn_(std::move(warn)), reader_(open_footage(source, options)) {
     constexpr std::uint64_t kSiteBytes = 18;  // two frames here, and what works on them
     check_memory(kSiteBytes * shape().sites(), source.string(),
@@ -37,7 +37,7 @@ ReadAhead::ReadAhead(const std::filesystem::path& source, const FootageOptions& 
 
 void ReadAhead::pass_warnings_on() {
     if (auto* const footage = std::get_if<FootageReader>(&reader_))
-        for (const std::string& warning : footage->take_warnings()) warn_(warning);
+        for (const Message& warning : footage->take_warnings()) warn_(warning);
 }
 
 bool ReadAhead::gamma_coded() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "capture/recording/recording_footage.h"
+#include "core/message.h"
 #include "io/footage_reader.h"
 
 namespace stipple {
@@ -20,7 +21,7 @@ class ReadAhead {
     /// Passes the warnings of the reader to `warn`. \throws InputError as FootageReader,
     /// RecordingFootage and check_recording_options, and as check_memory if frames are too large.
     ReadAhead(const std::filesystem::path& source, const FootageOptions& options,
-              std::function<void(const std::string&)> warn);
+              std::function<void(const Message&)> warn);
     ~ReadAhead() = default;
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;
@@ -59,7 +60,7 @@ class ReadAhead {
     void pass_warnings_on();
     void start_reading();
 
-    std::function<void(const std::string&)> warn_;
+    std::function<void(const Message&)> warn_;
     std::variant<FootageReader, RecordingFootage> reader_;
     bool has_times_ = false;
     double time_ = 0;

@@ -70,9 +70,11 @@ void RecordingFootage::check_proportion(const FrameRecord& record) {
         return;
     throw InputError(file_.string(),
                      fmt::format("{} frames are missing or incomplete before frame {}, which makes "
-                                 "{} of {}; \"stipple capture replay\" holds the frame before for "
-                                 "them with --fill-gaps, and leaves them out with --skip-gaps",
-                                 to_hold_, record.id, holding_, holding_ + usable_));
+                                 "{} of {}; replay it, which holds the frame before for them "
+                                 "with ",
+                                 to_hold_, record.id, holding_, holding_ + usable_) +
+                         Parameter{"fill_gaps", "true"} + ", and leaves them out with " +
+                         Parameter{"skip_gaps", "true"});
 }
 
 /// Frames one after the other that are missing are one place.

@@ -22,6 +22,8 @@ std::string dumped(const Json& json) {
 }
 
 Json json_of(const CameraDescription& camera) {
+    std::vector<std::string> warnings;
+    for (const Message& warning : camera.warnings) warnings.push_back(warning.text());
     return {{"transport", camera.transport},
             {"address", camera.address},
             {"vendor", camera.vendor},
@@ -31,10 +33,11 @@ Json json_of(const CameraDescription& camera) {
             {"genicam_xml_hash", camera.genicam_xml_hash},
             {"features", camera.features},
             {"transport_facts", camera.transport_facts},
-            {"warnings", camera.warnings}};
+            {"warnings", warnings}};
 }
 
 CameraDescription camera_of(const ReadJson& json) {
+    const auto warnings = json.at("warnings").get<std::vector<std::string>>();
     return {.transport = json.at("transport"),
             .address = json.at("address"),
             .vendor = json.at("vendor"),
@@ -44,7 +47,7 @@ CameraDescription camera_of(const ReadJson& json) {
             .genicam_xml_hash = json.at("genicam_xml_hash"),
             .features = json.at("features").get<Texts>(),
             .transport_facts = json.at("transport_facts").get<Texts>(),
-            .warnings = json.at("warnings").get<std::vector<std::string>>()};
+            .warnings = {warnings.begin(), warnings.end()}};
 }
 
 Json json_of(const ClockFit& fit) {

@@ -88,24 +88,25 @@ void ReplaySource::look_at_first_frame() {
     const std::string name = path_.string();
     if (footage_->gamma_coded())
         warnings_.push_back(name +
-                            ": looks gamma-coded, and is played as linear light; \"emulate\" and "
-                            "\"capture serve\" have --transfer");
+                            ": looks gamma-coded, and is played as linear light; emulation and "
+                            "served cameras have " +
+                            Parameter{"transfer"});
     const bool has_frame = footage_->read(light_);
-    for (std::string& warning : footage_->take_warnings()) warnings_.push_back(std::move(warning));
+    for (Message& warning : footage_->take_warnings()) warnings_.push_back(std::move(warning));
     std::string clipping = has_frame ? clipping_text(name, light_, *layout_.format) : "";
     if (!clipping.empty()) warnings_.push_back(std::move(clipping));
 }
 
-std::string ReplaySource::end_warning() {
-    std::vector<std::string> found;
+Message ReplaySource::end_warning() {
     if (recording_) {
-        found = recording_->faults();
+        const auto found = recording_->faults();
         return found.empty() ? "" : fmt::format("{}: {}", path_.string(), joined(found));
     }
-    for (std::string& warning : footage_->take_warnings())
+    Message found;
+    for (const Message& warning : footage_->take_warnings())
         if (std::ranges::find(warnings_, warning) == warnings_.end())
-            found.push_back(std::move(warning));
-    return joined(found);
+            found += (found.empty() ? Message() : "; ") + warning;
+    return found;
 }
 
 const SessionRecord* ReplaySource::session() const {

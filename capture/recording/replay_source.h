@@ -8,6 +8,7 @@
 
 #include "capture/camera.h"
 #include "capture/recording/recording_reader.h"
+#include "core/message.h"
 #include "io/footage_reader.h"
 
 namespace stipple {
@@ -31,9 +32,9 @@ class ReplaySource {
     bool next(CapturedFrame& frame);
     void rewind();
     /// Warnings on the footage, and on clipping of its first frame.
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<Message>& warnings() const { return warnings_; }
     /// Further faults that were found up to the end; empty if there are none.
-    [[nodiscard]] std::string end_warning();
+    [[nodiscard]] Message end_warning();
 
   private:
     void open_footage();
@@ -46,7 +47,7 @@ class ReplaySource {
     FrameLayout layout_;
     std::vector<float> light_;
     std::uint64_t next_id_ = 0;
-    std::vector<std::string> warnings_;
+    std::vector<Message> warnings_;
 };
 
 }  // namespace stipple

@@ -26,19 +26,20 @@ ResampledFootage::ResampledFootage(FootageSource source, const std::string& name
     if (!options.method) return;
     const auto hz = options.frames_hz ? options.frames_hz : source_.frames_hz;
     if (!hz)
-        throw InputError(name, "does not declare its frame rate; --resample needs --frames-hz");
+        throw InputError(name, "does not declare its frame rate; " + Parameter{"resample"} +
+                                   " needs " + Parameter{"frames_hz"});
     if (options.method == Resampling::kFlow && source_.filter != ColourFilter::kNone)
-        throw InputError(name,
-                         "is the mosaic of a colour filter array, whose colours --resample flow "
-                         "would mix; use blend");
+        throw InputError(name, "is the mosaic of a colour filter array, whose colours " +
+                                   Parameter{"resample", "flow"} + " would mix; use blend");
     frames_per_slot_ = *hz * options.slot_us * 1e-6;
     if (!(frames_per_slot_ >= kMinFramesPerSlot && frames_per_slot_ <= kMaxFramesPerSlot))
         throw InputError(
-            name,
-            fmt::format(
-                "has {:.4g} frames/s, which are {:.4g} a slot of {:g} us; --resample takes {:g} "
-                "to {:g}, so check the rate (--frames-hz) and sensor.slot_us",
-                *hz, frames_per_slot_, options.slot_us, kMinFramesPerSlot, kMaxFramesPerSlot));
+            name, fmt::format("has {:.4g} frames/s, which are {:.4g} a slot of {:g} us; ", *hz,
+                              frames_per_slot_, options.slot_us) +
+                      Parameter{"resample"} +
+                      fmt::format(" takes {:g} to {:g}, so check the rate (", kMinFramesPerSlot,
+                                  kMaxFramesPerSlot) +
+                      Parameter{"frames_hz"} + ") and sensor.slot_us");
     resampler_.emplace(source_.shape,
                        ResamplingOptions{.method = *options.method,
                                          .frames_per_slot = frames_per_slot_,
@@ -56,8 +57,9 @@ std::span<const float> ResampledFootage::next_frame(const std::string& name) {
     const double time = source_.time();
     if (last_time_ && !(time > *last_time_ && time - *last_time_ <= kMaxPeriods))
         throw InputError(name, fmt::format("has a frame {:.4g} frame periods after the one before "
-                                           "by its time stamps; --frames-hz leaves them out",
-                                           time - *last_time_));
+                                           "by its time stamps; ",
+                                           time - *last_time_) +
+                                   Parameter{"frames_hz"} + " leaves them out");
     last_time_ = time;
     return frame;
 }

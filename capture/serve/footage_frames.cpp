@@ -50,7 +50,8 @@ FootageFrames::FootageFrames(std::filesystem::path footage, const FootageOptions
     image_.frames_hz = frames_hz;
     if (const auto slots = reader_.slots()) image_.frames = static_cast<std::uint64_t>(*slots);
     if (image_.formats.empty())
-        throw InputError(footage_.string(), "has neither 1 nor 3 planes; add --luminance");
+        throw InputError(footage_.string(),
+                         "has neither 1 nor 3 planes; add " + Parameter{"luminance", "true"});
     if (preferred != nullptr) make_default(*preferred);
     light_.resize(shape_.sites());
     if (reader_.read(light_))  // `start` begins anew

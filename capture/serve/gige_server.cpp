@@ -37,7 +37,8 @@ constexpr int kMaxPeriodsBehind = 8;
 std::uint32_t address_of(const GigeServerOptions& options) {
     const auto address = parse_ipv4(options.address);
     if (address) return *address;
-    throw InputError("--address " + options.address, "is no IPv4 address such as 127.0.0.1");
+    throw InputError(Parameter{"address", options.address},
+                     "is not an IPv4 address such as 127.0.0.1");
 }
 
 NetworkInterface own_interface(std::uint32_t address) {
@@ -54,8 +55,9 @@ UdpSocket control_socket(std::uint32_t address) {
         const bool taken = e.code().value() == EADDRINUSE;
         throw DeviceError(
             fmt::format("{}: UDP port {}", ipv4_text(address), kGvcpPort),
-            taken ? "is taken: another camera is served at this address; choose another --address"
-                  : e.what());
+            taken ? "is taken: another camera is served at this address; choose another " +
+                        Parameter{"address"}
+                  : Message(e.what()));
     }
 }
 

@@ -19,7 +19,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::string_view kOption = "--set decoder.dictionary";
+constexpr auto kDictionary = "decoder.dictionary";
 
 /// First positions of patches along an axis, the last one at its end.
 std::vector<int> positions(int length, int side, int step) {
@@ -151,9 +151,9 @@ std::optional<FluxVideo> decode_hitomi2011(const Measurements& measurements,
                                            const Hitomi2011Options& options,
                                            const ProgressCallback& progress) {
     if (options.dictionary.atoms == 0)
-        throw InputError(kOption,
-                         "method hitomi2011 needs a dictionary of patches; make one with "
-                         "\"stipple dictionary FOOTAGE -o FILE.npy\"");
+        throw InputError(Parameter{kDictionary},
+                         "method hitomi2011 needs a dictionary of patches; the command \"stipple "
+                         "dictionary\" learns one from footage");
     if (measurements.mosaic)
         return decode_by_hue(measurements, {}, [&](const auto& mean, const auto&) {
             return decode_hitomi2011(mean, options, progress);
@@ -162,10 +162,9 @@ std::optional<FluxVideo> decode_hitomi2011(const Measurements& measurements,
     Decoder decoder(measurements, options);
     const std::vector<Layer> layers = decoder.layers();
     if (layers.empty() && has_samples(measurements))
-        throw InputError(kOption,
-                         fmt::format("its patches of {} slots are shorter than all exposures; make "
-                                     "one with \"stipple dictionary --slots\" of the period of the "
-                                     "schedule",
+        throw InputError(Parameter{kDictionary},
+                         fmt::format("its patches of {} slots are shorter than all exposures; "
+                                     "learn one whose patches have the period of the schedule",
                                      options.dictionary.shape.slots));
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!progress(static_cast<double>(i) / static_cast<double>(layers.size()))) return {};

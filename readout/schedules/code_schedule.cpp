@@ -29,7 +29,7 @@ constexpr Store kStores[] = {{'A', 'a'}, {'B', 'b'}};
 /// Reads the strings of a code.
 class CodeReader {
   public:
-    CodeReader(TileSize size, const std::string& where)
+    CodeReader(TileSize size, const Message& where)
         : size_(size), where_(where), list_(size.rows, size.cols, size.period_slots) {}
 
     void add_pixel(std::size_t pixel, std::string_view slots) {
@@ -88,7 +88,7 @@ class CodeReader {
     }
 
     TileSize size_;
-    const std::string& where_;
+    const Message& where_;
     TileList list_;
     std::size_t pixel_ = 0;
 };
@@ -144,7 +144,7 @@ std::string toml_string(std::string_view text) {
 }  // namespace
 
 ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
-                               const std::string& where) {
+                               const Message& where) {
     const std::size_t pixels =
         static_cast<std::size_t>(size.rows) * static_cast<std::size_t>(size.cols);
     if (code.size() != pixels)
@@ -156,7 +156,7 @@ ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
 }
 
 std::vector<float> code_weights(TileSize size, std::span<const std::string> texts,
-                                const std::string& where) {
+                                const Message& where) {
     const auto pixels = static_cast<std::size_t>(size.rows) * static_cast<std::size_t>(size.cols);
     const auto slots = static_cast<std::size_t>(size.period_slots);
     if (texts.size() != pixels)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/exposure_schedule.h"
+#include "core/message.h"
 
 namespace stipple {
 
@@ -27,13 +28,13 @@ inline constexpr std::size_t kMaxCodeSlots = std::size_t{1} << 24U;
 /// \throws InputError at `where`, naming pixel and slot, for another character, a string of another
 /// length, an exposure without beginning or with more than 64 slots from its first to its last.
 [[nodiscard]] ExposureSchedule code_schedule(TileSize size, std::span<const std::string> code,
-                                             const std::string& where);
+                                             const Message& where);
 
 /// The weights of a written-out code, order (slot, row, col), for ExposureSchedule::set_weights:
 /// one string per tile pixel, four hexadecimal digits per slot, FFFF is 1 and 0000 a closed slot.
 /// \throws InputError at `where`, naming the pixel, for another character or length.
 [[nodiscard]] std::vector<float> code_weights(TileSize size, std::span<const std::string> texts,
-                                              const std::string& where);
+                                              const Message& where);
 
 /// A file of kind "code" that holds `schedule`, or two periods of it if exposures change their
 /// store from one period to the next. `name` is the value of its key `name`. \throws InputError if

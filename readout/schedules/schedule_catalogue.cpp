@@ -56,8 +56,9 @@ NamedSchedule read_random(Config& config, const Made& made) {
     if (shape.pixels() * lengths.size() > kMaxRandomExposures)
         throw InputError(config.where("kind"),
                          fmt::format("random exposures of {} x {} pixels are too many for a "
-                                     "stream; use the schedule \"tiled\" (--schedule tiled)",
-                                     shape.cols, shape.rows));
+                                     "stream; give ",
+                                     shape.cols, shape.rows) +
+                             Parameter{"schedule", "tiled"});
     // It is kept twice: by the sensor, and in the header of the stream.
     check_memory(2 * random_schedule_bytes(shape.rows, shape.cols, lengths), config.where("kind"),
                  fmt::format("random exposures of {} x {} pixels", shape.cols, shape.rows));

@@ -41,8 +41,9 @@ void check_window(const ReadoutTiming& timing, FrameShape shape) {
         return;
     throw InputError("readout timing",
                      fmt::format("{} x {} pixels (width x height) are more than the array of {} x "
-                                 "{}, timing.cols x timing.rows; --crop takes a part of footage",
-                                 shape.cols, shape.rows, timing.cols, timing.rows));
+                                 "{}, timing.cols x timing.rows; ",
+                                 shape.cols, shape.rows, timing.cols, timing.rows) +
+                         Parameter{"crop"} + " takes a part of footage");
 }
 
 RowLoad full_row(const ReadoutTiming& timing, int cols) {

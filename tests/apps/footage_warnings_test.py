@@ -45,8 +45,8 @@ class FootageWarningsTest(ProgramTest):
 
         colour = self.write_png("f.png", np.full((8, 8, 3), 99))
         for verb in ("record", "live"):
-            self.assertIn("stipple: warning: f.png: looks gamma-coded, and is played as linear light; \"emulate\" and "
-                          "\"capture serve\" have --transfer\n", said(colour, verb))
+            self.assertIn("stipple: warning: f.png: looks gamma-coded, and is played as linear light; emulation and "
+                          "served cameras have --transfer\n", said(colour, verb))
         self.assertIn("its alpha channel is left out", said(self.write_png("a.png", np.full((8, 8, 2), 99))))
         for number in (0, 1, 3):
             self.write_png(f"gap/f{number}.png", np.zeros((8, 8)))

@@ -16,10 +16,10 @@ SourceTraits footage(double black_dn, double white_dn) {
 }
 
 TEST(LevelWarningTest, NamesBothLevelsAndTheKey) {
-    EXPECT_EQ(black_level_warning("a.dng", footage(168, 4095), sensor_of_12_bits(64)),
+    EXPECT_EQ(black_level_warning("a.dng", footage(168, 4095), sensor_of_12_bits(64)).text(),
               "a.dng: its black level is 168 DN, that of sensor \"mine\" 64 DN, both of 12 bits: "
-              "light is right, but if the sensor stands for this camera, use --set "
-              "sensor.black_level_dn=168");
+              "light is right, but if the sensor stands for this camera, use "
+              "sensor.black_level_dn = 168");
 }
 
 TEST(LevelWarningTest, ADnIsNoDifference) {

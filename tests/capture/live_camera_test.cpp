@@ -123,7 +123,8 @@ TEST_F(LiveCameraTest, MaxMemoryBoundsTheFramesThatWait) {
     send(50);
     EXPECT_EQ(camera.peak(), 8U);
     ASSERT_EQ(camera.description().warnings.size(), 1U);
-    expect_parts(camera.description().warnings[0], {"8 frames may wait, not 64", "--max-memory"});
+    expect_parts(camera.description().warnings[0].text(),
+                 {"8 frames may wait, not 64", "max_memory"});
 }
 
 // 24 bytes of buffers leave room for 9 frames of 8 bytes.
@@ -143,7 +144,7 @@ TEST_F(LiveCameraTest, NoRoomForAFrameIsAnErrorThatNamesBothParts) {
                      const LiveCamera camera = open(64);
                      return 0;
                  }),
-                 {"buffers of the camera (1.0 MB, --buffers)", "5 frames", "--max-memory"});
+                 {"buffers of the camera (1.0 MB)", "5 frames", "max_memory = "});
     const MemoryLimit more(1'000'040);
     const LiveCamera camera = open(64);
 }

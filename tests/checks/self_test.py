@@ -193,9 +193,10 @@ class ChecksTest(unittest.TestCase):
     def test_vague_names_and_uncertain_bits_are_found(self):
         files = {"core/a.h": "class FrameManager;\nstruct BaseLine;\nenum class FrameHelper {};\n",
                  "core/frame_utils.cpp": "std::normal_distribution<float> draw;\n",
+                 "core/b.cpp": "// \"--force\" of the command\nfail(\"give --force\");\n", "apps/b.cpp": "fail(\"give --force\");\n",
                  "core/CMakeLists.txt": "add_compile_options(-ffast-math)\n"}
         self.assertEqual(sorted(self.places(words.check, files)),
-                         ["core/CMakeLists.txt:1", "core/a.h:1", "core/a.h:3",
+                         ["core/CMakeLists.txt:1", "core/a.h:1", "core/a.h:3", "core/b.cpp:2",
                           "core/frame_utils.cpp", "core/frame_utils.cpp:1"])
 
     def test_links_lead_somewhere(self):

@@ -17,6 +17,10 @@ BANNED = (  # pattern, why; in the sources and the build of the modules
     (re.compile(r"-f(?:fast-math|associative-math|p-contract=fast)"), "bits would differ"),
     (re.compile(r"#\s*include <(?:format|expected|coroutine)>"), "not in both compilers"),
 )
+# A message of a library names a Parameter, which each interface words its own way (core/message.h).
+OPTION = re.compile(r'"(?:[^"\\]|\\.)*?(?<![\w-])--[a-z][\w-]*')
+COMMANDS = {"readout/provenance.cpp", "explore/point_commands.cpp",  # commands to run again
+            "report/chart.cpp", "capture/v4l2/v4l2_listing.cpp"}  # of other programs
 VAGUE_FILE = re.compile(rf"(?:^|[/_]){VAGUE}\.\w+$", re.I)
 
 
@@ -36,6 +40,8 @@ def check(tree):
             for pattern, why in BANNED:
                 for found in pattern.findall(line):
                     yield f"{name}:{number}: {found}: {why}"
+            if OPTION.search(line.partition("//")[0]) and not name.startswith("apps/") and name not in COMMANDS:
+                yield f"{name}:{number}: an option of the command line; name a Parameter"
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ TEST(KeyReaderTest, SetsVariablesOfEachType) {
 
 TEST(KeyReaderTest, NamesAKeyWithItsSection) {
     EXPECT_EQ(message_of<InputError>([] { return read({"a.integer=10"}); }),
-              "--set a.integer: 10 is outside 0..9");
+              "a.integer: 10 is outside 0..9");
 }
 
 }  // namespace

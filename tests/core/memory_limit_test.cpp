@@ -69,7 +69,7 @@ TEST(MemoryLimitTest, AllMessagesNameWhatIsNeededAndAnOptionThatIsEnough) {
         } catch (const InputError& error) {
             const std::string text = error.what();
             EXPECT_TRUE(text.starts_with("clip: needs ")) << text;
-            const auto at = text.find("--max-memory ", text.find(';')) + 13;
+            const auto at = text.find("max_memory = ", text.find(';')) + 13;
             const auto enough = parse_memory(text.substr(at, text.find(' ', at) - at));
             ASSERT_TRUE(enough) << text;
             EXPECT_GE(*enough, bytes);

@@ -281,7 +281,7 @@ TEST_F(ReconstructTest, RefusesAGapThatNoRecordingHas) {
                      return decode(reader, DecodeMethod::kNaive,
                                    [](std::int64_t, std::span<const float>) { return true; });
                  }),
-                 {"slots 1 to 1099511627775 are missing", "--fill-gaps"});
+                 {"slots 1 to 1099511627775 are missing", "fill_gaps = true"});
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST_F(ExrFileTest, ConvertsThePrimariesThatItDeclares) {
     write_channels(file_, {"R", "G", "B"}, Imf::FLOAT, header);  // X = i, Y = 10 + i, Z = 20 + i
     const Image image = read();
     ASSERT_EQ(image.traits.warnings.size(), 1);
-    expect_parts(image.traits.warnings[0], {"declares other primaries than Rec. 709"});
+    expect_parts(image.traits.warnings[0].text(), {"declares other primaries than Rec. 709"});
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(0.2126F * image.values[i] + 0.7152F * image.values[6 + i] +
                         0.0722F * image.values[12 + i],
@@ -169,7 +169,7 @@ TEST_F(ExrFileTest, SaysThatItReadsTheFirstOfSeveralParts) {
     const Image image = read();
     EXPECT_EQ(image.values, Floats(6, 1));
     ASSERT_EQ(image.traits.warnings.size(), 1);
-    expect_parts(image.traits.warnings[0], {"has 2 parts, of which the first is read"});
+    expect_parts(image.traits.warnings[0].text(), {"has 2 parts, of which the first is read"});
 }
 
 TEST_F(ExrFileTest, ReadsRateAndExposure) {
@@ -181,7 +181,7 @@ TEST_F(ExrFileTest, ReadsRateAndExposure) {
     EXPECT_DOUBLE_EQ(*traits.frames_hz, 24000.0 / 1001);
     EXPECT_NEAR(*traits.exposure_us, 20000, 1e-2);
     ASSERT_EQ(traits.warnings.size(), 1);
-    expect_parts(traits.warnings[0], {"pixels 2 times as wide as high"});
+    expect_parts(traits.warnings[0].text(), {"pixels 2 times as wide as high"});
     Imf::addFramesPerSecond(header, {24, 0});
     Imf::addExpTime(header, -1);
     write_channels(file_, {"Y"}, Imf::FLOAT, header);

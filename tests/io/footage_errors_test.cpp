@@ -133,7 +133,7 @@ TEST_F(FootageErrorsTest, NamesFileFrameRowColumnAndPlaneOfBadLight) {
     values[12 + 2 * 3 + 1] = -0.25F;  // frame 1, row 1, column 0, green
     expect_parts(error_of_npy("(2, 2, 2, 3)", values),
                  {"clip.npy: frame 1: row 1, column 0, plane 1: light is negative (-0.25); "
-                  "clip it with --min-value 0"});
+                  "clip it with min_value = 0"});
     EXPECT_NE(error_of_npy("(1, 1, 2)", {1, kNan}).find("row 0, column 1, plane 0: light is not"),
               std::string::npos);
     expect_parts(error_of_npy("(1, 1, 2)", {kInfinity, 1}), {"row 0, column 0", "is infinite"});

@@ -73,19 +73,19 @@ TEST(FootagePartTest, AFrameIsCroppedThenBinnedThenResized) {
 TEST(FootagePartTest, WhatDoesNotFitIsRefused) {
     constexpr FrameShape kShape{4, 6, 1};
     expect_parts(refusal({.crop = parse_crop_area("4x2+3+0")}, kShape),
-                 {"clip: has 6 x 4 pixels, in which --crop 4x2+3+0 does not lie"});
-    expect_parts(refusal({.crop = parse_crop_area("7x4")}, kShape), {"--crop 7x4 does not lie"});
+                 {"clip: has 6 x 4 pixels, in which crop = 4x2+3+0 does not lie"});
+    expect_parts(refusal({.crop = parse_crop_area("7x4")}, kShape), {"crop = 7x4 does not lie"});
     expect_parts(refusal({.bin = 4}, kShape),
-                 {"clip: has 6 x 4 pixels, not a multiple of --bin 4; add --crop 4x4"});
+                 {"clip: has 6 x 4 pixels, not a multiple of bin = 4; add crop = 4x4"});
     expect_parts(refusal({.bin = 2, .size = FrameShape{2, 4}}, kShape),
-                 {"has 3 x 2 pixels, which --resize 4x2 would enlarge"});
+                 {"has 3 x 2 pixels, which resize = 4x2 would enlarge"});
 }
 
 TEST(FootagePartTest, TheColoursOfAMosaicStayApart) {
     constexpr FrameShape kShape{6, 10, 1};
     const ColourFilter mosaic = ColourFilter::kRggb;
-    expect_parts(refusal({.bin = 2}, kShape, mosaic), {"mosaic", "--bin would mix"});
-    expect_parts(refusal({.size = FrameShape{3, 5}}, kShape, mosaic), {"--resize would mix"});
+    expect_parts(refusal({.bin = 2}, kShape, mosaic), {"mosaic", "bin would mix"});
+    expect_parts(refusal({.size = FrameShape{3, 5}}, kShape, mosaic), {"resize would mix"});
     expect_parts(refusal({.crop = parse_crop_area("2x2+1+0")}, kShape, mosaic), {"even column"});
     // The middle begins at column 3; the even one before it is taken.
     EXPECT_EQ(reduced({.crop = parse_crop_area("4x2")}, kShape, mosaic),
@@ -123,7 +123,7 @@ TEST_F(FootageFramesTest, FramesAToBAreRead) {
     EXPECT_EQ(read(":"), (Floats{1, 2, 3, 4, 5, 6}));
     for (const char* frames : {"6:", "2:7"})
         expect_parts(message_of<InputError>([&] { return read(frames); }),
-                     {"clip.npy: has 6 frames, so not all of --frames"});
+                     {"clip.npy: has 6 frames, so not all of frames"});
 }
 
 TEST_F(FootageFramesTest, LeftOutFramesCountFromTheFirstOfTheRange) {

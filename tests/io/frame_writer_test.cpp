@@ -115,7 +115,7 @@ TEST(FrameWriterTest, ReplacesAnExistingOutputOnlyWithForce) {
     for (const char* name : {"clip.npy", "clip.tif", "frames", "clip.mp4"}) {
         write_two(folder / name);
         expect_parts(message_of<InputError>([&] { write_two(folder / name); }),
-                     {"exists already", "--force"});
+                     {"exists already", "force = true"});
         write_two(folder / name, {.force = true});
     }
     EXPECT_EQ(folder.names(), (Names{"clip.mp4", "clip.npy", "clip.tif", "frames"}));

@@ -35,7 +35,7 @@ TEST(GrowingFileTest, AFileThatDoesNotAppearIsAnErrorAfterTheTimeout) {
     const TemporaryFolder folder;
     GrowingFile file(folder / "a", 0, goes_on);
     expect_parts(message_of<InputError>([&] { return file.wait_for_file(); }),
-                 {"a: has not appeared within 0 s", "--timeout"});
+                 {"a: has not appeared within 0 s", "raise timeout"});
     EXPECT_TRUE(file.timed_out());
 }
 

@@ -40,7 +40,7 @@ TEST(PendingOutputTest, RefusesAnExistingOutputWithoutForce) {
     const TemporaryFolder folder;
     write_text(folder / "clip.npy", "old");
     const auto message = message_of<InputError>([&] { PendingOutput(folder / "clip.npy", false); });
-    expect_parts(message, {"clip.npy: exists already", "--force"});
+    expect_parts(message, {"clip.npy: exists already", "force = true"});
     EXPECT_EQ(read_text(folder / "clip.npy"), "old");
 }
 

@@ -9,7 +9,6 @@
 namespace stipple {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -74,15 +73,16 @@ TEST(TiffAxesTest, TakesPagesThatAreMoments) {
 TEST(TiffAxesTest, TakesMoreChannelsThanImageJShowsForMomentsWithAWarning) {
     EXPECT_THAT(refusal_of("ImageJ=1.11a\nimages=7\nchannels=7\nhyperstack=true\n", 7),
                 HasSubstr("7 channels"));
-    EXPECT_THAT(times_of("ImageJ=1.11a\nimages=8\nchannels=8\nhyperstack=true\n", 8).warnings,
-                ElementsAre(HasSubstr("8 channels")));
+    EXPECT_THAT(
+        times_of("ImageJ=1.11a\nimages=8\nchannels=8\nhyperstack=true\n", 8).warnings.at(0).text(),
+        HasSubstr("8 channels"));
 }
 
 TEST(TiffAxesTest, WarnsOfAPlainStackOfImageJAndOfMomentsInOtherFiles) {
-    EXPECT_THAT(times_of("ImageJ=1.54f\nimages=4\nslices=4\nloop=false\n", 4).warnings,
-                ElementsAre(HasSubstr("declares 4 slices")));
-    EXPECT_THAT(times_of(ome(R"(SizeZ="1" SizeC="1" SizeT="100")"), 4).warnings,
-                ElementsAre(HasSubstr("declares 100 moments in time (SizeT), but holds 4 pages")));
+    EXPECT_THAT(times_of("ImageJ=1.54f\nimages=4\nslices=4\nloop=false\n", 4).warnings.at(0).text(),
+                HasSubstr("declares 4 slices"));
+    EXPECT_THAT(times_of(ome(R"(SizeZ="1" SizeC="1" SizeT="100")"), 4).warnings.at(0).text(),
+                HasSubstr("declares 100 moments in time (SizeT), but holds 4 pages"));
 }
 
 TEST(TiffAxesTest, RefusesFewerPagesThanAnnounced) {

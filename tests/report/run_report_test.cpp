@@ -46,7 +46,7 @@ TEST(RunReportTest, PicturesAreLeftOutUntilTheFileFits) {
     smaller.report->fit();
     EXPECT_GT(data_of(*smaller.report)["picture_step"], 1);
     ASSERT_EQ(smaller.report->notes().size(), 1U);
-    EXPECT_THAT(smaller.report->notes()[0], HasSubstr("--max-size"));
+    EXPECT_THAT(smaller.report->notes()[0], HasSubstr("to stay within"));
     EXPECT_LT(smaller.report->page().size(), most);
 }
 

@@ -55,7 +55,7 @@ TEST(HeaderCodecTest, AGeneratorOutOfProportionToTheFileIsRefused) {
     seal(bytes);
     expect_parts(
         message_of<InputError>([&] { return decode_header(bytes, "a.stipple", small_file); }),
-        {"a.stipple", "for its schedule", "--max-memory"});
+        {"a.stipple", "for its schedule", "max_memory = "});
 }
 
 TEST(HeaderCodecTest, IntegersOutsideTheirLimitsAreRefused) {

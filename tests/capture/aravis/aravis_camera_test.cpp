@@ -271,7 +271,7 @@ TEST_F(AravisCameraTest, AReceiveBufferThatIsTooSmallIsWarnedOfByTheNameOfItsLim
     auto opened = open_camera("gige:127.0.0.1", {}, {.socket_frames = 1'000'000});
     const CameraDescription description = opened->description();
     ASSERT_EQ(description.warnings.size(), 1U);
-    EXPECT_NE(description.warnings[0].find("net.core.rmem_max="), std::string::npos);
+    EXPECT_NE(description.warnings[0].text().find("net.core.rmem_max="), std::string::npos);
     CaptureSession session([&] { return std::move(opened); }, {.stall = 0ms, .reconnect = false});
     const CapturedFrame frame = next_frame(session);
     if (frame.record.status == FrameStatus::kComplete) {
@@ -343,7 +343,7 @@ TEST_F(AravisCameraTest, BuffersThatTheMachineHasNoRoomForAreRefused) {
         ADD_FAILURE() << "were taken";
     } catch (const InputError& e) {
         for (const char* part : {"gige:127.0.0.1: PayloadSize: 1024 buffers of 1073741824 bytes",
-                                 "--max-memory", "--buffers"})
+                                 "max_memory", "buffers"})
             EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
     }
 }

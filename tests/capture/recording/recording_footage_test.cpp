@@ -106,7 +106,7 @@ TEST(RecordingFootageTest, AnotherLayoutAndEndlessGapsAreErrors) {
                      RecordingFootage footage(folder / "b");
                      return read_all(footage);
                  }),
-                 {"--skip-gaps"});
+                 {"skip_gaps = true"});
     EXPECT_THROW(RecordingFootage(folder / "b", {.black_level_dn = 4095}), InputError);
     write_recording(folder / "c", {});
     EXPECT_THROW(RecordingFootage(folder / "c", {}), InputError);

@@ -166,10 +166,10 @@ TEST(Hitomi2011Test, ClipsAndFramesSmallerThanAPatchAreDecoded) {
 TEST(Hitomi2011Test, SaysWhatDictionaryItNeeds) {
     const Measurements m = measure(disc(24, {14, 21, 1}), single_bump());
     expect_parts(message_of<InputError>([&] { static_cast<void>(decode_hitomi2011(m, {})); }),
-                 {"--set decoder.dictionary", "stipple dictionary FOOTAGE"});
+                 {"decoder.dictionary: ", "stipple dictionary"});
     const auto shorter = with(cosine_dictionary({.slots = 2, .side_px = 4}, 1));
     expect_parts(message_of<InputError>([&] { static_cast<void>(decode_hitomi2011(m, shorter)); }),
-                 {"2 slots", "shorter than all exposures", "--slots"});
+                 {"2 slots", "shorter than all exposures", "the period of the schedule"});
 }
 
 TEST(Hitomi2011Test, StopsWhereverItIsTold) {
