@@ -53,7 +53,7 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
         .required()
         .output();
     manual.add_flag("--markdown", options->markdown,
-                    "write the tables of options as Markdown instead, as in docs/cli.md");
+                    "write tables of options as Markdown instead");
     manual.add_flag("--force", action.options.force,
                     "replace the folder, if it holds nothing but such pages");
     manual.footer(

@@ -14,7 +14,7 @@ struct LiveReport {
     const LiveCamera& camera;  ///< stopped
 };
 
-/// The figures of a live emulation under their names of docs/cli.md (`capture live`), in addition
+/// The figures of a live emulation under their names of docs/outputs.md (`capture live`), in addition
 /// to those of its stream (readout/emulation_figures.h) and without `preview`. Calls `add(name,
 /// value)` for each; values are numbers, std::nullopt, and those of core/nested_figures.h.
 template <typename Add>

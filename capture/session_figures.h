@@ -6,7 +6,7 @@
 
 namespace stipple {
 
-// Figures of a capture session under the names of docs/cli.md (`capture record`, `capture live`).
+// Figures of a capture session under the names of docs/outputs.md (`capture record`, `capture live`).
 // The functions `visit_...` call `add(name, number)` for each.
 
 /// The key `lost`: missing frames by their cause.

@@ -8,7 +8,7 @@
 namespace stipple {
 
 /// An incomplete output under its hidden name: ".name.PROCESS-RANDOM.partial.ext" for "name.ext"
-/// (docs/cli.md). It remains if its process is killed.
+/// (docs/outputs.md). It remains if its process is killed.
 struct PartialOutput {
     std::filesystem::path path;
     std::filesystem::path final_path;

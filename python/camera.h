@@ -65,7 +65,7 @@ class SessionWarnings {
 };
 
 /// Missing frames by cause, and the counts of the transport: the keys `lost` and `transport` of
-/// docs/cli.md.
+/// docs/outputs.md.
 [[nodiscard]] pybind11::dict lost_dict(const SessionTotals& totals);
 [[nodiscard]] pybind11::dict transport_dict(const TransportCounts& counts);
 

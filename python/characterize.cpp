@@ -52,7 +52,7 @@ py::dict histogram_dict(const emva1288::DeviationHistogram& histogram) {
                     "at_least"_a = histogram.at_least);
 }
 
-/// The keys of "characterize" in docs/cli.md.
+/// The keys of "characterize" in docs/outputs.md.
 py::dict evaluation_dict(const Evaluation& evaluation,
                          const std::optional<CameraFigures>& configured) {
     py::dict dict("measured"_a = figures_dict(evaluation.figures));

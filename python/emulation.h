@@ -9,7 +9,7 @@
 
 namespace stipple::python {
 
-/// What was emulated: the keys of "emulate" in docs/cli.md, without its speed.
+/// What was emulated: the keys of "emulate" in docs/outputs.md, without its speed.
 [[nodiscard]] pybind11::dict figures_of(const StreamRecorder& recorder);
 
 /// \throws InputError for another name than "stretch" and "drop".

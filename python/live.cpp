@@ -42,7 +42,7 @@ struct LiveTask {
     std::optional<PreviewTask> preview;
 };
 
-/// The keys of "capture live" in docs/cli.md.
+/// The keys of "capture live" in docs/outputs.md.
 py::dict live_dict(const LiveEmulation& live, const StreamRecorder& recorder,
                    const LiveCamera& camera) {
     py::dict dict = figures_of(recorder);

@@ -43,7 +43,7 @@ class ShownPreview {
     /// Raises what Python has raised. With the GIL.
     void throw_raised();
 
-    /// The key `preview` of "capture live" in docs/cli.md, without its file. After `finish`.
+    /// The key `preview` of "capture live" in docs/outputs.md, without its file. After `finish`.
     [[nodiscard]] pybind11::dict figures() const;
 
   private:

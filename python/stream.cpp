@@ -102,9 +102,9 @@ void bind_stream(py::module_& module) {
             "(rows, columns, planes) of the array of pixels.")
         .def_property_readonly(
             "header", [](const StreamFile& self) { return header_dict(self.header()); },
-            "What it says of itself: the keys of \"stipple info\" (docs/cli.md).")
+            "What it says of itself: the keys of \"stipple info\" (docs/outputs.md).")
         .def_property_readonly("figures", &StreamFile::figures,
-                               "What \"stipple emulate\" says of it (docs/cli.md), or None of a "
+                               "What \"stipple emulate\" says of it (docs/outputs.md), or None of a "
                                "stream that was opened.")
         .def(
             "exposures",

@@ -82,7 +82,7 @@ class StreamFile {
     std::optional<std::int64_t> slots_;
 };
 
-/// Header and counts of a stream that was read: the keys of `info` in docs/cli.md.
+/// Header and counts of a stream that was read: the keys of `info` in docs/outputs.md.
 [[nodiscard]] pybind11::dict header_dict(const StreamHeader& header);
 
 }  // namespace stipple::python

@@ -21,7 +21,7 @@ struct RigTotals {
     void add(const StreamRecorder& recorder, double share);
 };
 
-/// The totals under their names of docs/cli.md; calls `add(name, value)` for each.
+/// The totals under their names of docs/outputs.md; calls `add(name, value)` for each.
 template <typename Add>
 void visit_rig_figures(const RigTotals& totals, const Add& add) {
     add("samples", totals.samples);

@@ -6,7 +6,7 @@
 
 namespace stipple {
 
-/// The figures of a comparison under the names of docs/cli.md.
+/// The figures of a comparison under the names of docs/outputs.md.
 [[nodiscard]] nlohmann::ordered_json quality_json(const VideoQuality& quality);
 
 }  // namespace stipple

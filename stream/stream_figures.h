@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-// Figures of a stream under the names and in the units of docs/cli.md (`info`). The functions
+// Figures of a stream under the names and in the units of docs/outputs.md (`info`). The functions
 // `visit_...` call `add(name, value)` for each; values are numbers, texts, true or false, or lists
 // of numbers.
 

@@ -21,8 +21,8 @@ struct OptionDescription {
     bool repeats = false;  ///< may be given several times
 };
 
-/// A command with its subcommands: the source of manual pages, completions and the tables of
-/// docs/cli.md.
+/// A command with its subcommands: the source of manual pages, completions and the
+/// command line's page of the site.
 struct CommandDescription {
     std::string name;    ///< whole, as "stipple capture record"
     std::string text;    ///< a line

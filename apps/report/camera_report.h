@@ -15,7 +15,7 @@ struct CameraReport {
     std::optional<emva1288::CameraFigures> configured;
 };
 
-/// The keys of `characterize` in docs/cli.md.
+/// The keys of `characterize` in docs/outputs.md.
 [[nodiscard]] nlohmann::ordered_json camera_json(const CameraReport& report);
 
 /// A table of the figures.

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-/// Results of an emulation for programs: the keys of `emulate` in docs/cli.md. `slots_per_second`
+/// Results of an emulation for programs: the keys of `emulate` in docs/outputs.md. `slots_per_second`
 /// is empty if the speed is not known.
 [[nodiscard]] nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                                     std::optional<double> slots_per_second);

@@ -7,7 +7,7 @@
 
 namespace stipple {
 
-/// The keys of `capture live` in docs/cli.md, without `preview`.
+/// The keys of `capture live` in docs/outputs.md, without `preview`.
 [[nodiscard]] nlohmann::ordered_json live_json(const LiveReport& report);
 
 /// The same for people; slots are late after `late_after_slots`.

@@ -12,7 +12,7 @@ namespace stipple {
 /// above, or a .npy of linear light, (1, H, W) or (1, H, W, 3). \throws InputError, DeviceError.
 void write_preview(const std::filesystem::path& file, const PreviewFrame& frame);
 
-/// Statistics of the finished preview `file`: the key `preview` of docs/cli.md,
+/// Statistics of the finished preview `file`: the key `preview` of docs/outputs.md,
 /// and the same for people.
 [[nodiscard]] nlohmann::ordered_json preview_json(const std::string& file,
                                                   const LivePreview& preview);

@@ -7,13 +7,13 @@
 
 namespace stipple {
 
-/// Frames that are missing, by cause: the key `lost` of docs/cli.md.
+/// Frames that are missing, by cause: the key `lost` of docs/outputs.md.
 [[nodiscard]] nlohmann::ordered_json lost_json(const SessionTotals& totals);
 
 /// The same for people: the causes there are, or "none".
 [[nodiscard]] std::string lost_text(const SessionTotals& totals);
 
-/// What the transport has counted: the key `transport` of docs/cli.md.
+/// What the transport has counted: the key `transport` of docs/outputs.md.
 [[nodiscard]] nlohmann::ordered_json transport_json(const TransportCounts& counts);
 
 /// How many, and how many are incomplete, for a line of progress: "3 lost, 1 incomplete"; empty if

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#]+)((?:#[^)\s]*)?)\)")
@@ -55,6 +56,16 @@ def with_files(page, root, target):
         return match[0]
 
     return LINK.sub(link, page.read_text())
+
+
+def write_command_line(program, page):
+    """The options of all commands, as the program lists them."""
+    folder = page.with_suffix("")
+    subprocess.run([program, "manual", folder, "--markdown"], check=True)
+    texts = (f"## {file.stem.replace('-', ' ')}\n\n{file.read_text()}"
+             for file in sorted(folder.iterdir(), key=lambda file: file.stem))
+    page.write_text("\n".join(("# Command line\n", *texts)))
+    shutil.rmtree(folder)
 
 
 def write_cpp_pages(folder):

@@ -265,7 +265,7 @@ def timing(
     size: Optional[Tuple[int, int]] = None,
     seed: int = 1,
 ) -> dict[str, Any]:
-    """How fast a sensor reads, in full and coded: the keys of "stipple timing --json" (docs/cli.md).
+    """How fast a sensor reads, in full and coded: the keys of "stipple timing --json" (docs/outputs.md).
 
     sensor: one with a section [timing] (Sensor.has_timing).
     schedule: a Schedule, a name, or the path of a file.

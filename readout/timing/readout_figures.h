@@ -10,7 +10,7 @@
 
 namespace stipple {
 
-// Figures of a readout under the names and in the units of docs/cli.md. The functions `visit_...`
+// Figures of a readout under the names and in the units of docs/outputs.md. The functions `visit_...`
 // call `add(name, value)` for each; values are numbers, texts, true or false, or std::optional.
 
 /// Fractions of rows, ADC time and link time that are used, 0..1.

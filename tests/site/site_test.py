@@ -31,6 +31,7 @@ class SiteTest(unittest.TestCase):
 
     def test_pages_interfaces_and_gallery_are_there(self):
         self.assertIn("coded exposure", self.text("docs/concept.html"))
+        self.assertIn("stipple capture record", self.text("docs/cli.html"))
         self.assertIn("StreamReader", self.text("cpp/stream.html"))
         self.assertIn("linear light, a frame per time slot", self.text("python_api.html"))
         self.assertIn("full1x.png", self.text("gallery.html"))
