@@ -50,7 +50,7 @@ void add_method(Command& command, DecodeArguments& arguments) {
         .type_name("NAME");
     command
         .add_option("--options", arguments.options,
-                    "options of the method, a TOML file (docs/decoder_options.md)")
+                    "options of the method, a TOML file (stipple list keys decoder)")
         .type_name("FILE")
         .input();
     add_settings(command, {{"decoder", &arguments.settings}}, "change one option of the method");

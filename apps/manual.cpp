@@ -52,8 +52,7 @@ void add_manual(Command& app, Action& action, std::function<CommandDescription()
     manual.add_option("FOLDER", options->argument, "folder to write the pages to")
         .required()
         .output();
-    manual.add_flag("--markdown", options->markdown,
-                    "write tables of options as Markdown instead");
+    manual.add_flag("--markdown", options->markdown, "write tables of options as Markdown instead");
     manual.add_flag("--force", action.options.force,
                     "replace the folder, if it holds nothing but such pages");
     manual.footer(

@@ -14,9 +14,10 @@ struct LiveReport {
     const LiveCamera& camera;  ///< stopped
 };
 
-/// The figures of a live emulation under their names of docs/outputs.md (`capture live`), in addition
-/// to those of its stream (readout/emulation_figures.h) and without `preview`. Calls `add(name,
-/// value)` for each; values are numbers, std::nullopt, and those of core/nested_figures.h.
+/// The figures of a live emulation under their names of docs/outputs.md (`capture live`), in
+/// addition to those of its stream (readout/emulation_figures.h) and without `preview`. Calls
+/// `add(name, value)` for each; values are numbers, std::nullopt, and those of
+/// core/nested_figures.h.
 template <typename Add>
 void visit_live_figures(const LiveReport& report, const Add& add) {
     const LiveEmulation& live = report.emulation;

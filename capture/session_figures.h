@@ -6,8 +6,8 @@
 
 namespace stipple {
 
-// Figures of a capture session under the names of docs/outputs.md (`capture record`, `capture live`).
-// The functions `visit_...` call `add(name, number)` for each.
+// Figures of a capture session under the names of docs/outputs.md (`capture record`, `capture
+// live`). The functions `visit_...` call `add(name, number)` for each.
 
 /// The key `lost`: missing frames by their cause.
 template <typename Add>

@@ -40,7 +40,7 @@ struct NamedDecodeMethod {
     std::int64_t max_tile_sites;  ///< larger frames are decoded in tiles
     std::uint64_t voxel_bytes;    ///< memory of all arrays of the method, bytes a voxel
     double voxel_us;              ///< time of a core for a voxel, about (expected_cost)
-    /// The keys of docs/decoder_options.md. \throws InputError as Config.
+    /// The keys of `stipple list keys decoder`. \throws InputError as Config.
     void (*read_options)(Config& config, DecodeOptions& options);
     /// The result may be slightly negative. Returns nothing if the progress callback has stopped
     /// it.

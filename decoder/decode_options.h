@@ -36,7 +36,7 @@ struct DecodeOptions {
     std::int64_t first_slot = 0;
 };
 
-/// The method with the options of `config`, whose keys are those of docs/decoder_options.md for
+/// The method with the options of `config`, whose keys are those of `stipple list keys decoder` for
 /// this method. \throws InputError for an unknown key, a wrong type or a value out of range.
 [[nodiscard]] DecodeOptions read_decode_options(DecodeMethod method, Config& config);
 

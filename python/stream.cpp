@@ -103,9 +103,10 @@ void bind_stream(py::module_& module) {
         .def_property_readonly(
             "header", [](const StreamFile& self) { return header_dict(self.header()); },
             "What it says of itself: the keys of \"stipple info\" (docs/outputs.md).")
-        .def_property_readonly("figures", &StreamFile::figures,
-                               "What \"stipple emulate\" says of it (docs/outputs.md), or None of a "
-                               "stream that was opened.")
+        .def_property_readonly(
+            "figures", &StreamFile::figures,
+            "What \"stipple emulate\" says of it (docs/outputs.md), or None of a "
+            "stream that was opened.")
         .def(
             "exposures",
             [](const StreamFile& self) { return exposures_of(self.header().schedule); },

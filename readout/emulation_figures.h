@@ -6,8 +6,8 @@
 
 namespace stipple {
 
-/// Figures of a recorded stream under their names of docs/outputs.md (`emulate`), without its speed and
-/// the cost of its readout (`visit_cost_figures`). Calls `add(name, number)` for each.
+/// Figures of a recorded stream under their names of docs/outputs.md (`emulate`), without its speed
+/// and the cost of its readout (`visit_cost_figures`). Calls `add(name, number)` for each.
 template <typename Add>
 void visit_emulation_figures(const StreamRecorder& recorder, const Add& add) {
     add("slots", recorder.stats().slots);

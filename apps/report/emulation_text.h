@@ -8,8 +8,8 @@
 
 namespace stipple {
 
-/// Results of an emulation for programs: the keys of `emulate` in docs/outputs.md. `slots_per_second`
-/// is empty if the speed is not known.
+/// Results of an emulation for programs: the keys of `emulate` in docs/outputs.md.
+/// `slots_per_second` is empty if the speed is not known.
 [[nodiscard]] nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
                                                     std::optional<double> slots_per_second);
 

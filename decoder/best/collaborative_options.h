@@ -74,7 +74,7 @@ struct CollaborativeOptions {
 /// The options that take the place of `options` for samples without noise.
 [[nodiscard]] CollaborativeOptions without_noise(CollaborativeOptions options);
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, CollaborativeOptions& options);
 
 }  // namespace stipple

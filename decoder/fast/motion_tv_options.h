@@ -29,7 +29,7 @@ struct MotionTvOptions {
     float max_step_ratio = 2;  ///< links to pixels whose step size is larger by more are cut
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, MotionTvOptions& options);
 
 }  // namespace stipple

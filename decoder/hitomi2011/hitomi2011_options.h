@@ -19,7 +19,7 @@ struct Hitomi2011Options {
         1.2F;  ///< the pursuit ends at the standard deviation of the noise times this
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Hitomi2011Options& options);
 
 }  // namespace stipple

@@ -57,7 +57,7 @@ struct Portz2013Options {
     float values_per_flux = 0.5F;
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Portz2013Options& options);
 
 }  // namespace stipple

@@ -16,7 +16,7 @@ struct Reddy2011Options {
     int iterations = 60;            ///< in each round
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Reddy2011Options& options);
 
 }  // namespace stipple

@@ -15,7 +15,7 @@ struct Bennett2005Options {
     float spatial_range_sigma = 2;  ///< of the spatial filter, in standard deviations of the noise
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Bennett2005Options& options);
 
 }  // namespace stipple

@@ -12,7 +12,7 @@ struct Shahar2011Options {
     OctaveOptions octave = {};
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Shahar2011Options& options);
 
 }  // namespace stipple

@@ -17,7 +17,7 @@ struct Vbm4dOptions {
     int min_confidence = 100;  ///< of the motion of a volume, 0..255
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Vbm4dOptions& options);
 
 }  // namespace stipple

@@ -13,7 +13,7 @@ struct Zhang2009Options {
     int min_confidence = 100;  ///< of the flow, 0..255
 };
 
-/// The keys of docs/decoder_options.md. \throws InputError as Config.
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, Zhang2009Options& options);
 
 }  // namespace stipple

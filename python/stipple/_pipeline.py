@@ -195,7 +195,7 @@ def decode(
 
     stream: a Stream, or the path of one.
     method: one of decode_methods(), from the fastest to the best.
-    options: of the method, {"iterations": 20}; docs/decoder_options.md lists them.
+    options: of the method, {"iterations": 20}; "stipple list keys decoder" lists them.
     until: decode only so many slots.
     fill_gaps: decode slots that are missing, however many they are.
     strict: raise ValueError at the first damage. Else damage costs its own samples and is a UserWarning.

@@ -10,8 +10,9 @@
 
 namespace stipple {
 
-// Figures of a readout under the names and in the units of docs/outputs.md. The functions `visit_...`
-// call `add(name, value)` for each; values are numbers, texts, true or false, or std::optional.
+// Figures of a readout under the names and in the units of docs/outputs.md. The functions
+// `visit_...` call `add(name, value)` for each; values are numbers, texts, true or false, or
+// std::optional.
 
 /// Fractions of rows, ADC time and link time that are used, 0..1.
 struct Utilisation {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "tests/support/key_table.h"
 
 namespace stipple {
 namespace {
@@ -43,15 +42,6 @@ TEST(DecodeOptionsTest, ChangesWhatIsSet) {
     EXPECT_EQ(options.fast.rounds, 5);
     EXPECT_EQ(options.fast.along_motion.temporal_weight, 60.5F);
     EXPECT_EQ(options.fast.static_tv.temporal_weight, MotionTvOptions{}.static_tv.temporal_weight);
-}
-
-TEST(DecodeOptionsTest, ThePageListsTheKeysThatAreReadWithUnitsDefaultsAndRanges) {
-    for (const NamedDecodeMethod& method : decode_methods()) {
-        SCOPED_TRACE(method.name);
-        Config config(std::vector<std::string>{});
-        static_cast<void>(read_decode_options(method.method, config));
-        expect_documented(config.known_keys(), key_table("docs/decoder_options.md", method.name));
-    }
 }
 
 TEST(DecodeOptionsTest, RefusesWhatTheMethodDoesNotKnowOrCannotTake) {

@@ -3,11 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "core/error.h"
-#include "tests/support/key_table.h"
 #include "tests/support/source_tree.h"
 
 namespace stipple {
@@ -152,23 +150,6 @@ TEST(SensorConfigTest, TakesABlackLevelOfFourStandardDeviationsInPhysicalMode) {
     EXPECT_EQ(read({"mode=physical", "read_noise_e=0"}).physical.black_level_dn, 0);
     EXPECT_EQ(read({"mode=physical", "dsnu_e=24", "black_level_dn=1"}).physical.black_level_dn, 1);
     EXPECT_EQ(read().physical.black_level_dn, 0);
-}
-
-TEST(SensorConfigTest, ThePagesListTheKeysThatAreReadWithUnitsDefaultsAndRanges) {
-    const auto keys_of = [](const char* mode) {
-        Config config(std::vector<std::string>{std::string("mode=") + mode});
-        static_cast<void>(read_sensor(config));
-        return config.known_keys();
-    };
-    auto paper = keys_of("paper");
-    expect_documented(paper, key_table("docs/sensor_model.md", ""));
-    auto table = key_table("docs/physics.md", "");
-    for (const KnownKey& key : paper) table.erase(key.name);
-    auto physical = keys_of("physical");
-    std::erase_if(physical, [&](const KnownKey& key) {
-        return std::ranges::find(paper, key.name, &KnownKey::name) != paper.end();
-    });
-    expect_documented(physical, table);
 }
 
 TEST(SensorConfigTest, TheSensorsHaveTheirPublishedFigures) {

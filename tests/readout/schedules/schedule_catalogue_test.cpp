@@ -14,7 +14,6 @@
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/random_codes.h"
-#include "tests/support/key_table.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -105,15 +104,6 @@ TEST(ScheduleCatalogueTest, ReadsEveryKey) {
     EXPECT_EQ(random.source.exposure_slots, (std::vector<int>{3, 5}));
     EXPECT_EQ(random.name, "mine");
     EXPECT_EQ(read("full4x", {"open_slots=2", "period_slots=7"}).schedule, full_schedule(2, 7));
-}
-
-TEST(ScheduleCatalogueTest, ThePagesListTheKeysOfEachKindWithUnitsDefaultsAndRanges) {
-    for (const std::string_view kind : schedule_kinds()) {
-        SCOPED_TRACE(kind);
-        KeyTable table = key_table("docs/schedules.md", "Keys", kind);
-        if (kind == "hardware_tiled") table.merge(key_table("docs/hardware_schedules.md", "Keys"));
-        expect_documented(known_schedule_keys(kind), table);
-    }
 }
 
 TEST(ScheduleCatalogueTest, HardwareTiledSuitsTheSensorUnlessTheFileSaysElse) {

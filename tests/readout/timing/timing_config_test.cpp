@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "readout/timing/readout_timing.h"
 #include "tests/readout/timing/sensor_timing.h"
-#include "tests/support/key_table.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -40,18 +39,6 @@ TEST(TimingConfigTest, KeysArriveWhereTheyBelong) {
     EXPECT_EQ(timing.code_bit_pj, 0.25);
     EXPECT_EQ(timing.bits_per_sample, 12);
     EXPECT_EQ(timing.settle_clocks.size(), 9U);
-}
-
-TEST(TimingConfigTest, ThePageListsTheKeysThatAreReadWithUnitsDefaultsAndRanges) {
-    Config config(std::vector<std::string>{});
-    EXPECT_FALSE(read_timing(config, 8).has_value());
-    constexpr std::string_view kSection = "timing.";
-    std::vector<KnownKey> keys;
-    for (KnownKey key : config.known_keys()) {
-        key.name.erase(0, kSection.size());
-        keys.push_back(key);
-    }
-    expect_documented(keys, key_table("docs/readout_timing.md", "A sensor file"));
 }
 
 // Of each sensor: 30 us for 320 rows; 3 fF a row, charged to 1.2 V; 100 pJ for 10 bits.
