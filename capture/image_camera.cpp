@@ -21,8 +21,9 @@ std::unique_ptr<Camera> open_image_camera(const std::string& address,
                          "what was recorded is a coded stream, not images; record the camera "
                          "anew with " +
                              Parameter{"coded", "true"});
-    throw InputError(where, "the camera sends a coded stream, not images; record it with " +
-                                Parameter{"coded", "true"});
+    throw InputError(
+        where, "the camera sends a coded stream, not images; \"capture record\" writes it with " +
+                   Parameter{"coded", "true"});
 }
 
 SessionOptions session_options(const std::string& address, SessionOptions options) {

@@ -67,7 +67,7 @@ Message unequal_times_warning(const std::string& apart, const FootageOptions& op
     const Message remedy = options.at_their_times
                                ? Parameter{"frames_hz"} + " makes them equally long"
                                : "each becomes one slot; " + Parameter{"resample", "blend"} +
-                                     " of the emulation puts them at their times";
+                                     " puts them at their times";
     return fmt::format("{}: its frames are {}, but ", name, apart) + remedy;
 }
 

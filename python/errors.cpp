@@ -41,8 +41,8 @@ std::string as_argument(const Parameter& parameter) {
         return value.empty() ? "MaxMemory" : fmt::format("stipple.MaxMemory(\"{}\")", value);
     if (value.empty()) return name;
     if (value == "true") return name + "=True";
-    const bool is_number = parsed_number<double>(value).has_value();
-    return fmt::format(is_number ? "{}={}" : "{}=\"{}\"", name, value);
+    const std::string_view quote = parsed_number<double>(value) ? "" : "\"";
+    return fmt::format("{}={}{}{}", name, quote, value, quote);
 }
 
 std::string in_python(const Message& message) {

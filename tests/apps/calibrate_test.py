@@ -92,6 +92,7 @@ class CalibrateTest(ProgramTest):
         for name in "none", "flat":
             self.succeed("emulate", f"{name}.npy", "-o", f"{name}.stipple", *SENSOR, "--seed", 8)
         self.succeed("calibrate", "--dark", "none.stipple", "--flat", "flat.stipple", "-o", "streams.stcal")
+        self.assertEqual(self.figures("info", "streams.stcal")["device_id"], 4)
         self.calibrate()
         streams, sensor = self.gains("streams.stcal"), self.gains("chip.stcal")
         sound = sensor > 0.5

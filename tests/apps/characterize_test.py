@@ -29,7 +29,8 @@ class CharacterizeTest(ProgramTest):
         """What a run on t6 leaves: the folder "series", and its figures. It runs once for all tests."""
         if CharacterizeTest.made is None:
             folder = Path(self.enterClassContext(tempfile.TemporaryDirectory(prefix="stipple_")))
-            self.succeed("characterize", "--sensor", "t6", "-o", folder / "series", "--json", folder / "figures.json")
+            text = self.succeed("characterize", "--sensor", "t6", "-o", folder / "series", "--json", folder / "figures.json")
+            (folder / "text").write_text(text)
             CharacterizeTest.made = folder
         shutil.copytree(self.made / "series", self.folder / "series")
         return json.loads((self.made / "figures.json").read_text())
@@ -46,6 +47,19 @@ class CharacterizeTest(ProgramTest):
         self.assertEqual(done.returncode, OK, done.stderr)
         self.assertEqual(json.loads(done.stdout), figures)
         self.assertEqual(list((self.folder / "tmp").iterdir()), [])
+
+    def test_what_is_printed_are_the_figures(self):
+        figures = self.series_of_t6()
+        lines = (self.made / "text").read_text().splitlines()
+        for name, key, scale in (("system gain K", "gain_dn_per_e", 1), ("quantum efficiency", "quantum_efficiency", 100),
+                                 ("dark noise", "dark_noise_e", 1), ("saturation capacity", "saturation_e", 1),
+                                 ("PRNU", "prnu", 100), ("sensitivity threshold", "sensitivity_threshold_p", 1)):
+            line, = (line for line in lines if line.startswith(name + " "))
+            values = [float(value) for value in line[len(name):].split()[:3]]
+            measured, configured = (scale * figures[part][key] for part in ("measured", "configured"))
+            self.assertAlmostEqual(values[0] / measured, 1, 3, name)
+            self.assertAlmostEqual(values[1] / configured, 1, 3, name)
+            self.assertAlmostEqual(values[2], 100 * (measured / configured - 1), delta=0.006, msg=name)
 
     def expect_configured(self, figures, keys):
         self.assertFalse(figures["biased"])

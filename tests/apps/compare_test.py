@@ -67,6 +67,9 @@ class CompareTest(ProgramTest):
         done = self.run_program("compare", "result", "colour.npy", "--result-transfer", "gamma22", "--json", "-")
         self.assertEqual(done.stderr, "")
         self.assertGreater(json.loads(done.stdout)["psnr_db"], 100)
+        # --transfer is of the reference alone.
+        self.write_array("coded.npy", np.full((2, 8, 8), 100 / 255))
+        self.assertGreater(self.figures("compare", light, "coded.npy", "--transfer", "gamma22")["psnr_db"], 100)
 
     def test_the_table_has_the_figures_of_each_frame(self):
         self.noisy[2] = self.light[2]

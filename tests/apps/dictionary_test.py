@@ -48,6 +48,18 @@ class DictionaryTest(ProgramTest):
         self.assertEqual(one, three)
         self.assertNotEqual(one, other)
 
+    def test_parts_are_of_one_dictionary(self):
+        self.moving_waves("light.npy")
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--schedule", "single_bump", "--set",
+                     "schedule.period_slots=4", "--set", "schedule.exposure_slots=2")
+        part = ["decode", "clip.stipple", "-o", "windows", "--part", "1/1", "--method", "hitomi2011", "--set",
+                "decoder.dictionary=atoms.npy"]
+        atoms = np.random.default_rng(1).standard_normal((24, 4, 9))
+        self.write_array("atoms.npy", atoms)
+        self.succeed(*part)
+        self.write_array("atoms.npy", atoms[::-1])
+        self.fails(INPUT, ["windows", "another decoding"], *part)
+
     def test_what_cannot_be_learned_from(self):
         self.moving_waves("light.npy", slots=5)
         self.write_flat("flat.npy")

@@ -108,6 +108,16 @@ class EmulatePartTest(ProgramTest):
             (self.folder / "pieces" / "piece_000002.stipple").read_bytes())
         self.fails(INPUT, ["piece_000001.stipple", "damaged"], "join", "pieces", "-o", "joined.stipple")
 
+    def test_a_piece_from_elsewhere_is_emulated_again(self):
+        self.write_noise("light.npy", 100, 8, 8)
+        self.emulate_part("1/1")
+        (self.folder / "pieces").rename(self.folder / "other")
+        self.emulate_part("1/1", "--seed", 2)
+        (self.folder / "other/piece_000001.stipple").replace(self.folder / "pieces/piece_000001.stipple")
+        self.fails(INPUT, ["lacks 1 of its 2 pieces: piece_000001"], "join", "pieces", "-o", "joined.stipple")
+        self.assertEqual(self.emulate_part("1/1", "--seed", 2)["pieces_emulated"], 1)
+        self.expect_bytes_of_one_run("--seed", 2)
+
     def test_pieces_of_another_emulation_are_not_mixed_in(self):
         self.write_noise("light.npy", 100, 8, 8)
         self.emulate_part("1/2")

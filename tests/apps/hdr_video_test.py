@@ -101,8 +101,12 @@ class HdrVideoTest(ProgramTest):
         self.assertIn("Mastering display metadata", kinds)
         data = {entry["side_data_type"]: entry for entry in self.stream("a.mkv")["side_data_list"]}
         self.assertEqual(data["Content light level metadata"]["max_content"], 400)
-        self.assertGreater(self.write_video("a.mkv", "--video", "pq", "--peak-cd", 400)["light_levels"]
-                           ["clipped_fraction"], 0.1)
+        said = self.succeed("decode", "clip.stipple", "-o", "a.mkv", "--method", "naive", "--force", "--video", "pq",
+                            "--peak-cd", 400, "--json", "figures.json")
+        clipped = json.loads((self.folder / "figures.json").read_text())["light_levels"]["clipped_fraction"]
+        self.assertGreater(clipped, 0.1)
+        self.assertIn("MaxCLL 400, MaxFALL ", said)
+        self.assertIn(f", {100 * clipped:.2g} % of the values clipped", said)
 
     def test_signals_are_those_of_the_light(self):
         # Lossy: of 10 bits, some steps of luma, and of chroma, which weigh up to 1.9. A wrong matrix, curve or

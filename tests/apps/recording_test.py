@@ -145,6 +145,23 @@ class RecordingTest(ProgramTest):
         self.assertEqual(figures["transport"]["packets_missing"], 0)
         self.assertEqual((self.folder / "a.stipple").read_bytes(), (self.folder / "b.stipple").read_bytes())
 
+    def test_frames_that_are_left_out_are_told_with_their_cause(self):
+        for incomplete, line, gaps, after_last in (
+                ((2, 3), "missing      2 frames in 1 places\n             2 before frame 4: ", 1, 0),
+                ((4, 5), "missing      0 frames in 0 places, and 2 after the last frame\n", 0, 2)):
+            self.record_incomplete(*incomplete)
+            record = ("capture", "record", "replay:clip.strec", "-o", "kept.strec", *FAST, "--force")
+            done = self.run_program(*record, "--fail-on-loss")
+            self.assertEqual(done.returncode, DEVICE, done.stderr)
+            self.assertIn("kept.strec: 2 lost, 0 incomplete; the file is kept", done.stderr)
+            lost = self.figures(*record, "--incomplete", "drop")["lost"]
+            cause, = (name for name, frames in lost.items() if frames == 2)
+            said = self.succeed("info", "kept.strec")
+            self.assertIn(line.replace("4: ", f"4: {cause}\n"), said + "\n")
+            told = self.figures("info", "kept.strec")
+            self.assertEqual((len(told["gaps"]), told["missing_after_last"]), (gaps, after_last))
+            (self.folder / "clip.strec").unlink()
+
     def test_live_counts_frames_from_its_first_slot_on(self):
         self.record_incomplete(0, 3, 5)
         figures = self.figures("capture", "live", "replay:clip.strec", "-o", "b.stipple", *FAST)

@@ -1,5 +1,6 @@
 """What a run that was killed leaves: how it is found, named and kept."""
 
+import json
 import os
 import signal
 import time
@@ -44,8 +45,11 @@ class RecoverTest(ProgramTest):
         done = self.run_program("info", left)
         self.assertIn("ends within a packet, of which there are 5 bytes; its run was killed, "
                       f"`stipple recover {left}` keeps it", done.stderr)
-        figures = self.figures("recover", left)
+        said = self.succeed("recover", left, "--json", "figures.json")
+        figures = json.loads((self.folder / "figures.json").read_text())
+        (self.folder / "figures.json").unlink()
         self.assertEqual((figures["file"], figures["cut_bytes"]), ("clip.stipple", 5))
+        self.assertIn(f"clip.stipple: {figures['whole']} whole slots, 5 bytes of the next one cut off; without an end", said)
         self.assertEqual((self.folder / "clip.stipple").read_bytes(), content)
         info = self.figures("info", "clip.stipple")
         self.assertEqual((info["slots"], info["complete"]), (figures["whole"], False))

@@ -120,10 +120,12 @@ class CheckTest(ProgramTest):
             self.assertEqual((figures["width"], figures["height"]), size)
 
     def test_pixels_that_differ_from_their_group_are_remarked_on(self):
-        figures = self.figures("schedule", "check", "tiled", "--sensor", "lux1310", "--size",
-                               "320x240", "--set", "sensor.timing.addressing=group")
+        check = ("schedule", "check", "tiled", "--sensor", "lux1310", "--size", "320x240", "--set",
+                 "sensor.timing.addressing=group")
+        figures = self.figures(*check)
         self.assertTrue(figures["legal"])
         self.assertIn("pixel (0, 1)", figures["remark"])
+        self.assertIn("at 320 x 240; " + figures["remark"], self.succeed(*check))
 
 
 class ImportTest(ProgramTest):

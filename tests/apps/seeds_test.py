@@ -89,6 +89,14 @@ class SeedsTest(ProgramTest):
         for row in systems:
             self.assertLess(row["psnr_db_low"], row["psnr_db"])
             self.assertLess(row["psnr_db"], row["psnr_db_high"])
+            line, = (line for line in text.splitlines() if line.startswith(row["system"] + " "))
+            found = re.findall(r" (-?[\d.]+)(?: \+-([\d.]+))?(?= |$)", line)
+            columns = [("rank", 1, 0), ("field_of_view", 100, 0), ("samples_per_voxel", 1, 3), ("light_throughput", 100, 0),
+                       ("sample_range_stops", 1, 1), ("psnr_db", 1, 2), ("psnr_gamma_db", 1, 2), ("pu21_psnr_db", 1, 2)]
+            for (name, scale, digits), (value, half) in zip(columns, found):
+                self.assertAlmostEqual(float(value), scale * float(row[name]), delta=0.501 * 10 ** -digits, msg=name)
+                if half:
+                    self.assertAlmostEqual(float(half), (row[f"{name}_high"] - row[f"{name}_low"]) / 2, delta=0.00501)
         self.assertNotIn("+-", self.succeed(*command))
 
 

@@ -7,6 +7,7 @@ import unittest
 import numpy as np
 
 from program import INPUT, OK, ProgramTest
+from sample_stream import parts
 
 QUICK = ["--method", "portz2013"]
 for setting in ("stage1.window_px=2", "stage1.iterations=3", "stage2.window_px=2",
@@ -50,6 +51,17 @@ class StagesTest(ProgramTest):
         (self.folder / "stages/convergence.png").touch()
         self.fails(INPUT, ["stages/convergence.png", "exists already"], "decode", stream, "-o", "out.npy",
                    *QUICK, "--stages", "stages")
+
+    def test_a_block_without_samples_is_dark_in_each_stage(self):
+        stream = self.folder / self.write_stream(slots=144, rows=17, cols=18)
+        header, packets, _ = parts(stream.read_bytes())
+        stream.write_bytes(header + b"".join(packets[:10] + packets[124:144]))
+        self.run_program("decode", stream.name, "-o", "out.npy", *QUICK, "--stages", "stages", "--fill-gaps")
+        out = self.array("out.npy")
+        self.assertEqual(len(out), 144)
+        self.assertEqual(np.count_nonzero(out[48:96]), 0)
+        np.testing.assert_array_equal(self.array("stages/stage2.npy"), out)
+        self.assertEqual(self.array("stages/start.npy").shape, out.shape)
 
     def test_the_stages_of_reddy2011(self):
         self.succeed("decode", self.write_stream(slots=10, rows=16, cols=16), "-o", "out.npy", "--method", "reddy2011",

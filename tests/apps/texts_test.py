@@ -1,6 +1,7 @@
 """What is printed for people has the figures of the JSON of the same run, in the units that it names."""
 
 import json
+import math
 import re
 import unittest
 
@@ -84,6 +85,68 @@ class TextsTest(ProgramTest):
             self.check(text, r"PSNR +# dB +linear, peak #\n", 20 * np.log10(peak / 0.01), figures["peak"])
             self.check(text, "PU21-PSNR +# dB.*1.0 = # cd/m2", figures["pu21_psnr_db"], figures["cd_per_unit"])
             self.check(text, "SSIM +#", figures["ssim"])
+
+    def test_info_of_streams_and_rigs(self):
+        self.write_ramp()
+        self.succeed("emulate", "light.npy", "-o", "a.stipple", "--sensor", "lux1310", "--schedule", "tiled")
+        text, figures = self.told("info", "a.stipple")
+        calibration = figures["calibration"]
+        self.check(text, "samples +# bits, # e/DN, black level # DN, read noise # e, full well # e\nlight 1.0 +# e per slot",
+                   *(calibration[name] for name in ("bit_depth", "gain_e_per_dn", "black_level_dn", "read_noise_e",
+                                                    "full_well_e", "electrons_per_unit")))
+        self.check(text, "holds +# slots, # packets, # samples, # payload bits",
+                   *(figures[name] for name in ("slots", "packets", "samples", "payload_bits")))
+        (self.folder / "two.toml").write_text('sensors = ["a", "b"]\na.share = 0.75\nb = { share = 0.25, schedule = "full1x" }\n')
+        emulated = self.figures("emulate", "light.npy", "-o", "rig", "--rig", "two.toml")
+        text, figures = self.told("info", "rig")
+        self.assertAlmostEqual(figures["light_collected"], emulated["light_collected"])
+        self.check(text, "total +# % of the light of an aperture collected, # bits a slot, # Mbit/s",
+                   100 * figures["light_collected"], figures["bits_per_slot"], 1e-6 * figures["bits_per_second"])
+
+    def test_parts_and_what_is_joined_of_them(self):
+        self.write_flat("light.npy", 150)
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple")
+        for verb, word, footage, output in (("emulate", "piece", "light.npy", "joined.stipple"),
+                                            ("decode", "window", "clip.stipple", "joined.npy")):
+            part = (verb, footage, "-o", word, "--part", "1/1", *(["--method", "naive"] if verb == "decode" else []))
+            self.succeed(*part)
+            (sorted((self.folder / word).glob(f"{word}_*"))[1]).unlink()
+            text = self.succeed(*part, "--json", f"{verb}.json")
+            figures = json.loads((self.folder / f"{verb}.json").read_text())
+            done = figures[f"{word}s_{verb}d"]
+            self.check(text, f"part # of #, # of # {word}s {verb}d, # kept", 1, 1, done, figures[f"{word}s"],
+                       figures[f"{word}s"] - done)
+            self.assertEqual((done, figures[f"{word}s"]), (1, 3))
+            text, figures = self.told("join", word, "-o", output)
+            self.check(text, f"{output}: # [a-z]+ of # {word}s", figures["slots"], figures[f"{word}s"])
+
+    def test_import(self):
+        random = np.random.default_rng(1)
+        self.write_array("meas.npy", random.uniform(0.1, 1, (3, 6, 8)))
+        for weights, kind in ((random.uniform(0.2, 1, (4, 6, 8)), "grey"), (np.ones((4, 6, 8)), "binary")):
+            text, figures = self.told("import", "meas.npy", "--masks", self.write_array("masks.npy", weights), "-o",
+                                      "a.stipple")
+            self.check(text, f"a.stipple: # measurements of # x # pixels, # {kind} masks, light 1.0 is #",
+                       figures["measurements"], figures["cols"], figures["rows"],
+                       figures["slots"] / figures["measurements"], figures["light"])
+
+    def test_calibrate(self):
+        text, figures = self.told("calibrate", "--sensor", "t6", "--set", "sensor.response_loss=0.16", "--size", "32x24",
+                                  "-o", "a.stcal", "--flats", 60, "--darks", 50)
+
+        def deviation(name):
+            return math.hypot(*(figures[name][part] for part in ("pixels", "rows", "columns")))
+
+        self.check(text, "a.stcal: # x # pixels from # flats and # darks of each", figures["cols"], figures["rows"],
+                   figures["flats"], figures["darks"])
+        self.check(text, r"gain +1 \+- #, uncertainty #", deviation("gain"), figures["gain_error"])
+        for name, line in (("offset_dn", r"offset +# \+- # DN"), ("dark_dn_per_s", r"dark current +# \+- # DN/s")):
+            self.check(text, line, figures[name]["mean"], deviation(name))
+        self.check(text, "readout noise # DN", math.sqrt(figures["readout_noise_dn2"]["mean"]))
+        bent = figures["response"]
+        self.check(text, r"# DN stand for # \+- # linear DN, by # levels", bent["brightest_dn"],
+                   bent["brightest_dn"] + bent["bend_dn"], bent["error_dn"], bent["levels"])
+        self.check(text, "defects +#", figures["defects"])
 
 
 if __name__ == "__main__":

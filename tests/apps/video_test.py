@@ -226,7 +226,7 @@ class VideoTest(ProgramTest):
         light, said = self.emulate("video.mkv", "--transfer", "srgb")
         self.assertGreater(len(light), 20)  # ffmpeg leaves out some that would be shown at once
         self.assertRegex(said, r'^stipple: warning: video.mkv: its frames are [\d.]+ to [\d.]+ s apart, but each '
-                         r'becomes one slot; "emulate --resample blend" puts them at their times\n$')
+                         r'becomes one slot; --resample blend puts them at their times\n$')
         for rate in (24, 59.94, 240, 700):  # times in whole milliseconds
             self.write_moving("video.mkv", "-c:v", "ffv1", "-r", rate, seconds=0.2)
             self.assertEqual(self.emulate("video.mkv", "--transfer", "srgb")[1], "")
@@ -319,6 +319,8 @@ class VideoTest(ProgramTest):
         self.write_moving("frames/%04d.jpg", seconds=0.2)
         for footage in ("frames", "frames/%04d.jpg", "frames/0001.jpg"):
             self.refuse(footage, ".jpg is not read, convert it: ffmpeg -i %04d.jpg %04d.png")
+        (self.folder / "frames/0001.jpg").rename(self.folder / "one.JPEG")
+        self.refuse("one.JPEG", ".jpeg is not read, convert it: ffmpeg -i %04d.jpeg %04d.png")
 
     def test_truth_for_viewing_is_no_reference(self):
         self.write_flat("light.npy", slots=2, rows=16, cols=16)

@@ -173,6 +173,8 @@ TEST_F(TrialTest, ABinnedSensorAndAWindowReadAQuarterOfTheSamples) {
     EXPECT_EQ(params.photons_per_unit, 4000);
     EXPECT_NE(trial_of_view("binning = 2\n").identity, trial_of_view("").identity);
     EXPECT_NE(trial_of_view("window_rows = 0.25\n").identity, trial_of_view("").identity);
+    EXPECT_NE(trial_of_view("binning = 2\nbinning_mode = 'voltage'\n").identity,
+              trial_of_view("binning = 2\nbinning_mode = 'charge'\n").identity);
 }
 
 TEST_F(TrialTest, OnlyTheComparedSlotsCount) {

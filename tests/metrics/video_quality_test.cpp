@@ -85,6 +85,8 @@ TEST(VideoQualityTest, ClampsBothSidesToTheLargestValue) {
     EXPECT_NEAR(flat_quality({5}, {1.5F}, {.max_value = 2.0}).psnr_db, 20 * std::log10(2.0),
                 kToleranceDb);
     EXPECT_EQ(flat_quality({5}, {7}, {.max_value = 2.0}).psnr_db, kInfinity);
+    const auto seen = flat_quality({5}, {7}, {.max_value = 2.0, .pu21_ssim = true});
+    EXPECT_NEAR(seen.pu21_ssim.value_or(0), 1, 1e-9);
 }
 
 TEST(VideoQualityTest, LeavesOutTheMarginAtBothEnds) {

@@ -114,6 +114,10 @@ class DaskTest(ProgramTest):
             decode_to(calibration=self.folder / "chip.stcal")
         with self.assertRaisesRegex(ValueError, "another decoding: fill_gaps is false there and true here"):
             decode_to(fill_gaps=True)
+        (self.folder / "clip.stipple").unlink()
+        stipple.emulate(np.zeros((10, 20, 24), np.float32), output=self.folder / "clip.stipple")  # of as many bytes
+        with self.assertRaisesRegex(ValueError, "another decoding: stream is"):
+            decode_to()
 
     def test_the_calibration_beside_the_stream_is_used_as_by_one_process(self):
         self.succeed("calibrate", "--sensor", "t6", "--size", "24x20", "-o", "clip.stcal")

@@ -68,7 +68,9 @@ class EmulateTest(ProgramTest):
                   "planar": np.moveaxis(light(planes=3).copy(), 0, 0)[..., ::-1],
                   "crop": np.pad(light(), ((0, 0), (2, 1), (3, 4)))[:, 2:-1, 3:-4],
                   "planar crop": np.pad(colour.transpose(0, 3, 1, 2), ((0, 0), (0, 0), (2, 1), (3, 4)))
-                  .transpose(0, 2, 3, 1)[:, 2:-1, 3:-4]}
+                  .transpose(0, 2, 3, 1)[:, 2:-1, 3:-4],
+                  "every other plane": np.repeat(colour.transpose(0, 3, 1, 2), 2, axis=1)
+                  .transpose(0, 2, 3, 1)[..., ::2]}
         for name, array in arrays.items():
             with self.subTest(name):
                 self.write_array("light.npy", array, array.dtype.newbyteorder("="))

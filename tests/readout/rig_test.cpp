@@ -67,6 +67,13 @@ TEST(RigTest, SharesAreSettingsOfTheSensors) {
     EXPECT_EQ(setups[1].origin->settings, std::vector<std::string>{"photons_per_unit=250"});
 }
 
+TEST(RigTest, AShareIsOfTheLightThatSettingsGiveASensor) {
+    const auto setups = set_up_rig(
+        rig_of("sensors = ['a']\na = { share = 0.25, set = ['sensor.photons_per_unit=400'] }"),
+        kShape);
+    EXPECT_EQ(setups.front().params.photons_per_unit, 100);
+}
+
 TEST(RigTest, ShippedRigsAreUsable) {
     for (const std::string& name : config_names(ConfigKind::kRigs)) {
         Config config(find_config(ConfigKind::kRigs, name), {});

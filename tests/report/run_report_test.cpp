@@ -97,6 +97,15 @@ TEST(RunReportTest, TheBrightestLightSaturatesTheShortestExposure) {
         record_clip(file, {.schedule = schedule}, ramp(4, kShape));
         EXPECT_DOUBLE_EQ(brightest_light(StreamReader(file).header()), brightest);
     }
+    // A pixel of a quarter of the responsivity takes four times as much, wherever it is in the
+    // tile.
+    StreamHeader header = StreamReader(folder / "random.stipple").header();
+    for (const auto& [place, tile] : {std::pair{0, CalibrationTile{1, 2, {{0.25, 1}, {1, 1}}}},
+                                      std::pair{1, CalibrationTile{1, 2, {{1, 1}, {0.25, 1}}}},
+                                      std::pair{2, CalibrationTile{2, 1, {{1, 1}, {0.25, 1}}}}}) {
+        header.calibration.tile = tile;
+        EXPECT_DOUBLE_EQ(brightest_light(header), 8) << place;
+    }
 }
 
 }  // namespace
