@@ -186,8 +186,7 @@ void Footage::pass_warnings_on(const SensorParams* sensor) {
     if (array_) warn(array_->warning());
     if (!files_) return;
     if (sensor == nullptr) return warn(recording_note(path_, *files_));
-    for (const Message& text :
-         end_notes(path_, *files_, *sensor, reading_.resampling.has_value()))
+    for (const Message& text : end_notes(path_, *files_, *sensor, reading_.resampling.has_value()))
         warn(text);
 }
 

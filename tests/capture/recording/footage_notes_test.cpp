@@ -17,10 +17,13 @@ namespace stipple {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A recording of 12 frames, 200 a second, without those of `missing`.
+MATCHER_P(Says, part, "") {
+    return arg.text().find(part) != std::string::npos;
+}
+
 class FootageNotesTest : public testing::Test {
   protected:
     ReadAhead recording(const std::vector<std::uint64_t>& missing) {
@@ -35,7 +38,7 @@ class FootageNotesTest : public testing::Test {
             frames.back().record.lost_before = std::exchange(lost, 0);
         }
         write_recording(file_, frames);
-        return ReadAhead(file_, {}, [](const std::string&) {});
+        return ReadAhead(file_, {}, [](const Message&) {});
     }
 
     static void read_all(ReadAhead& footage) {
@@ -64,14 +67,14 @@ TEST_F(FootageNotesTest, MissingFramesAreCountedAtTheEndOnly) {
               "capture replay\" lists the places");
     ReadAhead one = recording({4});
     read_all(one);
-    EXPECT_THAT(recording_note("a", one), HasSubstr("has 1 missing or incomplete frame ("));
+    EXPECT_THAT(recording_note("a", one), Says("has 1 missing or incomplete frame ("));
 }
 
 TEST_F(FootageNotesTest, AnotherRateIsToldUnlessItIsResampled) {
     const SensorParams fast{.slot_us = 1000};
     ReadAhead footage = recording({});
     read_all(footage);
-    EXPECT_THAT(end_notes("a", footage, fast, false), ElementsAre(HasSubstr("200 frames/s")));
+    EXPECT_THAT(end_notes("a", footage, fast, false), ElementsAre(Says("200 frames/s")));
     EXPECT_THAT(end_notes("a", footage, fast, true), IsEmpty());
 }
 
@@ -79,15 +82,15 @@ TEST_F(FootageNotesTest, OtherFootageIsToldByWhatItDeclares) {
     std::ofstream(folder_ / "a.raw") << std::string(12, 'x');
     const ReadAhead footage(folder_ / "a.raw",
                             {.max_value = {}, .raw = parse_raw_format("2x3:mono8:black=5:hz=50")},
-                            [](const std::string&) {});
-    EXPECT_THAT(sensor_notes("a", footage, sensor_, false), ElementsAre(HasSubstr("50 frames/s")));
+                            [](const Message&) {});
+    EXPECT_THAT(sensor_notes("a", footage, sensor_, false), ElementsAre(Says("50 frames/s")));
     EXPECT_THAT(sensor_notes("a", footage, sensor_, true), IsEmpty());
     SensorParams physical = sensor_;
     physical.mode = SensorMode::kPhysical;
     physical.bit_depth = 8;
     physical.physical.black_level_dn = 20;
     EXPECT_THAT(sensor_notes("a", footage, physical, true),
-                ElementsAre(HasSubstr("its black level is 5 DN")));
+                ElementsAre(Says("its black level is 5 DN")));
     EXPECT_EQ(recording_note("a", footage), "");
 }
 

@@ -26,7 +26,7 @@ class ResampledFootageTest : public testing::Test {
         for (int i = 0; i < count; ++i)
             frames.push_back(test_frame(static_cast<std::uint64_t>(i), format, width, height));
         write_recording(file_, frames);
-        return ReadAhead(file_, {}, [](const std::string&) {});
+        return ReadAhead(file_, {}, [](const Message&) {});
     }
 
     static std::vector<Floats> read_all(ResampledFootage& slots) {
@@ -45,7 +45,7 @@ TEST_F(ResampledFootageTest, EachFrameIsASlotWithoutAMethod) {
     ResampledFootage slots(frames, "a", {});
     const auto all = read_all(slots);
     ASSERT_EQ(all.size(), 3U);
-    ReadAhead again(file_, {}, [](const std::string&) {});
+    ReadAhead again(file_, {}, [](const Message&) {});
     for (const Floats& slot : all) {
         const auto frame = again.next();
         EXPECT_EQ(slot, Floats(frame.begin(), frame.end()));
@@ -85,7 +85,7 @@ TEST_F(ResampledFootageTest, KnowsItsSlotsIfTheFootageDeclaresItsFrames) {
     const auto name = folder_ / "a.raw";
     std::ofstream(name, std::ios::binary) << std::string(4 * 2 * 10, 'x');
     ReadAhead frames(name, {.max_value = {}, .raw = parse_raw_format("4x2:mono8")},
-                     [](const std::string&) {});
+                     [](const Message&) {});
     ResampledFootage slots(frames, "a",
                            {.method = Resampling::kBlend, .frames_hz = 2500, .slot_us = kSlotUs});
     EXPECT_EQ(slots.slots(), 4);  // 10 frames are 4 ms
