@@ -41,10 +41,10 @@ TEST(RateWarningTest, RatesThatAgreeWithin2PercentGiveNone) {
 TEST(RateWarningTest, OtherRatesAreNamedWithTheSettingsThatCorrectThem) {
     const FrameRate rate = rate_of(20, 10'000'000);
     EXPECT_THAT(camera_rate_warning(rate, sensor()).text(),
-                testing::AllOf(HasSubstr("100 frames/s"), HasSubstr("sensor.slot_us=10000"),
-                               HasSubstr("AcquisitionFrameRate=200")));
+                testing::AllOf(HasSubstr("100 frames/s"), HasSubstr("sensor.slot_us = 10000"),
+                               HasSubstr("AcquisitionFrameRate = 200")));
     EXPECT_THAT(recording_rate_warning("a.strec", rate, sensor()).text(),
-                testing::AllOf(HasSubstr("a.strec: "), HasSubstr("sensor.slot_us=10000")));
+                testing::AllOf(HasSubstr("a.strec: "), HasSubstr("sensor.slot_us = 10000")));
     EXPECT_THAT(
         video_rate_warning("a.mp4", 50, sensor()).text(),
         testing::AllOf(HasSubstr("a.mp4: has 50 frames/s"), HasSubstr("4x as fast"),

@@ -59,7 +59,10 @@ class FakeCameraProcess {
 
     /// Pulls the plug: no goodbye to the client.
     void kill() { end(SIGKILL); }
-    void freeze() const { ::kill(pid_, SIGSTOP); }
+    void freeze() const {
+        ::kill(pid_, SIGSTOP);
+        ::waitpid(pid_, nullptr, WUNTRACED);  // it may still answer before it stops
+    }
     void thaw() const { ::kill(pid_, SIGCONT); }
 
     /// Writes a register behind the client's back.

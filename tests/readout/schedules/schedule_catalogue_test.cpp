@@ -229,7 +229,7 @@ TEST(ScheduleCatalogueTest, RefusesKeysOfAnotherKind) {
 
 TEST(ScheduleCatalogueTest, SendsArraysTooLargeForRandomToTiled) {
     const FrameShape large{.rows = 4320, .cols = 7680, .planes = 1};
-    expect_parts(problem_of("random", {}, large), {"7680 x 4320", "\"tiled\""});
+    expect_parts(problem_of("random", {}, large), {"7680 x 4320", "schedule = tiled"});
     EXPECT_NO_THROW(read("tiled", {}, large));
 }
 
