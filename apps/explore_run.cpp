@@ -59,7 +59,7 @@ void run_point(Exploration& exploration, std::uint64_t number, Progress& progres
             }));
     } catch (const InputError& e) {
         if (!keep_going()) throw TrialStopped();  // the signal has cut the input short
-        exploration.fail(number, e.message().text(in_options));
+        exploration.fail(number, e.message());
     }
     progress.reach(before + work, progress.done() + 1);
 }
@@ -123,6 +123,7 @@ void add_reading(Command& command, FootageOptions& reading) {
 
 Exploration explored(const ExploreRun& what, const RunOptions& run) {
     ExploreOptions options = what.options;
+    options.wording = in_options;
     options.force = run.force;
     Exploration exploration(what.space, what.results, options, keep_going);
     run.say(fmt::format("{}: {}", what.space, counted(exploration.space().size(), "point")));

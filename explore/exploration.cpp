@@ -233,7 +233,7 @@ const Trial* Exploration::begin(std::uint64_t number) {
         trial_ = trial_of(number, slots());
     } catch (const InputError& e) {
         if (!keep_going_()) throw TrialStopped();  // which has cut the input short
-        fail(number, e.what());
+        fail(number, e.message());
         return nullptr;
     }
     if (!point.figures) {
@@ -286,10 +286,10 @@ void Exploration::put(std::uint64_t number, const TrialOutcome& outcome) {
          {begun.slots, begun.compared, outcome.figures, TrialStore::address_of(begun.identity)});
 }
 
-void Exploration::fail(std::uint64_t number, const std::string& problem) {
+void Exploration::fail(std::uint64_t number, const Message& problem) {
     begun_.erase(number);
     point_of(number).touched = true;
-    point_of(number).problem = problem;
+    point_of(number).problem = problem.text(options_.wording);
 }
 
 ExploreCounts Exploration::counts() const {

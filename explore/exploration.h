@@ -26,6 +26,7 @@ struct ExploreOptions {
     /// Name of the column by which points are ranked after a rung; empty: by dominance in rate, dB
     /// and energy.
     std::string rank;
+    Message::Wording wording = in_cpp;  ///< of parameters in the problems of points
 };
 
 /// What is known of a trial.
@@ -99,7 +100,7 @@ class Exploration {
     /// Stores the outcome of a trial that was begun. \throws DeviceError.
     void put(std::uint64_t number, const TrialOutcome& outcome);
     /// The trial could not be run.
-    void fail(std::uint64_t number, const std::string& problem);
+    void fail(std::uint64_t number, const Message& problem);
     /// Ranks the points of the last rung that any has reached, those of each footage by themselves:
     /// by psnr_db, or the column of the options. None with one seed a point.
     void rank_points();

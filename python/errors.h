@@ -16,7 +16,10 @@
 /// raises.
 namespace stipple::python {
 
-/// Parameters as arguments: "fill_gaps=True".
+/// A parameter as an argument: "fill_gaps=True".
+[[nodiscard]] std::string as_argument(const Parameter& parameter);
+
+/// A message with parameters as arguments.
 [[nodiscard]] std::string in_python(const Message& message);
 
 /// How Python shows a value, of values that are long the begin.

@@ -96,7 +96,7 @@ class RunExploration {
                                                    exploration_.store().stream_of(trial.identity),
                                                    [this] { return progress_->reach(done_); }));
             } catch (const InputError& e) {
-                exploration_.fail(number, in_python(e.message()));
+                exploration_.fail(number, e.message());
             }
         });
         advance();
@@ -161,6 +161,7 @@ ExploreOptions options_of(bool force, const std::string& budget, const std::stri
     ExploreOptions options;
     options.force = force;
     options.rank = rank;
+    options.wording = as_argument;
     if (!budget.empty()) {
         options.budget = parse_budget(budget);
         if (!options.budget)

@@ -143,8 +143,8 @@ class LinkTest(ProgramTest):
                 done = subprocess.run([PROGRAM, "info", stream, "--json", "stdout", *force], stdout=shell,
                                       cwd=self.folder, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
             self.assertEqual(done.returncode, INPUT)
-            self.assertIn('stdout: stands for a file that is open, which no other can replace; give a name, or '
-                          'for --json "-"', done.stderr)
+            self.assertIn('stdout: stands for a file that is open, which no other can replace; give another '
+                          'name', done.stderr)
             self.assertEqual((self.folder / "shell").read_text(), "")
         self.assertTrue((self.folder / "stdout").is_symlink())
 

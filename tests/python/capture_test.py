@@ -134,7 +134,7 @@ class RecordTest(CameraTest):
         self.assertEqual(stream.figures, {"slots": 20, "missing_slots": 0, "damaged_frames": 0})
         self.assertEqual(told[-1], (20, 20))
         self.assertEqual((self.folder / "clip.stipple").read_bytes(), (self.folder / "emulated.stipple").read_bytes())
-        with self.assertRaisesRegex(ValueError, "capture record --coded"):
+        with self.assertRaisesRegex(ValueError, "coded=True"):
             stipple.capture.record(address, self.folder / "x.strec", frames=1)
 
     def test_errors_have_the_texts_of_the_program(self):
