@@ -87,8 +87,8 @@ LivePreviewOptions show_in(const std::string& file) {
                     write_preview(file, frame);
                 },
             .tell =
-                [](const std::string& failure) {
-                    say_warning("no preview: {}; the recording goes on", failure);
+                [](const Message& failure) {
+                    say_warning("no preview: " + failure + "; the recording goes on");
                 },
             .keep_going = [] { return stop_signal() == 0; }};
 }

@@ -57,9 +57,9 @@ void calibrate(StreamReader& reader, const DecodeArguments& arguments) {
     } catch (const InputError& error) {
         if (!arguments.calibration.empty()) throw;
         throw InputError(arguments.stream,
-                         fmt::format("the calibration beside it cannot be used (--calibration none "
-                                     "decodes without): {}",
-                                     error.what()));
+                         "the calibration beside it cannot be used (--calibration none decodes "
+                         "without): " +
+                             error.message());
     }
 }
 

@@ -18,6 +18,7 @@
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/rig_folder.h"
+#include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "capture/recording/recording_reader.h"
@@ -53,7 +54,7 @@ std::string calibration_line(const std::string& file, const StreamHeader& header
         return fmt::format("calibrated   by {}, from {} and {} of each pixel", file,
                            counted(calibration.flats, "flat"), counted(calibration.darks, "dark"));
     } catch (const InputError& error) {
-        return fmt::format("calibrated   not: {}", error.what());
+        return fmt::format("calibrated   not: {}", error.message().text(in_options));
     }
 }
 

@@ -14,6 +14,7 @@
 #include "apps/key_list.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"
+#include "apps/standard_error.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/joined.h"
@@ -186,7 +187,7 @@ std::string problem_of(const std::string& sensor_name, const std::string& schedu
         if (sensor.params.physical.cfa != ColourFilter::kNone) shape.planes = 3;
         return schedule_problem(set_up_sensor(sensor, choice, shape)).value_or("");
     } catch (const InputError& e) {
-        return e.what();
+        return e.message().text(in_options);
     }
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/error.h"
 #include "core/parallel.h"
 
 namespace stipple {
@@ -91,12 +92,17 @@ void LivePreview::show() {
         ++made_;
         last_slot_ = frame->slot;
         delays_.add(static_cast<double>(now_ns() - shown_arrival_ns_) * 1e-3);
-        failure_.clear();
+        failure_ = {};
+    } catch (const Error& e) {
+        fail(e.message());
     } catch (const std::exception& e) {
-        ++failed_;
-        if (std::exchange(failure_, e.what()) == failure_) return;
-        options_.tell(failure_);
+        fail(e.what());
     }
+}
+
+void LivePreview::fail(const Message& failure) {
+    ++failed_;
+    if (std::exchange(failure_, failure) != failure) options_.tell(failure);
 }
 
 void LivePreview::finish(const std::function<void()>& slow) {

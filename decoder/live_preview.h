@@ -5,11 +5,11 @@
 #include <functional>
 #include <semaphore>
 #include <span>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "core/duration_histogram.h"
+#include "core/message.h"
 #include "decoder/preview.h"
 
 namespace stipple {
@@ -17,7 +17,7 @@ namespace stipple {
 struct LivePreviewOptions {
     std::function<void(const PreviewFrame&)> show;  ///< what it throws is a failure
     /// Told of a failure that is not that of the frame before.
-    std::function<void(const std::string&)> tell;
+    std::function<void(const Message&)> tell;
     std::function<bool()> keep_going;  ///< called while a frame is decoded; false cancels it
 };
 
@@ -54,6 +54,7 @@ class LivePreview {
   private:
     void run();
     void show();
+    void fail(const Message& failure);
 
     const PreviewDecoder decoder_;
     const LivePreviewOptions options_;
@@ -77,8 +78,8 @@ class LivePreview {
     std::atomic<int> failed_ = 0;
     std::int64_t last_slot_ = -1;  ///< that was shown
     DurationHistogram delays_;
-    std::string failure_;  ///< the last one that was told
-    std::thread thread_;   ///< last: starts when all else is there
+    Message failure_;     ///< the last one that was told
+    std::thread thread_;  ///< last: starts when all else is there
 };
 
 }  // namespace stipple

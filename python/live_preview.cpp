@@ -40,8 +40,8 @@ LivePreviewOptions options_of(std::function<void(const PreviewFrame&)> keep,
                               const std::atomic<bool>& stopped, SessionWarnings& warnings) {
     return {.show = std::move(keep),
             .tell =
-                [&warnings](const std::string& failure) {
-                    warnings.take(fmt::format("no preview: {}; the recording goes on", failure));
+                [&warnings](const Message& failure) {
+                    warnings.take("no preview: " + failure + "; the recording goes on");
                 },
             .keep_going = [&stopped] { return !stopped; }};
 }

@@ -111,7 +111,7 @@ ExposureSchedule at_key(const Config& config, const char* key, const Make& make)
     try {
         return make();
     } catch (const InputError& error) {
-        throw InputError(config.where(key), error.what());
+        throw InputError(config.where(key), error.message());
     }
 }
 

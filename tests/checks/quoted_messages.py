@@ -1,5 +1,6 @@
 """Messages that docs/troubleshooting.md quotes, `as this ...`, are messages of the program: each stands in a
-source, with any text in place of "..." and of an option, which is a Parameter there. Code in the first column of its tables is a message if it has a blank."""
+source, with any text in place of "..." and of an option, which is a Parameter there. Code in the first column
+of its tables is a message if it has a blank."""
 
 import re
 

@@ -40,7 +40,7 @@ TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
                                             if (frame.light.empty()) frame = made;
                                             shown.release();
                                         },
-                                    .tell = [](const std::string& what) { FAIL() << what; },
+                                    .tell = [](const Message& what) { FAIL() << what.text(); },
                                     .keep_going = [] { return true; }});
     add_all(preview);
     shown.acquire();
@@ -55,7 +55,7 @@ TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
 TEST_F(LivePreviewTest, SlotsPassByWhileAFrameIsMade) {
     std::binary_semaphore all_added{0};
     LivePreview preview(decoder(), {.show = [&](const PreviewFrame&) { all_added.acquire(); },
-                                    .tell = [](const std::string& what) { FAIL() << what; },
+                                    .tell = [](const Message& what) { FAIL() << what.text(); },
                                     .keep_going = [] { return true; }});
     add_all(preview);
     all_added.release();
@@ -76,8 +76,8 @@ TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {
                                             throw std::runtime_error("no space");
                                         },
                                     .tell =
-                                        [&](const std::string& what) {
-                                            EXPECT_EQ(what, "no space");
+                                        [&](const Message& what) {
+                                            EXPECT_EQ(what.text(), "no space");
                                             ++told;
                                         },
                                     .keep_going = [] { return true; }});
