@@ -197,7 +197,7 @@ void CaptureSession::Impl::number(FrameRecord& record) {
     if (lost > 0) {
         count_lost(lost);
     } else {
-        losses.note_frame(*camera, !first_frame, Clock::now());
+        losses.note_frame(*camera, Clock::now());
     }
     if (record.status != FrameStatus::kComplete) losses.note_incomplete();
 }

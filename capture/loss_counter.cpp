@@ -26,12 +26,12 @@ void LossCounter::end_epoch(const Camera& camera, Clock::time_point now) {
     earlier_epochs_ = sum(earlier_epochs_, std::exchange(counted_, {}));
 }
 
-void LossCounter::note_frame(const Camera& camera, bool is_first, Clock::time_point now) {
+void LossCounter::note_frame(const Camera& camera, Clock::time_point now) {
     if (now - counted_at_ < kCountEvery) return;
     const std::uint64_t unexplained = counted_.underruns;
     read(camera, now);
     // An underrun always costs a frame: where none is missing yet, frames from before it wait.
-    if (!is_first) counted_.underruns = unexplained;
+    counted_.underruns = unexplained;
 }
 
 void LossCounter::count_unexplained(const Camera& camera, std::uint64_t frames,

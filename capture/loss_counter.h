@@ -22,8 +22,8 @@ class LossCounter {
 
     void begin_epoch(Clock::time_point now);
     void end_epoch(const Camera& camera, Clock::time_point now);
-    /// After a frame with which none is missing; `is_first`: of the epoch.
-    void note_frame(const Camera& camera, bool is_first, Clock::time_point now);
+    /// After a frame with which none is missing.
+    void note_frame(const Camera& camera, Clock::time_point now);
     /// An incomplete frame: its packets explain the loss of no other frame.
     void note_incomplete() { incomplete_since_ = true; }
     /// Counts frames as lost for the cause that the transport has counted since the last reading.
