@@ -12,8 +12,7 @@ def check(tree):
     sources = tree.ending(".h", ".cpp")
     for name in tree.texts():
         for number, line in tree.lines(name):
-            blank_context = name.endswith(".diff") and line == " "
-            if (line != line.rstrip() and not blank_context) or "\t" in line:
+            if line != line.rstrip() or "\t" in line:
                 yield f"{name}:{number}: tab or blanks at the end of the line"
     if sources:
         command = ["clang-format", "--dry-run", "--Werror", "--ferror-limit=1", *sources]

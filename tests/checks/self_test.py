@@ -9,7 +9,6 @@ from pathlib import Path
 import aggregates
 import citation
 import config_comments
-import extending
 import headers
 import includes
 import layout
@@ -166,16 +165,6 @@ class ChecksTest(unittest.TestCase):
                  "core/d.cpp": 401 * "\n", "core/e.py": "def f():\n" + 60 * "    g()\n"}
         self.assertEqual(self.places(sizes.check, files),
                          ["core/b.cpp:62", "core/c.h:2", "core/d.cpp", "core/e.py:1"])
-
-    def test_a_diff_of_the_page_on_extending_applies_and_is_as_small_as_it_says(self):
-        diff = "diff --git a/a b/a\n--- a/a\n+++ b/a\n@@ -1 +1 @@\n-{}\n+new\n"
-        row = "| task | {} | [x](extending/{}.diff) |\n"
-        files = {"a": "old\n", "docs/extending.md": "".join(
-                     row.format(*it) for it in [(1, "fits"), (1, "stale"), (2, "many"), (1, "none")]),
-                 "docs/extending/fits.diff": diff.format("old"), "docs/extending/many.diff": diff.format("old"),
-                 "docs/extending/stale.diff": diff.format("older"), "docs/extending/extra.diff": ""}
-        self.assertEqual(self.places(extending.check, files),
-                         [f"docs/extending/{name}.diff" for name in ("extra", "none", "many", "stale")])
 
     @unittest.skipUnless(shutil.which("clang-format"), "clang-format is not installed")
     def test_layout_is_that_of_clang_format(self):
