@@ -1,4 +1,4 @@
-"""scripts/camera_map: its scene, its lens and its verdict."""
+"""bench/docs/camera_map.py: its scene, its lens and its verdict."""
 
 import importlib.machinery
 import importlib.util
@@ -9,7 +9,7 @@ import numpy as np
 
 from program import project_path
 
-LOADER = importlib.machinery.SourceFileLoader("camera_map", str(project_path("scripts/camera_map")))
+LOADER = importlib.machinery.SourceFileLoader("camera_map", str(project_path("bench/docs/camera_map.py")))
 camera_map = importlib.util.module_from_spec(importlib.util.spec_from_loader("camera_map", LOADER))
 LOADER.exec_module(camera_map)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FONT = 'font-family="DejaVu Sans, Verdana, Helvetica, Arial, sans-serif"'
 SLOT_MS = 5  # of the paper's sensor
 COLOURS = {1: ("#fbd46d", "#222"), 2: ("#f0904d", "#222"), 4: ("#b5467a", "#fff"), 8: ("#4b3b87", "#fff")}

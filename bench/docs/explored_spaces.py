@@ -9,7 +9,7 @@ import re
 import subprocess
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/explored_spaces.md"
 BLOCK = re.compile(r"<!-- (\w+\.toml) -->\n.*?<!-- end -->\n", re.DOTALL)
 FIGURES = {  # column of table.csv: heading, format; decode_seconds is of a machine

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Writes the tables of docs/rivals.md anew: `stipple rivals` on the middle of clips and on embedded scenes.
 
-usage: scripts/rivals PROGRAM RESULTS [--footage FOLDER] [--without SYSTEM]... [--strongest] [--seeds N]
+usage: bench/docs/rivals.py PROGRAM RESULTS [--footage FOLDER] [--without SYSTEM]... [--strongest] [--seeds N]
 
 FOLDER holds the clips (default: $STIPPLE_FOOTAGE). "coded portz2013" takes minutes a clip, and so does the dictionary.
 RESULTS keeps the trials, so that a second run does only what is new, and the dictionary of hitomi2011, which is learned
@@ -16,7 +16,7 @@ import subprocess
 import tomllib
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SPACE = ROOT / "config" / "spaces" / "rivals.toml"
 PAGE = ROOT / "docs" / "rivals.md"
 SCENES = ["pan", "roll"]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes docs/camera_map.md anew: which camera wins over light, motion and detail, with its table and its figure.
 
-usage: scripts/camera_map PROGRAM RESULTS
+usage: bench/docs/camera_map.py PROGRAM RESULTS
 
 Films moving leaves with the systems of SYSTEMS, by `stipple explore`. RESULTS keeps the footage and the trials, so that a
 second run does only what is new; the first takes an hour or two. Needs python3-numpy and python3-matplotlib."""
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/camera_map.md"
 CODED = ["coded best", "hardware best", "pixel flutter best"]
 FRAMES = ["1x vbm4d", "1x best", "4x best", "alternating kang2003", "binned vbm4d", "binned best", "charge-binned vbm4d"]
