@@ -1,7 +1,6 @@
 # cmake --install: the program, its configurations, and each module as a library with its headers for other
 # projects (docs/library.md): find_package(stipple COMPONENTS decoder), stipple::decoder; pkg-config stipple.
 include(CMakePackageConfigHelpers)
-include(StippleDependencies)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stipple)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/stipple)
@@ -27,7 +26,11 @@ install(CODE "
     endforeach()" COMPONENT program)
 
 # An export set for each module, so that who asks for one needs the packages of that one only.
+set(stipple_links)
 foreach(module IN LISTS STIPPLE_MODULES)
+    get_target_property(links stipple_${module} LINK_LIBRARIES)
+    list(JOIN links " " links)
+    string(APPEND stipple_links "set(stipple_links_of_${module} ${links})\n")
     set_target_properties(stipple_${module} PROPERTIES EXPORT_NAME ${module})
     target_compile_features(stipple_${module} INTERFACE cxx_std_20)
     target_include_directories(stipple_${module} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -38,7 +41,6 @@ foreach(module IN LISTS STIPPLE_MODULES)
             COMPONENT libraries)
 endforeach()
 
-stipple_dependencies(stipple_dependencies stipple_pkgconfig stipple_flags ${STIPPLE_MODULES})
 configure_package_config_file(cmake/stippleConfig.cmake.in ${CMAKE_BINARY_DIR}/stippleConfig.cmake
     INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/stippleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -52,6 +54,9 @@ install(FILES cmake/package_config_dir.cpp.in DESTINATION ${package_dir} RENAME 
 list(TRANSFORM STIPPLE_MODULES PREPEND "-lstipple_" OUTPUT_VARIABLE stipple_libraries)
 list(REVERSE stipple_libraries)
 list(JOIN stipple_libraries " " stipple_libraries)
+if(STIPPLE_ARAVIS)
+    set(stipple_aravis aravis-0.8)
+endif()
 string(REGEX REPLACE "[^/]+" ".." stipple_up "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 configure_file(cmake/stipple.pc.in stipple.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/stipple.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT libraries)

@@ -5,11 +5,7 @@ add_compile_options(-ffp-contract=off)
 # libFuzzer is guided by the branches that the modules take, so they count them.
 set(stipple_counted)
 if(STIPPLE_FUZZ)
-    # Ninja and ccache see a change of the list by its name, which has no path, so that another clone
-    # finds the same objects in ccache.
-    file(MD5 ${CMAKE_SOURCE_DIR}/cmake/uncounted.txt hash)
-    configure_file(cmake/uncounted.txt uncounted-${hash}.txt COPYONLY)
-    set(stipple_counted -fsanitize=fuzzer-no-link -fsanitize-coverage-ignorelist=uncounted-${hash}.txt)
+    set(stipple_counted -fsanitize=fuzzer-no-link)
 endif()
 
 # For what has no inner loop: a short build rather than a fast program.
@@ -70,62 +66,30 @@ function(stipple_verify_headers)
     target_link_libraries(stipple_inner_headers INTERFACE ${arg_LIBS})
 endfunction()
 
-# stipple_reads(OUT [path ...]): for a test's ENVIRONMENT, what the test reads of the project, relative to
-# it, or runs of the build. scripts/run_tests takes it for what the test depends on, and refuses what does
-# not exist. All may read config/ and load libstipple_opencv.so.
-function(stipple_reads out)
-    set(paths)
-    foreach(path config ${CMAKE_BINARY_DIR}/libstipple_opencv.so ${ARGN})
-        if(NOT path MATCHES "^\\$<TARGET_FILE:")  # that of a target is absolute
-            cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
-        endif()
-        list(APPEND paths ${path})
-    endforeach()
-    list(JOIN paths ":" paths)
-    set(${out} "STIPPLE_READS=${paths}" PARENT_SCOPE)
-endfunction()
-
-# stipple_test(MODULE [LABEL label] [SHARDS n [COST c]] [APART filter [APART_LABEL label]]
-# [PART filter PART_LABEL label [PART_COST c]] file_test.cpp ... [READS path ...]): one executable
-# MODULE_test, run whole, or as n parts that run side by side. Tests that need a process of their own match
-# the GoogleTest filter APART: each is a ctest entry. Those that match the filter PART take long: they are
-# one entry, with that label and PART_LABEL. Entries of higher cost begin earlier, where ctest has measured
-# seconds for others. READS as in stipple_reads.
+# stipple_test(MODULE [LABEL label] [SHARDS n] [APART filter [APART_LABEL label]] [PART filter PART_LABEL label]
+# file_test.cpp ...): one executable MODULE_test, run whole, or as n parts that run side by side. Tests that need a
+# process of their own match the GoogleTest filter APART: each is a ctest entry. Those that match the filter PART
+# take long: they are one entry, with that label and PART_LABEL. Long entries begin early (COST).
 function(stipple_test module)
-    cmake_parse_arguments(arg "" "SHARDS;COST;APART;APART_LABEL;PART;PART_LABEL;PART_COST;LABEL" "READS" ${ARGN})
-    stipple_reads(reads ${arg_READS})
+    cmake_parse_arguments(arg "" "SHARDS;APART;APART_LABEL;PART;PART_LABEL;LABEL" "" ${ARGN})
     add_executable(${module}_test ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${module}_test PRIVATE stipple_test_support stipple_test_main)
     target_precompile_headers(${module}_test REUSE_FROM stipple_test_main)
-    set(results ${CMAKE_BINARY_DIR}/test_results)  # what scripts/test_results.py counts
+    set(results ${CMAKE_BINARY_DIR}/test_results)
     if(arg_APART)
-        if(NOT arg_APART_LABEL)
-            set(arg_APART_LABEL "${arg_LABEL}")
-        endif()
-        gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}"
-                             XML_OUTPUT_DIR ${results}
-                             PROPERTIES TIMEOUT 600 ENVIRONMENT "${reads}" LABELS "${arg_APART_LABEL}")
+        gtest_discover_tests(${module}_test DISCOVERY_TIMEOUT 60 TEST_FILTER "${arg_APART}" XML_OUTPUT_DIR ${results}
+                             PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}${arg_APART_LABEL}")
     endif()
     if(arg_APART STREQUAL "*")
         return()
     endif()
+    if(arg_PART)
+        set(name ${module}_test_${arg_PART_LABEL})
+        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=${arg_PART} --gtest_output=xml:${results}/${name}.xml)
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "long;${arg_PART_LABEL}" COST 200)
+    endif()
     if(NOT arg_SHARDS)
         set(arg_SHARDS 1)
-    endif()
-    if(NOT arg_COST)
-        set(arg_COST ${arg_SHARDS})  # long ones first
-    endif()
-    set(elsewhere "${arg_APART}")
-    if(arg_PART)
-        if(NOT arg_PART_COST)
-            set(arg_PART_COST 9)
-        endif()
-        set(name ${module}_test_${arg_PART_LABEL})
-        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=${arg_PART}
-                                                     --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "long;${arg_PART_LABEL}" COST ${arg_PART_COST}
-            ENVIRONMENT "${reads}")
-        string(APPEND elsewhere ":${arg_PART}")
     endif()
     foreach(shard RANGE 1 ${arg_SHARDS})
         set(name ${module}_test)
@@ -133,10 +97,10 @@ function(stipple_test module)
             string(APPEND name _${shard}_of_${arg_SHARDS})
         endif()
         math(EXPR index "${shard} - 1")
-        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${elsewhere}
+        add_test(NAME ${name} COMMAND ${module}_test --gtest_filter=-${arg_APART}:${arg_PART}
                                                      --gtest_output=xml:${results}/${name}.xml)
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_COST}
-            ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index};${reads}")
+        set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${arg_LABEL}" COST ${arg_SHARDS}0
+            ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
     endforeach()
 endfunction()
 
@@ -146,7 +110,6 @@ endfunction()
 # with any compiler.
 function(stipple_fuzz name source)
     cmake_parse_arguments(arg "" "MUTATOR" "LIBS" ${ARGN})
-    stipple_reads(reads)
     set(corpus ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     add_executable(fuzz_${name} ${source})
     target_compile_options(fuzz_${name} PRIVATE ${stipple_counted})
@@ -159,12 +122,11 @@ function(stipple_fuzz name source)
         add_test(NAME fuzz_${name}_finds_nothing
                  COMMAND fuzz_${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=4096
                          -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
-        set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz ENVIRONMENT "${reads}")
+        set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz)
     else()
         target_sources(fuzz_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_corpus.cpp)
         add_test(NAME fuzz_${name}_replays_its_corpus COMMAND fuzz_${name} ${corpus})
-        set_tests_properties(fuzz_${name}_replays_its_corpus PROPERTIES LABELS fuzz TIMEOUT 120
-                                                                           ENVIRONMENT "${reads}")
+        set_tests_properties(fuzz_${name}_replays_its_corpus PROPERTIES LABELS fuzz TIMEOUT 120)
     endif()
 endfunction()
 
@@ -177,7 +139,6 @@ function(stipple_bench name source)
     if(STIPPLE_TESTS)
         add_test(NAME bench_${name}_runs COMMAND bench_${name} --benchmark_min_time=0.001
                  --benchmark_filter=${arg_TESTED})
-        stipple_reads(reads)
-        set_tests_properties(bench_${name}_runs PROPERTIES LABELS bench TIMEOUT 300 ENVIRONMENT "${reads}")
+        set_tests_properties(bench_${name}_runs PROPERTIES LABELS bench TIMEOUT 300)
     endif()
 endfunction()

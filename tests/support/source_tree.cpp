@@ -1,7 +1,6 @@
 #include "tests/support/source_tree.h"
 
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -21,25 +20,14 @@ fs::path project_folder() {
     return fs::canonical(build_folder() / "config").parent_path();
 }
 
-fs::path listed(const fs::path& path) {
-    const char* const reads = std::getenv("STIPPLE_READS");
-    if (reads == nullptr) return path;  // run by hand
-    std::istringstream names(reads);
-    for (std::string name; std::getline(names, name, ':');)
-        if (path == fs::weakly_canonical(name) ||
-            path.string().starts_with(fs::weakly_canonical(name).string() + '/'))
-            return path;
-    throw std::logic_error(path.string() + " is not in READS of the test's CMakeLists.txt");
-}
-
 }  // namespace
 
 fs::path project_path(const fs::path& name) {
-    return listed(project_folder() / name);
+    return project_folder() / name;
 }
 
 fs::path built_program(const std::string& name) {
-    return listed(build_folder() / name);
+    return build_folder() / name;
 }
 
 fs::path footage_folder() {
