@@ -34,7 +34,7 @@ std::string search_text(const CameraSearch& search) {
 void list(const RunOptions& run) {
     JsonFile json(run);
     const CameraSearch search = [] {
-        const HeldSignals a_second;
+        const SignalBlocker a_second;
         return list_cameras();
     }();
     throw_if_stopped();

@@ -74,7 +74,7 @@ std::string calibrated_text(const DecodeArguments& arguments) {
 }
 
 std::string_view schedule_hint(const StreamReport& report) {
-    return report.undue_packets == 0
+    return report.unexpected_packets == 0
                ? ""
                : "\n  the chip may have run another schedule: --check-schedule looks for it";
 }

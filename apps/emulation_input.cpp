@@ -4,7 +4,7 @@
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/error.h"
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 #include "readout/footage_origin.h"
 
 namespace stipple {

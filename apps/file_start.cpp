@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include "stream/file_window.h"
+#include "stream/buffered_reader.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -67,8 +67,8 @@ std::string kind_of(std::string_view start) {
 
 }  // namespace
 
-std::string kind_by_start(const std::string& file) {
-    FileWindow window(file);
+std::string sniff_file_type(const std::string& file) {
+    BufferedReader window(file);
     const std::span<const std::uint8_t> bytes = window.peek(kStartBytes);
     return kind_of(std::string(bytes.begin(), bytes.end()).substr(0, kStartBytes));
 }

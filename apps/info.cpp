@@ -120,7 +120,7 @@ void info(const InfoOptions& options, const RunOptions& run) {
                   "is not a file type stipple can read: it is {}, not a sample stream, recording, "
                   "calibration, footage, sensor, schedule, rig, space or scene; frames "
                   "without a header need --raw",
-                  kind_by_start(file)));
+                  sniff_file_type(file)));
 }
 
 }  // namespace

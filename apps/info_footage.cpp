@@ -71,7 +71,7 @@ std::optional<std::int64_t> announced_frames(const FootageReader& reader) {
 
 ordered_json footage_json(const FootageReader& reader, const Light& light, bool complete) {
     const FrameShape shape = reader.shape();
-    const SourceTraits& traits = reader.traits();
+    const SourceInfo& traits = reader.traits();
     ordered_json json{{"kind", "footage"},
                       {"format", reader.kind()},
                       {"width", shape.cols},
@@ -120,20 +120,20 @@ std::string rate_text(const FootageReader& reader, const Light& light, bool comp
         complete ? fmt::format(", {:.4g} s", static_cast<double>(light.frames) / *hz) : "");
 }
 
-std::string samples_text(const SourceTraits& traits) {
+std::string samples_text(const SourceInfo& traits) {
     std::string text = traits.sample_format;
     if (traits.bits > 0) text += fmt::format("{}{} bits", text.empty() ? "" : ", ", traits.bits);
     return text.empty() ? "not declared" : text;
 }
 
-std::string levels_text(const SourceTraits& traits) {
+std::string levels_text(const SourceInfo& traits) {
     const auto level = [](const std::optional<double>& dn) {
         return dn ? fmt::format("{:g} DN", *dn) : "not declared";
     };
     return fmt::format("black {}, white {}", level(traits.black_dn), level(traits.white_dn));
 }
 
-std::string transfer_text(const SourceTraits& traits) {
+std::string transfer_text(const SourceInfo& traits) {
     if (traits.gamma_coded)
         return traits.curve.empty() ? "not declared; gamma-coded by its kind (--transfer)"
                                     : traits.curve + ", gamma-coded (--transfer)";
@@ -142,7 +142,7 @@ std::string transfer_text(const SourceTraits& traits) {
 }
 
 std::string footage_text(const FootageReader& reader, const Light& light, bool complete) {
-    const SourceTraits& traits = reader.traits();
+    const SourceInfo& traits = reader.traits();
     std::string text = fmt::format(
         "footage      {}\n"
         "frames       {}\n"

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
 /// `timeout` signals the program and then its group, a terminal that closes the same: signals that
 /// come so soon after the first are the same wish.
-constexpr std::int64_t kSameWishMs = 500;
+constexpr std::int64_t kDebounceMs = 500;
 
 std::atomic<int> received_signal{0};
 /// When the first signal came; 0 before.
@@ -57,7 +57,7 @@ void on_stop_signal(int signal) {
         write_error_text("stipple: stopping when this step is done; ");
         write_error_text(signal == SIGINT ? "a second Ctrl-C stops at once\n"
                                           : "a second signal stops at once\n");
-    } else if (now - first > kSameWishMs) {
+    } else if (now - first > kDebounceMs) {
         end_at_once(signal);
     }
     errno = interrupted_errno;
@@ -79,7 +79,7 @@ void catch_signals() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-void occupy_standard_streams() {
+void reserve_standard_streams() {
     // Read-only, so that writing to a closed standard output still fails.
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
         if (fcntl(descriptor, F_GETFD) < 0)
@@ -94,14 +94,14 @@ void throw_if_stopped(std::string_view left) {
     if (stop_signal() != 0) throw Interrupted{left};
 }
 
-HeldSignals::HeldSignals() {
+SignalBlocker::SignalBlocker() {
     sigset_t stop;
     sigemptyset(&stop);
     for (const int signal : kStopSignals) sigaddset(&stop, signal);
     pthread_sigmask(SIG_BLOCK, &stop, &before_);
 }
 
-HeldSignals::~HeldSignals() {
+SignalBlocker::~SignalBlocker() {
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 

@@ -21,7 +21,7 @@ void catch_signals();
 
 /// Standard streams that are closed become /dev/null, so that no file that is opened takes their
 /// place, and the messages that are meant for them.
-void occupy_standard_streams();
+void reserve_standard_streams();
 
 /// The signal that asked to stop, or 0.
 [[nodiscard]] int stop_signal() noexcept;
@@ -40,12 +40,12 @@ template <typename Work>
 
 /// While it lives, the signals that `catch_signals` catches wait: for libraries that take a poll()
 /// that one interrupts for a fault.
-class HeldSignals {
+class SignalBlocker {
   public:
-    HeldSignals();
-    ~HeldSignals();
-    HeldSignals(const HeldSignals&) = delete;
-    HeldSignals& operator=(const HeldSignals&) = delete;
+    SignalBlocker();
+    ~SignalBlocker();
+    SignalBlocker(const SignalBlocker&) = delete;
+    SignalBlocker& operator=(const SignalBlocker&) = delete;
 
   private:
     sigset_t before_{};

@@ -118,7 +118,7 @@ CommandLine::Parsed run(int argc, char** argv) {
 }
 
 int main(int argc, char** argv) {
-    occupy_standard_streams();
+    reserve_standard_streams();
     std::set_terminate(end_in_a_library);
     try {
         if (run(argc, argv) == CommandLine::Parsed::kWrong) return kUsage;

@@ -33,7 +33,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "io/late_function.h"
+#include "io/lazy_function.h"
 #endif
 
 namespace stipple {
@@ -71,13 +71,13 @@ void* matio_function(const char* name) {
     throw DeviceError(STIPPLE_MATIO, std::string("does not have ") + name);
 }
 
-STIPPLE_LATE_FROM(matio_function, Mat_Close);
-STIPPLE_LATE_FROM(matio_function, Mat_GetDir);
-STIPPLE_LATE_FROM(matio_function, Mat_GetVersion);
-STIPPLE_LATE_FROM(matio_function, Mat_Open);
-STIPPLE_LATE_FROM(matio_function, Mat_VarFree);
-STIPPLE_LATE_FROM(matio_function, Mat_VarRead);
-STIPPLE_LATE_FROM(matio_function, Mat_VarReadInfo);
+STIPPLE_LAZY_FROM(matio_function, Mat_Close);
+STIPPLE_LAZY_FROM(matio_function, Mat_GetDir);
+STIPPLE_LAZY_FROM(matio_function, Mat_GetVersion);
+STIPPLE_LAZY_FROM(matio_function, Mat_Open);
+STIPPLE_LAZY_FROM(matio_function, Mat_VarFree);
+STIPPLE_LAZY_FROM(matio_function, Mat_VarRead);
+STIPPLE_LAZY_FROM(matio_function, Mat_VarReadInfo);
 
 constexpr std::size_t kMaxValues = std::size_t{1} << 26U;
 

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/version.h"
-#include "stream/file_window.h"
+#include "stream/buffered_reader.h"
 #include "stream/header_codec.h"
 #include "stream/packet_codec.h"
 
@@ -90,7 +90,7 @@ bool PieceFolder::holds(std::int64_t number) const {
     const fs::path file = piece(number);
     if (!fs::exists(file)) return false;
     try {
-        FileWindow window(file);
+        BufferedReader window(file);
         const std::size_t bytes = header_bytes(window.peek(kHeaderStartBytes), file.string());
         const auto header = window.peek(bytes);
         if (header.size() < bytes) return false;

@@ -7,10 +7,10 @@
 
 #include "calibration/field_exposure.h"
 #include "calibration/robust_scale.h"
-#include "core/begun_exposure.h"
 #include "core/colour_filter.h"
 #include "core/error.h"
 #include "core/exposure_schedule.h"
+#include "core/exposure_starting_at.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
@@ -179,8 +179,8 @@ void SceneGain::add_samples(const SamplePacket& packet) {
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
         visit_due_pixels(schedule, packet.slot, row, shape.cols, [&](int col, const DuePixel& due) {
             const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
-            const std::size_t begun =
-                begun_exposure(schedule, tile_row, tile_col, packet.slot - due.span_slots + 1);
+            const std::size_t begun = exposure_starting_at(schedule, tile_row, tile_col,
+                                                           packet.slot - due.span_slots + 1);
             const std::uint64_t open_slots =
                 schedule.exposures(tile_row, tile_col)[begun].open_slots;
             const std::size_t pixel = row_major(row, col, shape.cols);

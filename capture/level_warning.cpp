@@ -18,7 +18,7 @@ int used_bits(double white_dn) {
 
 }  // namespace
 
-Message black_level_warning(const std::string& file, const SourceTraits& footage,
+Message black_level_warning(const std::string& file, const SourceInfo& footage,
                             const SensorParams& sensor) {
     const double sensor_dn = sensor.physical.black_level_dn;
     if (sensor.mode != SensorMode::kPhysical || !footage.black_dn || !footage.white_dn) return {};

@@ -218,7 +218,7 @@ std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int f
                       int cols) {
     std::size_t count = 0;
     for (int row = first_row; row < first_row + rows; ++row)
-        visit_due(schedule, slot, row, cols, [&](int, int) { ++count; });
+        for_each_readout(schedule, slot, row, cols, [&](int, int) { ++count; });
     return count;
 }
 

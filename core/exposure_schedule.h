@@ -151,14 +151,14 @@ void visit_due_pixels(const ExposureSchedule& schedule, std::int64_t slot, int r
 
 /// The same with `visit(col, span_slots)`.
 template <typename Visit>
-void visit_due(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
-               Visit&& visit) {
+void for_each_readout(const ExposureSchedule& schedule, std::int64_t slot, int row, int cols,
+                      Visit&& visit) {
     visit_due_pixels(schedule, slot, row, cols, [&](int col, const DuePixel& pixel) {
         visit(col, static_cast<int>(pixel.span_slots));
     });
 }
 
-/// Number of pixels that `visit_due` visits in rows [first_row, first_row + rows).
+/// Number of pixels that `for_each_readout` visits in rows [first_row, first_row + rows).
 [[nodiscard]] std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot,
                                     int first_row, int rows, int cols);
 

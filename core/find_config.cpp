@@ -6,8 +6,8 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/executable_dirs.h"
 #include "core/joined.h"
-#include "core/own_folders.h"
 #include "core/suggestion.h"
 
 /// The folder of the package that a program was built with: stippleConfig.cmake gives it the source
@@ -22,7 +22,7 @@ namespace {
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
-    for (const fs::path& own : own_folders()) {
+    for (const fs::path& own : executable_dirs()) {
         folders.push_back((own / "../share/stipple/config").lexically_normal());
         folders.push_back(own / "config");  // a build folder, the Python package
     }

@@ -23,7 +23,7 @@ std::int64_t halo_slots(int longest_span_slots) {
 }
 
 HaloRange slot_range(std::int64_t core_begin, std::int64_t slots, std::int64_t halo) {
-    const bool last = slots - core_begin <= kCoreSlots + kRestSlots;
+    const bool last = slots - core_begin <= kCoreSlots + kRemainderSlots;
     const std::int64_t core_end = last ? slots : core_begin + kCoreSlots;
     return {.begin = std::max<std::int64_t>(core_begin - halo, 0),
             .core_begin = core_begin,
@@ -32,7 +32,7 @@ HaloRange slot_range(std::int64_t core_begin, std::int64_t slots, std::int64_t h
 }
 
 std::int64_t block_count(std::int64_t slots) {
-    return slots <= 0 ? 0 : 1 + std::max<std::int64_t>(slots - kRestSlots - 1, 0) / kCoreSlots;
+    return slots <= 0 ? 0 : 1 + std::max<std::int64_t>(slots - kRemainderSlots - 1, 0) / kCoreSlots;
 }
 
 std::vector<Tile> frame_tiles(FrameShape shape, std::int64_t max_core_sites) {

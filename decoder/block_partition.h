@@ -21,14 +21,14 @@ struct HaloRange {
 inline constexpr std::int64_t kCoreSlots = 48;
 inline constexpr std::int64_t kHaloSlots = 8;
 inline constexpr std::int64_t kMaxHaloSlots = 32;
-inline constexpr std::int64_t kRestSlots = 16;
+inline constexpr std::int64_t kRemainderSlots = 16;
 
 /// The halo that contains all exposures of a block's core completely, up to kMaxHaloSlots.
 [[nodiscard]] std::int64_t halo_slots(int longest_span_slots);
 
 /// The block whose core begins at `core_begin`, of a stream with `slots` slots. If the stream is
 /// still growing, `slots` is the number known so far; it must exceed core_begin + kCoreSlots +
-/// kRestSlots and be at least core_begin + kCoreSlots + halo.
+/// kRemainderSlots and be at least core_begin + kCoreSlots + halo.
 [[nodiscard]] HaloRange slot_range(std::int64_t core_begin, std::int64_t slots,
                                    std::int64_t halo = kHaloSlots);
 

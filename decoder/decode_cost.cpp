@@ -40,7 +40,7 @@ BlockCost block_cost(std::span<const RigStream> rig, DecodeMethod method, std::i
 DecodeCost expected_cost(std::span<const RigStream> rig, DecodeMethod method, std::int64_t slots) {
     const FrameShape shape = decoded_shape(rig.front().reader.header());
     const double voxels = static_cast<double>(slots) * static_cast<double>(shape.sites());
-    const std::int64_t core = std::min(slots, kCoreSlots + kRestSlots);
+    const std::int64_t core = std::min(slots, kCoreSlots + kRemainderSlots);
     return {.seconds = 1e-6 * named(method).voxel_us * voxels / thread_count(),
             .bytes = block_cost(rig, method, std::min(slots, core + kHaloSlots), core).bytes};
 }

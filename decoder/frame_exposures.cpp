@@ -175,9 +175,9 @@ Measurements measurements_of_frames(const Measurements& measurements,
     return result;
 }
 
-void add_what_frames_lack(const Measurements& measurements,
-                          std::span<const FrameExposure> exposures, const FluxVideo& frames,
-                          FluxVideo& x) {
+void back_project_residual(const Measurements& measurements,
+                           std::span<const FrameExposure> exposures, const FluxVideo& frames,
+                           FluxVideo& x) {
     const std::size_t sites = measurements.shape.sites();
     const std::vector<float> weights = sums_of_weights(measurements, false);
     const std::vector<float> squares = sums_of_weights(measurements, true);

@@ -42,9 +42,9 @@ struct FrameExposure {
 /// Adds the same light to all open slots of each exposure, or light in proportion to their weights,
 /// so that their mean equals its frame.
 /// Interpolation between frames of several slots blurs them a second time; this corrects it.
-void add_what_frames_lack(const Measurements& measurements,
-                          std::span<const FrameExposure> exposures, const FluxVideo& frames,
-                          FluxVideo& x);
+void back_project_residual(const Measurements& measurements,
+                           std::span<const FrameExposure> exposures, const FluxVideo& frames,
+                           FluxVideo& x);
 
 [[nodiscard]] std::vector<float> centre_slots(std::span<const FrameExposure> exposures);
 

@@ -9,7 +9,7 @@ FluxVideo video_of_frames(const Measurements& measurements,
                           std::span<const FrameExposure> exposures, const FluxVideo& frames) {
     if (frames.slots() == measurements.slots) return frames;
     FluxVideo x = interpolate_frames(frames, centre_slots(exposures), measurements.slots);
-    add_what_frames_lack(measurements, exposures, frames, x);
+    back_project_residual(measurements, exposures, frames, x);
     return x;
 }
 

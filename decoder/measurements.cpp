@@ -6,8 +6,8 @@
 #include <bit>
 #include <cassert>
 
-#include "core/begun_exposure.h"
 #include "core/error.h"
+#include "core/exposure_starting_at.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/pixel_response.h"
@@ -31,10 +31,11 @@ class Collector {
             return;
         const std::uint16_t* dn = packet.dn.data();
         for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-            visit_due(schedule_, packet.slot, row, array_.cols, [&](int col, int span_slots) {
-                place(packet.slot, row, col, {dn, span_slots});
-                dn += array_.planes;
-            });
+            for_each_readout(schedule_, packet.slot, row, array_.cols,
+                             [&](int col, int span_slots) {
+                                 place(packet.slot, row, col, {dn, span_slots});
+                                 dn += array_.planes;
+                             });
     }
 
   private:
@@ -117,7 +118,7 @@ class Collector {
         const std::int64_t begin = last_slot - span_slots + 1;  // 0 or more, or it were not due
         const int tile_row = row % schedule_.tile_rows();
         const int tile_col = col % schedule_.tile_cols();
-        const std::size_t i = begun_exposure(schedule_, tile_row, tile_col, begin);
+        const std::size_t i = exposure_starting_at(schedule_, tile_row, tile_col, begin);
         const std::uint64_t open_slots = schedule_.exposures(tile_row, tile_col)[i].open_slots;
         const bool second = schedule_.store(tile_row, tile_col, i, begin / period) != 0;
         const int open_state = Measurements::kOpen | (second ? Measurements::kSecond : 0);

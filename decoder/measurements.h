@@ -24,7 +24,7 @@ struct Measurements {
     static constexpr std::uint8_t kLast = 4;       ///< last voxel of an exposure, where `sum` is
     static constexpr std::uint8_t kSaturated = 8;  ///< with kLast: the light is `sum` or more
     static constexpr std::uint8_t kSecond = 16;    ///< with kOpen: the exposure is of chain 2
-    static constexpr std::uint8_t kPresumed = 32;  ///< with kLast: presumed_samples.h
+    static constexpr std::uint8_t kPresumed = 32;  ///< with kLast: pseudo_samples.h
     static constexpr std::uint8_t kZero = 64;      ///< with kLast: DN 0, censored_samples.h
 
     int slots = 0;
@@ -45,9 +45,9 @@ struct Measurements {
     std::vector<float> weight = {};
 
     /// If several sensors see the scene (docs/rig.md): the samples of the others, in the same
-    /// window. All of them have `dark_variance` and `one_dn`, and none has others of its own.
+    /// window. All of them have `dark_variance` and `lsb_light`, and none has others of its own.
     std::vector<Measurements> others = {};
-    float one_dn = 0;  ///< light of one DN, of a sensor among several; otherwise 0
+    float lsb_light = 0;  ///< light of one DN, of a sensor among several; otherwise 0
 
     [[nodiscard]] float weight_at(std::size_t voxel) const {
         return weight.empty() ? 1.0F : weight[voxel];

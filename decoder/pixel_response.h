@@ -24,7 +24,7 @@ class SampleNoise {
     [[nodiscard]] float per_light() const { return per_unit_; }
 
     /// Light of one DN.
-    [[nodiscard]] float one_dn() const { return one_dn_; }
+    [[nodiscard]] float lsb_light() const { return one_dn_; }
 
   private:
     float per_unit_;

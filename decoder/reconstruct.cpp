@@ -261,13 +261,13 @@ void check_proportion(const StreamReader& reader, const DecodeOptions& options, 
 /// less than a byte for 32 voxels, as no common schedule and bit depth make it.
 void check_block(std::span<const RigStream> rig, const DecodeOptions& options,
                  const HaloRange& slots) {
-    constexpr std::uint64_t kVoxelsAByte = 32;
+    constexpr std::uint64_t kVoxelsPerByte = 32;
     const StreamReader& reader = rig.front().reader;
     const FrameShape shape = decoded_shape(reader.header());
     const std::int64_t block_slots = slots.end - slots.begin;
     const BlockCost cost =
         block_cost(rig, options.method, block_slots, slots.core_end - slots.core_begin);
-    const bool small = cost.voxels / kVoxelsAByte > reader.input_bytes();
+    const bool small = cost.voxels / kVoxelsPerByte > reader.input_bytes();
     check_memory(cost.bytes, reader.name(),
                  fmt::format("{} slots of {} x {} by the method {}", block_slots, shape.cols,
                              shape.rows, named(options.method).name),
@@ -349,7 +349,7 @@ DecodeReport decode_rig(std::span<const RigStream> rig, const DecodeOptions& opt
     DecodeReport report;
     std::int64_t next = options.first_slot;
     for (bool more = true; more;) {
-        buffer.read_up_to(next + kCoreSlots + std::max(kRestSlots, halo));
+        buffer.read_up_to(next + kCoreSlots + std::max(kRemainderSlots, halo));
         const HaloRange slots = slot_range(next, buffer.first().slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
         check_proportion(reader, options, slots.core_end - first_packet,

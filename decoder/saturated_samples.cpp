@@ -10,7 +10,7 @@ void SaturatedSamples::add(const SamplePacket& packet) {
     if (packet.dn.empty()) return;  // dropped
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        visit_due(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
+        for_each_readout(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
             for (int plane = 0; plane < header_.shape.planes; ++plane)
                 if (responses_.at(plane, row, col).saturated(*dn++)) ++saturated_;
         });

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little);
 struct Block {
     std::vector<std::uint8_t> bytes;
 
-    Block(FileBytes& file, std::uint64_t offset, std::size_t length) : bytes(length) {
+    Block(RandomAccessFile& file, std::uint64_t offset, std::size_t length) : bytes(length) {
         file.read(offset, bytes);
     }
     template <typename Number>
@@ -66,16 +66,16 @@ struct Cine {
     std::int32_t white_dn = 0;  ///< 0: not declared
     std::uint64_t tags_at = 0;  ///< byte after SETUP, from which to offsets_at tagged blocks lie
 
-    explicit Cine(FileBytes& file);
-    void read_setup(FileBytes& file, std::uint64_t offset);
+    explicit Cine(RandomAccessFile& file);
+    void read_setup(RandomAccessFile& file, std::uint64_t offset);
 };
 
-Cine::Cine(FileBytes& file) {
+Cine::Cine(RandomAccessFile& file) {
     constexpr std::size_t kFileHeaderBytes = 44;
     constexpr std::size_t kBitmapHeaderBytes = 40;
     const Block header(file, 0, kFileHeaderBytes);
     if (header.bytes[0] != 'C' || header.bytes[1] != 'I')
-        throw InputError(file.name(), "is no .cine file: it does not begin with \"CI\"");
+        throw InputError(file.name(), "is not a .cine file: it does not begin with \"CI\"");
     if (header.u16(6) != 1)
         throw InputError(file.name(),
                          fmt::format("is a .cine file of version {}; 1 is read", header.u16(6)));
@@ -91,7 +91,7 @@ Cine::Cine(FileBytes& file) {
 }
 
 /// The structure SETUP, which has grown with the versions of the camera's software.
-void Cine::read_setup(FileBytes& file, std::uint64_t offset) {
+void Cine::read_setup(RandomAccessFile& file, std::uint64_t offset) {
     constexpr std::size_t kMarkEnd = 144;
     constexpr std::size_t kMinBytes = 1572;  // with the exposure in ns
     constexpr std::size_t kLevelsEnd = 5740;
@@ -99,7 +99,7 @@ void Cine::read_setup(FileBytes& file, std::uint64_t offset) {
     const std::size_t length = start.u16(142);
     if (start.bytes[140] != 'S' || start.bytes[141] != 'T' || length < kMinBytes)
         throw InputError(fmt::format("{}: byte {}", file.name(), offset),
-                         "is no SETUP of a camera that is read; save the file again with the "
+                         "has an unsupported camera SETUP block; save the file again with the "
                          "present software of Phantom cameras");
     const Block setup(file, offset, std::min(length, kLevelsEnd));
     tags_at = offset + length;
@@ -186,20 +186,20 @@ std::vector<float> light_of(const Cine& cine, const PixelFormat& format) {
                                      : light_table(format, levels.black_dn, levels.white_dn);
 }
 
-SourceTraits traits_of(const Cine& cine, const PixelFormat& format) {
+SourceInfo traits_of(const Cine& cine, const PixelFormat& format) {
     const Levels levels = levels_of(cine, format);
-    SourceTraits traits{.filter = format.filter,
-                        .bits = format.significant_bits,
-                        .black_dn = levels.black_dn,
-                        .white_dn = levels.white_dn,
-                        .curve = cine.packing == kPacked10 ? "bt709" : "linear"};
+    SourceInfo traits{.filter = format.filter,
+                      .bits = format.significant_bits,
+                      .black_dn = levels.black_dn,
+                      .white_dn = levels.white_dn,
+                      .curve = cine.packing == kPacked10 ? "bt709" : "linear"};
     if (cine.frames_hz > 0) traits.frames_hz = cine.frames_hz;
     if (cine.exposure_us > 0) traits.exposure_us = cine.exposure_us;
     return traits;
 }
 
 /// Warnings of what is declared and not applied.
-void warn_of_setup(const Cine& cine, SourceTraits& traits) {
+void warn_of_setup(const Cine& cine, SourceInfo& traits) {
     if (cine.second_exposure_us > 0 && cine.second_exposure_us < cine.exposure_us)
         traits.warnings.push_back(
             fmt::format("bright pixels were exposed for {:.4g} of {:.4g} us (extreme dynamic "
@@ -215,8 +215,8 @@ constexpr double kSecondsATick = 1.0 / (1ULL << 32U);  // of time stamps and exp
 /// The numbers of the tagged block of this kind, one a frame; empty if there is none. Blocks begin
 /// with their length and kind.
 template <typename Number>
-std::vector<Number> numbers_of_frames(FileBytes& file, const Cine& cine, std::uint16_t kind,
-                                      SourceTraits& traits) {
+std::vector<Number> numbers_of_frames(RandomAccessFile& file, const Cine& cine, std::uint16_t kind,
+                                      SourceInfo& traits) {
     constexpr std::uint64_t kHeadBytes = 8;
     constexpr int kMaxBlocks = 64;
     std::uint64_t offset = cine.tags_at;
@@ -247,8 +247,7 @@ double seconds(std::uint64_t ticks) {
 
 /// Of a file saved with decimation, SETUP has the rate of the recording: the time stamps decide.
 /// \returns the times of frames in frame periods if they are unequal.
-std::vector<double> read_time_stamps(const std::vector<std::uint64_t>& stamps,
-                                     SourceTraits& traits) {
+std::vector<double> read_time_stamps(const std::vector<std::uint64_t>& stamps, SourceInfo& traits) {
     constexpr double kStampRoundingS = 1e-6;
     constexpr double kSameRate = 0.01;
     if (stamps.size() < 2) return {};
@@ -283,7 +282,7 @@ std::vector<double> read_time_stamps(const std::vector<std::uint64_t>& stamps,
     return times;
 }
 
-void read_exposures(const std::vector<std::uint32_t>& exposures, SourceTraits& traits) {
+void read_exposures(const std::vector<std::uint32_t>& exposures, SourceInfo& traits) {
     constexpr double kSameExposure = 0.01;
     constexpr double kMicrosecondsATick = kSecondsATick * 1e6;
     if (exposures.empty()) return;
@@ -300,7 +299,7 @@ void read_exposures(const std::vector<std::uint32_t>& exposures, SourceTraits& t
 }  // namespace
 
 RawVideo open_cine(const std::filesystem::path& path) {
-    FileBytes file(path);
+    RandomAccessFile file(path);
     const Cine cine(file);
     const PixelFormat format = format_of(cine, file.name());
     RawVideo video{.file = path,
@@ -323,7 +322,7 @@ RawVideo open_cine(const std::filesystem::path& path) {
     video.offsets.resize(cine.images);
     file.read(cine.offsets_at, {reinterpret_cast<std::uint8_t*>(video.offsets.data()),
                                 video.offsets.size() * sizeof(std::uint64_t)});
-    SourceTraits& traits = video.traits;
+    SourceInfo& traits = video.traits;
     warn_of_setup(cine, traits);
     video.times =
         read_time_stamps(numbers_of_frames<std::uint64_t>(file, cine, kTimeStamps, traits), traits);

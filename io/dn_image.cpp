@@ -30,7 +30,7 @@ DnImage read_dn_png(const std::string& where) {
     if (!png.as_stored) fail_kind(where);
     const PngPixels& pixels = png.pixels;
     const FrameShape shape{.rows = pixels.rows, .cols = pixels.cols, .planes = 1};
-    if (pixels.bytes_a_sample == 2) return dn_image<std::uint16_t>(shape, pixels.bytes.data());
+    if (pixels.bytes_per_sample == 2) return dn_image<std::uint16_t>(shape, pixels.bytes.data());
     return dn_image<std::uint8_t>(shape, pixels.bytes.data());
 }
 
@@ -60,7 +60,7 @@ void write_dn_png(const std::filesystem::path& file, const std::string& where, F
     assert(dn.size() == shape.pixels());
     PngPixels image{.rows = shape.rows,
                     .cols = shape.cols,
-                    .bytes_a_sample = 2,
+                    .bytes_per_sample = 2,
                     .bytes = std::vector<std::uint8_t>(dn.size_bytes())};
     std::memcpy(image.bytes.data(), dn.data(), dn.size_bytes());
     write_png_file(file, image, where);

@@ -261,7 +261,7 @@ bool DngPage::has_one_black() const {
            std::ranges::count(black_dn, black_dn.front()) == std::ssize(black_dn);
 }
 
-void add_dng_warnings(tiff* file, SourceTraits& traits) {
+void add_dng_warnings(tiff* file, SourceInfo& traits) {
     const std::string opcodes = opcode_names(file);
     if (!opcodes.empty())
         traits.warnings.push_back(
@@ -278,8 +278,8 @@ void add_dng_warnings(tiff* file, SourceTraits& traits) {
             "has masked areas, but declares no black level; it is taken to be 0");
 }
 
-void read_dng_camera(const TiffHandle& handle, SourceTraits& traits) {
-    constexpr double kMicrosecondsASecond = 1e6;
+void read_dng_camera(const TiffHandle& handle, SourceInfo& traits) {
+    constexpr double kMicrosecondsPerSecond = 1e6;
     traits.frames_hz = rational(handle.get(), kFrameRateTag);
     auto exposure_s = rational(handle.get(), EXIFTAG_EXPOSURETIME);
     std::uint64_t exif = 0;
@@ -288,7 +288,7 @@ void read_dng_camera(const TiffHandle& handle, SourceTraits& traits) {
             exposure_s = rational(handle.get(), EXIFTAG_EXPOSURETIME);
         if (TIFFSetDirectory(handle.get(), 0) == 0) handle.fail(handle.name());
     }
-    if (exposure_s) traits.exposure_us = *exposure_s * kMicrosecondsASecond;
+    if (exposure_s) traits.exposure_us = *exposure_s * kMicrosecondsPerSecond;
 }
 
 }  // namespace stipple

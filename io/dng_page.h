@@ -53,9 +53,9 @@ struct DngPage {
 void find_raw(const TiffHandle& handle);
 
 /// Adds rate and exposure, from the first directory, where libtiff is afterwards.
-void read_dng_camera(const TiffHandle& handle, SourceTraits& traits);
+void read_dng_camera(const TiffHandle& handle, SourceInfo& traits);
 
 /// Adds warnings of what the directory at hand declares and is not applied.
-void add_dng_warnings(tiff* file, SourceTraits& traits);
+void add_dng_warnings(tiff* file, SourceInfo& traits);
 
 }  // namespace stipple

@@ -198,8 +198,8 @@ void fit_to_display(const Imath::Box2i& data, const Imath::Box2i& display, const
 }
 
 /// Rate and exposure, and what is declared and not applied.
-void read_attributes(const Imf::Header& header, SourceTraits& traits) {
-    constexpr double kMicrosecondsASecond = 1e6;
+void read_attributes(const Imf::Header& header, SourceInfo& traits) {
+    constexpr double kMicrosecondsPerSecond = 1e6;
     if (Imf::hasFramesPerSecond(header)) {
         const Imf::Rational rate = Imf::framesPerSecond(header);
         if (rate.n > 0 && rate.d > 0) traits.frames_hz = static_cast<double>(rate);
@@ -207,7 +207,7 @@ void read_attributes(const Imf::Header& header, SourceTraits& traits) {
     if (Imf::hasExpTime(header)) {
         const auto seconds = static_cast<double>(Imf::expTime(header));
         if (seconds > 0 && std::isfinite(seconds))
-            traits.exposure_us = kMicrosecondsASecond * seconds;
+            traits.exposure_us = kMicrosecondsPerSecond * seconds;
     }
     if (header.pixelAspectRatio() != 1)
         traits.warnings.push_back(fmt::format(

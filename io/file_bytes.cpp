@@ -17,7 +17,7 @@ namespace {
 
 }  // namespace
 
-FileBytes::FileBytes(const std::filesystem::path& file) : name_(file.string()) {
+RandomAccessFile::RandomAccessFile(const std::filesystem::path& file) : name_(file.string()) {
     refuse_special(file);
     file_.reset(std::fopen(file.c_str(), "rb"));
     if (!file_) fail(name_, std::generic_category().message(errno));
@@ -26,7 +26,7 @@ FileBytes::FileBytes(const std::filesystem::path& file) : name_(file.string()) {
     if (error) fail(name_, error.message());
 }
 
-void FileBytes::read(std::uint64_t offset, std::span<std::uint8_t> bytes) {
+void RandomAccessFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) {
     if (offset > size_ || bytes.size() > size_ - offset)
         throw InputError(name_, fmt::format("ends at byte {}, but {} bytes are announced at {}; it "
                                             "is damaged or cut short",

@@ -10,10 +10,10 @@
 namespace stipple {
 
 /// A file of known length, of which parts are read.
-class FileBytes {
+class RandomAccessFile {
   public:
     /// \throws InputError if it is missing, unreadable, or no regular file.
-    explicit FileBytes(const std::filesystem::path& file);
+    explicit RandomAccessFile(const std::filesystem::path& file);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] std::uint64_t size() const { return size_; }

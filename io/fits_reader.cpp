@@ -42,7 +42,7 @@ std::string value_of(std::string_view card) {
 /// The header of the primary array or of an extension, which is read block by block.
 class Header {
   public:
-    Header(FileBytes& file, std::uint64_t begin);
+    Header(RandomAccessFile& file, std::uint64_t begin);
 
     /// Offset of the array.
     [[nodiscard]] std::uint64_t end() const { return end_; }
@@ -69,7 +69,7 @@ class Header {
     std::map<std::string, std::string, std::less<>> values_;
 };
 
-Header::Header(FileBytes& file, std::uint64_t begin)
+Header::Header(RandomAccessFile& file, std::uint64_t begin)
     : name_(file.name()), end_(begin), is_primary_(begin == 0) {
     constexpr std::uint64_t kMaxBlocks = 1000;
     std::vector<std::uint8_t> block(kBlockBytes);
@@ -80,7 +80,7 @@ Header::Header(FileBytes& file, std::uint64_t begin)
         end_ += kBlockBytes;
         const std::string_view cards(reinterpret_cast<const char*>(block.data()), block.size());
         if (end_ == kBlockBytes && !cards.starts_with("SIMPLE  ="))
-            throw InputError(name_, "is no FITS file: it does not begin with SIMPLE");
+            throw InputError(name_, "is not a FITS file: it does not begin with SIMPLE");
         for (std::size_t at = 0; at < cards.size(); at += kCardBytes) {
             const std::string_view card = cards.substr(at, kCardBytes);
             const std::string_view key = trimmed(card.substr(0, 8));
@@ -106,9 +106,9 @@ std::optional<double> Header::number(std::string_view key) const {
 }
 
 std::optional<double> Header::exposure_us() const {
-    constexpr double kMicrosecondsASecond = 1e6;
+    constexpr double kMicrosecondsPerSecond = 1e6;
     for (const char* key : {"EXPTIME", "EXPOSURE"}) {
-        const double us = finite_number(text(key)).value_or(0) * kMicrosecondsASecond;
+        const double us = finite_number(text(key)).value_or(0) * kMicrosecondsPerSecond;
         if (us > 0 && std::isfinite(us)) return us;
     }
     return {};
@@ -149,7 +149,8 @@ std::uint64_t padded(std::uint64_t bytes) {
 }
 
 /// Whether an extension begins there, of which `start` is the beginning of the header.
-bool begins_extension(FileBytes& file, std::uint64_t at, std::string_view start = "XTENSION") {
+bool begins_extension(RandomAccessFile& file, std::uint64_t at,
+                      std::string_view start = "XTENSION") {
     std::vector<std::uint8_t> found(start.size());
     if (at > file.size() || file.size() - at < kBlockBytes) return false;
     file.read(at, found);
@@ -158,7 +159,7 @@ bool begins_extension(FileBytes& file, std::uint64_t at, std::string_view start 
 
 /// The header of the primary array; where that is empty, of the image extension of 2 axes or more.
 /// \throws InputError if there are several of these, or only a compressed one.
-Header image_header(FileBytes& file, const Header& primary) {
+Header image_header(RandomAccessFile& file, const Header& primary) {
     if (primary.axes() > 0) return primary;
     std::optional<Header> image;
     std::vector<std::string> names;
@@ -191,7 +192,7 @@ Header image_header(FileBytes& file, const Header& primary) {
 }
 
 /// \throws InputError unless the third axis is time, or not named.
-void add_frames(const Header& header, int frames, const std::string& name, SourceTraits& traits) {
+void add_frames(const Header& header, int frames, const std::string& name, SourceInfo& traits) {
     constexpr std::array<std::string_view, 9> kTimes{"TIME", "UTC", "TAI", "TT", "TDB",
                                                      "TCG",  "TCB", "UT1", "GPS"};
     const std::string axis = header.text("CTYPE3");
@@ -211,7 +212,7 @@ void add_frames(const Header& header, int frames, const std::string& name, Sourc
 }
 
 /// What else the header declares of its numbers.
-void add_numbers(const Header& header, SourceTraits& traits) {
+void add_numbers(const Header& header, SourceInfo& traits) {
     traits.sample_format = fmt::format("BITPIX {}", header.text("BITPIX"));
     if (const std::string unit = header.text("BUNIT"); !unit.empty())
         traits.sample_format += ", " + unit;

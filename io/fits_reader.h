@@ -29,7 +29,7 @@ class FitsReader {
 
     [[nodiscard]] FrameShape shape() const { return shape_; }
     [[nodiscard]] int slots() const { return slots_; }
-    [[nodiscard]] const SourceTraits& traits() const { return traits_; }
+    [[nodiscard]] const SourceInfo& traits() const { return traits_; }
     /// The file and the frame read last, for messages.
     [[nodiscard]] std::string where() const;
 
@@ -38,9 +38,9 @@ class FitsReader {
     void skip(int frames) { next_slot_ += std::min(frames, slots_ - next_slot_); }
 
   private:
-    FileBytes file_;
+    RandomAccessFile file_;
     FrameShape shape_;
-    SourceTraits traits_;
+    SourceInfo traits_;
     std::uint64_t data_offset_ = 0;
     int bits_ = 0;     ///< of a number: 8, 16, 32, 64; negative of floating-point ones
     double zero_ = 0;  ///< light = zero_ + scale_ * number

@@ -43,7 +43,7 @@ class ImageSequence {
     }
 
     [[nodiscard]] FrameShape shape() const { return shape_; }
-    [[nodiscard]] const SourceTraits& traits() const { return traits_; }
+    [[nodiscard]] const SourceInfo& traits() const { return traits_; }
     [[nodiscard]] const std::string& warning() const { return images_.warning; }
     [[nodiscard]] std::string kind() const {
         if (tiff_) return "TIFF file";
@@ -109,7 +109,7 @@ class ImageSequence {
     double min_exposure_us_ = std::numeric_limits<double>::max();
     double max_exposure_us_ = 0;
     Image image_;
-    SourceTraits traits_;
+    SourceInfo traits_;
     FrameShape shape_;
 };
 
@@ -160,7 +160,7 @@ struct FootageReader::Impl {
     std::string name;
     std::string extension;
     FrameShape source_shape;
-    SourceTraits traits;
+    SourceInfo traits;
     Transfer transfer = Transfer::kLinear;
     std::vector<Message> warnings;  ///< not yet taken
     bool looked_at_brightness = false;
@@ -288,7 +288,7 @@ ColourFilter FootageReader::filter() const {
     return impl_->traits.filter;
 }
 
-const SourceTraits& FootageReader::traits() const {
+const SourceInfo& FootageReader::traits() const {
     return impl_->traits;
 }
 

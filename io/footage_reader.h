@@ -69,7 +69,7 @@ class FootageReader {
     /// Whether the numbers are no linear light by what the source declares or by its kind.
     [[nodiscard]] bool gamma_coded() const;
     /// What the source declares about its numbers and the camera.
-    [[nodiscard]] const SourceTraits& traits() const;
+    [[nodiscard]] const SourceInfo& traits() const;
     /// What the source is: "PNG images", "video", ".cine file".
     [[nodiscard]] std::string kind() const;
     /// What the user should know of the source and of its reading that is new since the last call.

@@ -9,7 +9,7 @@
 
 namespace stipple {
 
-Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits, bool is_video,
+Transfer transfer_of(const FootageOptions& options, const SourceInfo& traits, bool is_video,
                      const std::string& name) {
     if (options.transfer != Transfer::kAuto) return options.transfer.value_or(Transfer::kLinear);
     if (traits.declared) return *traits.declared;
@@ -24,7 +24,7 @@ Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits, 
     return traits.gamma_coded ? Transfer::kSrgb : Transfer::kLinear;
 }
 
-std::vector<Message> reading_warnings(const SourceTraits& traits, const FootageOptions& options,
+std::vector<Message> reading_warnings(const SourceInfo& traits, const FootageOptions& options,
                                       const std::string& name) {
     std::vector<Message> warnings;
     const Transfer transfer = options.transfer.value_or(Transfer::kLinear);
@@ -40,8 +40,8 @@ std::vector<Message> reading_warnings(const SourceTraits& traits, const FootageO
         warnings.push_back(name +
                            ": holds floating-point numbers, which are linear light as a rule; " +
                            Parameter{"transfer", std::string(name_of(transfer))} + " bends them");
-    constexpr double kMicrosecondsASecond = 1e6;
-    const double period_us = kMicrosecondsASecond / traits.frames_hz.value_or(0);
+    constexpr double kMicrosecondsPerSecond = 1e6;
+    const double period_us = kMicrosecondsPerSecond / traits.frames_hz.value_or(0);
     if (traits.frames_hz && traits.exposure_us && *traits.exposure_us < period_us / 2)
         warnings.push_back(
             fmt::format("{}: its frames were exposed for {:.4g} of {:.4g} us each; "

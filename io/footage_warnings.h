@@ -13,11 +13,11 @@ namespace stipple {
 /// The transfer function by which a source is read: that of `options`, or with kAuto the one that
 /// the source declares. Images that declare none are sRGB if they look gamma-coded, else linear.
 /// \throws InputError at `name` if a video declares none, or one that is not known.
-[[nodiscard]] Transfer transfer_of(const FootageOptions& options, const SourceTraits& traits,
+[[nodiscard]] Transfer transfer_of(const FootageOptions& options, const SourceInfo& traits,
                                    bool is_video, const std::string& name);
 
 /// Effects of `options` on numbers of this kind that users may not expect; each begins with `name`.
-[[nodiscard]] std::vector<Message> reading_warnings(const SourceTraits& traits,
+[[nodiscard]] std::vector<Message> reading_warnings(const SourceInfo& traits,
                                                     const FootageOptions& options,
                                                     const std::string& name);
 

@@ -13,7 +13,7 @@
 namespace stipple {
 
 /// What an image or a video says of its numbers, and of the camera that took it.
-struct SourceTraits {
+struct SourceInfo {
     bool gamma_coded = false;  ///< by what it declares or by its kind, no linear light
     bool floating = false;
     bool has_alpha = false;                     ///< which is left out
@@ -37,7 +37,7 @@ struct SourceTraits {
 /// floating-point values are as the file holds them, unchecked.
 struct Image {
     FrameShape shape;
-    SourceTraits traits;
+    SourceInfo traits;
     std::vector<float> values;
 
     /// Takes the shape and makes room for its values.

@@ -21,7 +21,7 @@ void interleave_as(std::span<const float> frame, FrameShape shape, std::vector<s
 
 }  // namespace
 
-std::uint16_t word_of(float light, double full_scale) {
+std::uint16_t to_uint16(float light, double full_scale) {
     constexpr double kMax = 65535;
     const double dn = static_cast<double>(light) / full_scale * kMax + 0.5;
     if (!(dn > 0)) return 0;
@@ -34,7 +34,7 @@ void interleave(std::span<const float> frame, FrameShape shape, const ImageCodin
     if (*coding.samples == SampleKind::kFloat)
         return interleave_as<float>(frame, shape, bytes, [](float light) { return light; });
     interleave_as<std::uint16_t>(frame, shape, bytes,
-                                 [&](float light) { return word_of(light, coding.full_scale); });
+                                 [&](float light) { return to_uint16(light, coding.full_scale); });
 }
 
 }  // namespace stipple

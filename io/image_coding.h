@@ -28,7 +28,7 @@ struct ImageCoding {
 };
 
 /// The number of `light`, 0..65535. NaN and negative light are 0.
-[[nodiscard]] std::uint16_t word_of(float light, double full_scale);
+[[nodiscard]] std::uint16_t to_uint16(float light, double full_scale);
 
 /// A frame (plane, row, col) as interleaved samples of kFloat or kWord in the byte order of the
 /// machine. Precondition: coding.samples is one of these.

@@ -27,7 +27,7 @@ void read_png(const std::string& where, Image& image) {
     image.resize({pixels.rows, pixels.cols, planes});
     image.traits = png.traits;
     const auto bytes = std::as_bytes(std::span(pixels.bytes));
-    if (pixels.bytes_a_sample == 2)
+    if (pixels.bytes_per_sample == 2)
         split_planes<std::uint16_t>(bytes, planes, planes, image.values, UnitScale());
     else
         split_planes<std::uint8_t>(bytes, planes, planes, image.values, UnitScale());

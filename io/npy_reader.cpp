@@ -61,9 +61,9 @@ NpyReader::NpyReader(const std::filesystem::path& file)
     if (std::fseek(file_.get(), static_cast<long>(header_.data_offset), SEEK_SET) != 0) fail(name_);
 }
 
-SourceTraits NpyReader::traits() const {
+SourceInfo NpyReader::traits() const {
     constexpr std::array<const char*, 5> kNames{"uint8", "uint16", "float16", "float32", "float64"};
-    SourceTraits traits;
+    SourceInfo traits;
     traits.sample_format = kNames[static_cast<std::size_t>(header_.type)];
     if (header_.type == NpyType::kUint8) traits.bits = 8;
     if (header_.type == NpyType::kUint16) traits.bits = 16;

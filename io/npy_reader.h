@@ -22,7 +22,7 @@ class NpyReader {
     [[nodiscard]] FrameShape shape() const { return header_.shape; }
     [[nodiscard]] int slots() const { return header_.slots; }
     /// The type of the stored numbers.
-    [[nodiscard]] SourceTraits traits() const;
+    [[nodiscard]] SourceInfo traits() const;
     /// The file and the last frame read, for messages.
     [[nodiscard]] std::string where() const;
 

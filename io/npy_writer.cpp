@@ -23,8 +23,8 @@ void NpyWriter::write_header() {
     file_.write(std::as_bytes(std::span(header)));
     file_.seek(static_cast<long>(header.size() + static_cast<std::size_t>(slots_) * shape_.sites() *
                                                      sizeof(float)));
-    told_slots_ = slots_;
-    told_at_ = Clock::now();
+    header_slots_ = slots_;
+    header_time_ = Clock::now();
 }
 
 void NpyWriter::write(std::span<const float> frame) {
@@ -35,7 +35,7 @@ void NpyWriter::write(std::span<const float> frame) {
             pixels_[i * planes + plane] = frame[plane * shape_.pixels() + i];
     file_.write(std::as_bytes(std::span(pixels_)));
     ++slots_;
-    if (slots_ >= 2 * told_slots_ || Clock::now() - told_at_ >= std::chrono::seconds(1))
+    if (slots_ >= 2 * header_slots_ || Clock::now() - header_time_ >= std::chrono::seconds(1))
         write_header();
 }
 

@@ -33,8 +33,8 @@ class NpyWriter {
     FrameShape shape_;
     std::string comment_;
     int slots_ = 0;
-    int told_slots_ = 0;  ///< number of slots in the header
-    Clock::time_point told_at_;
+    int header_slots_ = 0;  ///< number of slots in the header
+    Clock::time_point header_time_;
     std::vector<float> pixels_;  ///< by row, column and plane; empty before the first frame
 };
 

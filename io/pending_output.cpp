@@ -217,7 +217,7 @@ void PendingOutput::commit() {
     fs::path name = final_;
     try {
         sync_all_to_disk(partial_);
-        if (!put_in_place()) name = put_beside();
+        if (!put_in_place()) name = rename_to_fallback();
     } catch (const fs::filesystem_error& e) {
         std::error_code error;
         const DeviceError failure(
@@ -273,7 +273,7 @@ bool PendingOutput::put_in_place() {
     return true;
 }
 
-fs::path PendingOutput::put_beside() const {
+fs::path PendingOutput::rename_to_fallback() const {
     for (int number = 2;; ++number) {
         fs::path name = final_.parent_path() / fmt::format("{}_{}{}", final_.stem().string(),
                                                            number, final_.extension().string());

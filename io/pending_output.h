@@ -54,7 +54,7 @@ class PendingOutput {
     void unlist();
     [[nodiscard]] bool remove_partial() const noexcept;
     [[nodiscard]] bool put_in_place();
-    [[nodiscard]] std::filesystem::path put_beside() const;
+    [[nodiscard]] std::filesystem::path rename_to_fallback() const;
     void settle(const std::filesystem::path& name);
 
     std::filesystem::path final_;

@@ -86,7 +86,7 @@ class Header {
 
 Header::Header(const fs::path& file) : name_(file.string()) {
     constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 20U;
-    FileBytes bytes(file);
+    RandomAccessFile bytes(file);
     if (bytes.size() > kMaxBytes) throw InputError(name_, "is too long for the header of a video");
     std::string text(bytes.size(), '\0');
     bytes.read(0, {reinterpret_cast<std::uint8_t*>(text.data()), text.size()});
@@ -239,7 +239,7 @@ std::pair<PixelFormat, int> format_of(const Header& header) {
 }
 
 /// Rate and exposure. The frames of a file may be every N-th of the recording.
-void read_times(const Header& header, SourceTraits& traits) {
+void read_times(const Header& header, SourceInfo& traits) {
     traits.frames_hz = header.number(kRate);
     const double step = header.number(kStep).value_or(1);
     if (traits.frames_hz && step > 1) {
@@ -250,18 +250,18 @@ void read_times(const Header& header, SourceTraits& traits) {
                         step, *header.number(kRate), *traits.frames_hz) +
             Parameter{"frames_hz"} + " sets another rate");
     }
-    constexpr double kSecondsANanosecond = 1e-9;
-    constexpr double kMicrosecondsASecond = 1e6;
+    constexpr double kSecondsPerNanosecond = 1e-9;
+    constexpr double kMicrosecondsPerSecond = 1e6;
     constexpr double kRounding = 0.02;
     const auto shutter_s = header.shutter_s();
     const auto shutter_ns = header.number(kShutterNs);
     if (!shutter_s && !shutter_ns) return;
-    const double exposure_s = shutter_ns ? *shutter_ns * kSecondsANanosecond : *shutter_s;
-    traits.exposure_us = exposure_s * kMicrosecondsASecond;
+    const double exposure_s = shutter_ns ? *shutter_ns * kSecondsPerNanosecond : *shutter_s;
+    traits.exposure_us = exposure_s * kMicrosecondsPerSecond;
     if (shutter_s && std::abs(*shutter_s - exposure_s) > kRounding * exposure_s)
         traits.warnings.push_back(fmt::format(
             "declares two exposures, {:.4g} us and {:.4g} us; the first, in nanoseconds, is taken",
-            *traits.exposure_us, *shutter_s * kMicrosecondsASecond));
+            *traits.exposure_us, *shutter_s * kMicrosecondsPerSecond));
 }
 
 }  // namespace

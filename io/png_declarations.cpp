@@ -48,13 +48,13 @@ std::optional<Bytes> find(const Chunks& chunks, std::string_view kind, std::size
     return found->second;
 }
 
-void declare(SourceTraits& traits, std::optional<Transfer> transfer, std::string curve) {
+void declare(SourceInfo& traits, std::optional<Transfer> transfer, std::string curve) {
     traits.gamma_coded = transfer != Transfer::kLinear;
     traits.declared = transfer;
     traits.curve = std::move(curve);
 }
 
-void add_code_points(Bytes points, bool colour, const std::string& where, SourceTraits& traits) {
+void add_code_points(Bytes points, bool colour, const std::string& where, SourceInfo& traits) {
     constexpr int kBt709 = 1;
     constexpr int kBt2020 = 9;
     if (points[3] != 1)
@@ -67,7 +67,7 @@ void add_code_points(Bytes points, bool colour, const std::string& where, Source
         traits.primaries = traits.bt2020 ? "bt2020" : fmt::format("{} of H.273", points[0]);
 }
 
-void add_profile(Bytes profile, bool colour, SourceTraits& traits) {
+void add_profile(Bytes profile, bool colour, SourceInfo& traits) {
     const std::string name(profile.begin(), std::ranges::find(profile, '\0'));
     std::string lower = name;
     std::ranges::transform(lower, lower.begin(), [](char c) {
@@ -80,7 +80,7 @@ void add_profile(Bytes profile, bool colour, SourceTraits& traits) {
     if (colour) traits.primaries = traits.curve;
 }
 
-void add_gamma(Bytes gamma, SourceTraits& traits) {
+void add_gamma(Bytes gamma, SourceInfo& traits) {
     constexpr std::uint32_t kLinear = 100'000;
     constexpr std::uint32_t kMinOfSrgb = 44'000;  // 45455, rounded in some way
     constexpr std::uint32_t kMaxOfSrgb = 47'000;
@@ -123,7 +123,7 @@ std::uint32_t orientation_of(Bytes exif) {
     return 1;
 }
 
-void add_warnings(const Chunks& chunks, SourceTraits& traits) {
+void add_warnings(const Chunks& chunks, SourceInfo& traits) {
     if (const auto pixel = find(chunks, "pHYs", 9)) {
         const double x = big_endian(*pixel);
         const double y = big_endian(pixel->subspan(4));
@@ -144,7 +144,7 @@ void add_warnings(const Chunks& chunks, SourceTraits& traits) {
 
 }  // namespace
 
-void add_png_declarations(Bytes file, bool colour, const std::string& where, SourceTraits& traits) {
+void add_png_declarations(Bytes file, bool colour, const std::string& where, SourceInfo& traits) {
     const Chunks chunks = chunks_of(file);
     if (const auto animation = find(chunks, "acTL", 8); animation && big_endian(*animation) > 1)
         throw InputError(where, fmt::format("is an animation of {} frames; make images of them "

@@ -13,6 +13,6 @@ namespace stipple {
 /// orientation. Chunks of wrong lengths are left out.
 /// \throws InputError at `where` if it is an animation or of limited range.
 void add_png_declarations(std::span<const std::uint8_t> file, bool colour, const std::string& where,
-                          SourceTraits& traits);
+                          SourceInfo& traits);
 
 }  // namespace stipple

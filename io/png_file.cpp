@@ -112,8 +112,8 @@ void read_header(png_structp png, png_infop info, Source& source) {
     png_read_info(png, info);
 }
 
-SourceTraits traits_of(png_structp png, png_infop info, bool grey) {
-    SourceTraits traits{.gamma_coded = !grey && png_get_bit_depth(png, info) <= 8};
+SourceInfo traits_of(png_structp png, png_infop info, bool grey) {
+    SourceInfo traits{.gamma_coded = !grey && png_get_bit_depth(png, info) <= 8};
     traits.bits = png_get_bit_depth(png, info);
     traits.has_alpha = (png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                        png_get_valid(png, info, PNG_INFO_tRNS) != 0;
@@ -136,7 +136,7 @@ PngImage image_of(png_structp png, png_infop info, std::uint64_t file_bytes,
     return {.pixels = PngPixels{.rows = shape.rows,
                                 .cols = shape.cols,
                                 .channels = shape.planes,
-                                .bytes_a_sample = static_cast<int>(unpacked),
+                                .bytes_per_sample = static_cast<int>(unpacked),
                                 .bytes = std::vector<std::uint8_t>(unpacked * shape.sites())},
             .traits = traits_of(png, info, grey),
             .as_stored = type == PNG_COLOR_TYPE_GRAY && depth >= 8};
@@ -147,7 +147,8 @@ std::size_t row_bytes(const PngPixels& pixels) {
 }
 
 void swap_bytes(png_structp png, const PngPixels& pixels) {
-    if (pixels.bytes_a_sample == 2 && std::endian::native == std::endian::little) png_set_swap(png);
+    if (pixels.bytes_per_sample == 2 && std::endian::native == std::endian::little)
+        png_set_swap(png);
 }
 
 struct Sink {
@@ -210,7 +211,7 @@ void write_png_file(const std::filesystem::path& file, const PngPixels& pixels,
     const bool succeeded = succeeds(png, [&] {
         png_set_write_fn(png, &sink, write_bytes, flush);
         png_set_IHDR(png, info, static_cast<png_uint_32>(pixels.cols),
-                     static_cast<png_uint_32>(pixels.rows), 8 * pixels.bytes_a_sample,
+                     static_cast<png_uint_32>(pixels.rows), 8 * pixels.bytes_per_sample,
                      pixels.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         // Of the ways to pack the fastest, and on noise no larger than others.

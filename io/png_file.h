@@ -15,14 +15,14 @@ struct PngPixels {
     int rows = 0;
     int cols = 0;
     int channels = 1;  ///< 1: grey; 3: red, green, blue
-    int bytes_a_sample = 1;
+    int bytes_per_sample = 1;
     std::vector<std::uint8_t>
         bytes;  ///< by rows; samples of 2 bytes in the byte order of the machine
 };
 
 struct PngImage {
     PngPixels pixels;
-    SourceTraits traits;
+    SourceInfo traits;
     bool as_stored = true;  ///< the numbers of the file: grey of 8 or 16 bits, without alpha
 };
 

@@ -169,7 +169,7 @@ RawVideo open_raw_file(const std::filesystem::path& file, const RawFormat& raw) 
                    .bits = raw.format.significant_bits,
                    .black_dn = raw.black_dn,
                    .white_dn = full_scale}};
-    const FileBytes bytes(file);
+    const RandomAccessFile bytes(file);
     video.slots = count_frames(raw, bytes.size(), bytes.name());
     return video;
 }

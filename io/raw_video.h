@@ -27,7 +27,7 @@ struct RawVideo {
     bool annotated = false;  ///< before each frame is a block that begins with its length (cine)
     bool bottom_up = false;  ///< the last row comes first
     std::vector<float> light_of_dn;
-    SourceTraits traits = {};
+    SourceInfo traits = {};
 
     [[nodiscard]] std::uint64_t frame_bytes() const {
         return format.row_bytes(shape.cols) * static_cast<std::uint64_t>(shape.rows);
@@ -43,7 +43,7 @@ class RawVideoReader {
 
     [[nodiscard]] FrameShape shape() const { return video_.shape; }
     [[nodiscard]] int slots() const { return static_cast<int>(video_.slots); }
-    [[nodiscard]] const SourceTraits& traits() const { return video_.traits; }
+    [[nodiscard]] const SourceInfo& traits() const { return video_.traits; }
     [[nodiscard]] bool has_times() const { return !video_.times.empty(); }
     /// Of the frame read last, in frame periods. Precondition: has_times.
     [[nodiscard]] double frame_time() const { return video_.times[next_slot_ - 1]; }
@@ -64,7 +64,7 @@ class RawVideoReader {
     [[nodiscard]] std::uint64_t offset_of(std::uint64_t slot);
 
     RawVideo video_;
-    FileBytes file_;
+    RandomAccessFile file_;
     std::uint64_t next_slot_ = 0;
     std::vector<std::uint8_t> bytes_;
     std::vector<std::uint16_t> samples_;  ///< of a row

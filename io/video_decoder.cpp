@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "io/frame_times.h"
-#include "io/late_ffmpeg.h"
+#include "io/lazy_ffmpeg.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -26,25 +26,25 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_dict_free);
-STIPPLE_LATE(av_dict_set);
-STIPPLE_LATE(av_display_rotation_get);
-STIPPLE_LATE(av_find_best_stream);
-STIPPLE_LATE(av_frame_alloc);
-STIPPLE_LATE(av_log_set_callback);
-STIPPLE_LATE(av_max_alloc);
-STIPPLE_LATE(av_packet_alloc);
-STIPPLE_LATE(av_packet_unref);
-STIPPLE_LATE(av_read_frame);
-STIPPLE_LATE(av_stream_get_side_data);
-STIPPLE_LATE(avcodec_alloc_context3);
-STIPPLE_LATE(avcodec_get_class);
-STIPPLE_LATE(avcodec_open2);
-STIPPLE_LATE(avcodec_parameters_to_context);
-STIPPLE_LATE(avcodec_receive_frame);
-STIPPLE_LATE(avcodec_send_packet);
-STIPPLE_LATE(avformat_find_stream_info);
-STIPPLE_LATE(avformat_open_input);
+STIPPLE_LAZY(av_dict_free);
+STIPPLE_LAZY(av_dict_set);
+STIPPLE_LAZY(av_display_rotation_get);
+STIPPLE_LAZY(av_find_best_stream);
+STIPPLE_LAZY(av_frame_alloc);
+STIPPLE_LAZY(av_log_set_callback);
+STIPPLE_LAZY(av_max_alloc);
+STIPPLE_LAZY(av_packet_alloc);
+STIPPLE_LAZY(av_packet_unref);
+STIPPLE_LAZY(av_read_frame);
+STIPPLE_LAZY(av_stream_get_side_data);
+STIPPLE_LAZY(avcodec_alloc_context3);
+STIPPLE_LAZY(avcodec_get_class);
+STIPPLE_LAZY(avcodec_open2);
+STIPPLE_LAZY(avcodec_parameters_to_context);
+STIPPLE_LAZY(avcodec_receive_frame);
+STIPPLE_LAZY(avcodec_send_packet);
+STIPPLE_LAZY(avformat_find_stream_info);
+STIPPLE_LAZY(avformat_open_input);
 
 /// Containers announce a number of frames or a duration, which may be off by some frames.
 constexpr double kMinFractionOfAnnounced = 0.9;

@@ -18,17 +18,17 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_content_light_metadata_alloc);
-STIPPLE_LATE(av_d2q);
-STIPPLE_LATE(av_dict_free);
-STIPPLE_LATE(av_dict_set);
-STIPPLE_LATE(av_freep);
-STIPPLE_LATE(av_mastering_display_metadata_alloc);
-STIPPLE_LATE(av_stream_add_side_data);
-STIPPLE_LATE(avcodec_alloc_context3);
-STIPPLE_LATE(avcodec_find_encoder);
-STIPPLE_LATE(avcodec_find_encoder_by_name);
-STIPPLE_LATE(avcodec_open2);
+STIPPLE_LAZY(av_content_light_metadata_alloc);
+STIPPLE_LAZY(av_d2q);
+STIPPLE_LAZY(av_dict_free);
+STIPPLE_LAZY(av_dict_set);
+STIPPLE_LAZY(av_freep);
+STIPPLE_LAZY(av_mastering_display_metadata_alloc);
+STIPPLE_LAZY(av_stream_add_side_data);
+STIPPLE_LAZY(avcodec_alloc_context3);
+STIPPLE_LAZY(avcodec_find_encoder);
+STIPPLE_LAZY(avcodec_find_encoder_by_name);
+STIPPLE_LAZY(avcodec_open2);
 
 /// Of the encoder, whose bits depend on it: the same on any machine.
 constexpr int kThreads = 4;

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/geometry.h"
-#include "io/late_ffmpeg.h"
+#include "io/lazy_ffmpeg.h"
 #include "io/video_coding.h"
 
 struct AVStream;  // of FFmpeg's libavformat

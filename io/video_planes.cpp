@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "io/interleaved.h"
-#include "io/late_ffmpeg.h"
+#include "io/lazy_ffmpeg.h"
 
 extern "C" {
 #include <libavutil/frame.h>
@@ -22,17 +22,17 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_color_primaries_name);
-STIPPLE_LATE(av_color_space_name);
-STIPPLE_LATE(av_color_transfer_name);
-STIPPLE_LATE(av_frame_alloc);
-STIPPLE_LATE(av_frame_get_buffer);
-STIPPLE_LATE(av_pix_fmt_desc_get);
-STIPPLE_LATE(sws_getCoefficients);
-STIPPLE_LATE(sws_getContext);
-STIPPLE_LATE(sws_isSupportedInput);
-STIPPLE_LATE(sws_scale);
-STIPPLE_LATE(sws_setColorspaceDetails);
+STIPPLE_LAZY(av_color_primaries_name);
+STIPPLE_LAZY(av_color_space_name);
+STIPPLE_LAZY(av_color_transfer_name);
+STIPPLE_LAZY(av_frame_alloc);
+STIPPLE_LAZY(av_frame_get_buffer);
+STIPPLE_LAZY(av_pix_fmt_desc_get);
+STIPPLE_LAZY(sws_getCoefficients);
+STIPPLE_LAZY(sws_getContext);
+STIPPLE_LAZY(sws_isSupportedInput);
+STIPPLE_LAZY(sws_scale);
+STIPPLE_LAZY(sws_setColorspaceDetails);
 
 enum class Colours { kGrey, kYcbcr, kRgb };
 
@@ -136,10 +136,10 @@ std::string other_primaries(AVColorPrimaries primaries) {
 
 /// What a frame declares of its curve goes first. Where it declares none, all but grey and RGB of
 /// more than 8 bits are gamma-coded, as is usual.
-SourceTraits traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
+SourceInfo traits_of(const AVFrame& frame, const AVPixFmtDescriptor& about) {
     const AVColorTransferCharacteristic curve = frame.color_trc;
     const bool is_declared = curve != AVCOL_TRC_UNSPECIFIED && curve != AVCOL_TRC_RESERVED0;
-    SourceTraits traits;
+    SourceInfo traits;
     traits.gamma_coded = is_declared
                              ? curve != AVCOL_TRC_LINEAR
                              : about.comp[0].depth <= 8 || colours_of(about) == Colours::kYcbcr;
@@ -193,7 +193,7 @@ struct VideoPlanes::Impl {
     Colours colours = Colours::kRgb;
     LumaWeights weights{};
     Scale scale{16, true};
-    SourceTraits traits;
+    SourceInfo traits;
     /// The frame as it is stored below, not turned; RGB may be of bytes.
     FfmpegPtr<AVFrame> words{av_frame_alloc()};
     FfmpegPtr<SwsContext> to_words;
@@ -305,7 +305,7 @@ FrameShape VideoPlanes::shape() const {
     return impl_->shape;
 }
 
-const SourceTraits& VideoPlanes::traits() const {
+const SourceInfo& VideoPlanes::traits() const {
     return impl_->traits;
 }
 

@@ -32,7 +32,7 @@ class VideoPlanes {
     VideoPlanes& operator=(VideoPlanes&&) noexcept;
 
     [[nodiscard]] FrameShape shape() const;
-    [[nodiscard]] const SourceTraits& traits() const;
+    [[nodiscard]] const SourceInfo& traits() const;
 
     /// Order (plane, row, col), shape().sites() floats. False if the frame differs from the first
     /// in format.

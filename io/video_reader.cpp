@@ -49,7 +49,7 @@ FrameShape VideoReader::shape() const {
     return impl_->planes.shape();
 }
 
-const SourceTraits& VideoReader::traits() const {
+const SourceInfo& VideoReader::traits() const {
     return impl_->planes.traits();
 }
 

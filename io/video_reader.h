@@ -33,7 +33,7 @@ class VideoReader {
     [[nodiscard]] std::optional<double> frames_hz() const;
     /// Number of frames by the container, which may be off by some.
     [[nodiscard]] std::optional<std::int64_t> announced_frames() const;
-    [[nodiscard]] const SourceTraits& traits() const;
+    [[nodiscard]] const SourceInfo& traits() const;
     /// Of the frame read last, as FrameTimes::time.
     [[nodiscard]] double frame_time() const;
     /// As FrameTimes::unequal, of the frames so far.

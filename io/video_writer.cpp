@@ -17,7 +17,7 @@
 
 #include "core/error.h"
 #include "io/hdr_signal.h"
-#include "io/late_ffmpeg.h"
+#include "io/lazy_ffmpeg.h"
 #include "io/output_file.h"
 #include "io/tone_map.h"
 #include "io/video_encoder.h"
@@ -32,28 +32,28 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_dict_free);
-STIPPLE_LATE(av_dict_set);
-STIPPLE_LATE(av_frame_alloc);
-STIPPLE_LATE(av_frame_get_buffer);
-STIPPLE_LATE(av_frame_make_writable);
-STIPPLE_LATE(av_interleaved_write_frame);
-STIPPLE_LATE(av_log_set_level);
-STIPPLE_LATE(av_malloc);
-STIPPLE_LATE(av_packet_alloc);
-STIPPLE_LATE(av_packet_rescale_ts);
-STIPPLE_LATE(av_write_trailer);
-STIPPLE_LATE(avcodec_parameters_from_context);
-STIPPLE_LATE(avcodec_receive_packet);
-STIPPLE_LATE(avcodec_send_frame);
-STIPPLE_LATE(avformat_alloc_output_context2);
-STIPPLE_LATE(avformat_new_stream);
-STIPPLE_LATE(avformat_write_header);
-STIPPLE_LATE(avio_alloc_context);
-STIPPLE_LATE(sws_getCoefficients);
-STIPPLE_LATE(sws_getContext);
-STIPPLE_LATE(sws_scale);
-STIPPLE_LATE(sws_setColorspaceDetails);
+STIPPLE_LAZY(av_dict_free);
+STIPPLE_LAZY(av_dict_set);
+STIPPLE_LAZY(av_frame_alloc);
+STIPPLE_LAZY(av_frame_get_buffer);
+STIPPLE_LAZY(av_frame_make_writable);
+STIPPLE_LAZY(av_interleaved_write_frame);
+STIPPLE_LAZY(av_log_set_level);
+STIPPLE_LAZY(av_malloc);
+STIPPLE_LAZY(av_packet_alloc);
+STIPPLE_LAZY(av_packet_rescale_ts);
+STIPPLE_LAZY(av_write_trailer);
+STIPPLE_LAZY(avcodec_parameters_from_context);
+STIPPLE_LAZY(avcodec_receive_packet);
+STIPPLE_LAZY(avcodec_send_frame);
+STIPPLE_LAZY(avformat_alloc_output_context2);
+STIPPLE_LAZY(avformat_new_stream);
+STIPPLE_LAZY(avformat_write_header);
+STIPPLE_LAZY(avio_alloc_context);
+STIPPLE_LAZY(sws_getCoefficients);
+STIPPLE_LAZY(sws_getContext);
+STIPPLE_LAZY(sws_scale);
+STIPPLE_LAZY(sws_setColorspaceDetails);
 
 constexpr int kBufferBytes = 1 << 16;
 constexpr const char* kCreate = "cannot be created";

@@ -13,7 +13,7 @@
 #include "capture/recording/footage_notes.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"

@@ -172,7 +172,7 @@ footage, too: stipple.emulate(recording).)")
                 return open_recording(path_in(path, "path"), py::none());
             },
             py::arg("path"),
-            "Opens a .strec file. Raises OSError if it cannot be read, ValueError if it is no\n"
+            "Opens a .strec file. Raises OSError if it cannot be read, ValueError if it is not a\n"
             "recording.")
         .def_readonly("path", &RecordingFile::path, "Its file.")
         .def_readonly(

@@ -175,7 +175,7 @@ void CodedSensor::Impl::find_overflow(std::span<const float> arriving, int row, 
         const std::size_t in_plane = static_cast<std::size_t>(row) * cols;
         const std::size_t first = plane * shape.pixels() + in_plane;
         for (std::size_t col = 0; col < cols; ++col) {
-            const SiteTraits& site = physical->pattern().plane(plane)[in_plane + col];
+            const SiteParams& site = physical->pattern().plane(plane)[in_plane + col];
             const float come = std::min(arriving[first + col], std::numeric_limits<float>::max());
             const float held = light[first + col + (band.open[col] == 2 ? shape.sites() : 0)];
             const float beyond = held + come - physical->full_well_light(site);
@@ -202,7 +202,7 @@ std::span<const float> CodedSensor::Impl::light_of_slot(std::span<const float> f
 void CodedSensor::Impl::leave_lag(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     for (std::size_t i = 0; i < band.pixels.size(); ++i) {
-        const SiteTraits& site = physical->pattern().plane(plane)[band.pixels[i]];
+        const SiteParams& site = physical->pattern().plane(plane)[band.pixels[i]];
         const float come = std::min(band.light[i], std::numeric_limits<float>::max());
         const float left = lag * std::min(come, physical->full_well_light(site));
         band.light[i] = come - left;

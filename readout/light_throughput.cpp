@@ -1,6 +1,6 @@
 #include "readout/light_throughput.h"
 
-#include "core/begun_exposure.h"
+#include "core/exposure_starting_at.h"
 
 namespace stipple {
 namespace {
@@ -25,7 +25,7 @@ double light_slots(const ExposureSchedule& schedule, std::int64_t slot, int row,
     const std::int64_t begin = slot - pixel.span_slots + 1;
     const int tile_row = row % schedule.tile_rows();
     const int tile_col = col % schedule.tile_cols();
-    const std::size_t i = begun_exposure(schedule, tile_row, tile_col, begin);
+    const std::size_t i = exposure_starting_at(schedule, tile_row, tile_col, begin);
     return schedule.light_slots(tile_row, tile_col, schedule.exposures(tile_row, tile_col)[i]);
 }
 

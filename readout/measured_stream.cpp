@@ -119,8 +119,9 @@ void write_slots(const NpyVolume& y, const Scale& scale, const StreamHeader& hea
         for (int phase = 0; phase < schedule.period_slots(); ++phase) {
             packet.dn.clear();
             for (int row = 0; row < header.shape.rows; ++row)
-                visit_due(schedule, packet.slot, row, header.shape.cols,
-                          [&](int col, int) { packet.dn.push_back(scale.dn(y.at(m, row, col))); });
+                for_each_readout(schedule, packet.slot, row, header.shape.cols, [&](int col, int) {
+                    packet.dn.push_back(scale.dn(y.at(m, row, col)));
+                });
             writer.write(packet);
             ++packet.slot;
         }

@@ -79,13 +79,14 @@ void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> op
 
 void Sequencer::append_due(std::int64_t slot, int row, std::vector<std::uint32_t>& pixels) const {
     const auto first = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(cols_);
-    visit_due(*schedule_, slot, row, cols_,
-              [&](int col, int) { pixels.push_back(first + static_cast<std::uint32_t>(col)); });
+    for_each_readout(*schedule_, slot, row, cols_, [&](int col, int) {
+        pixels.push_back(first + static_cast<std::uint32_t>(col));
+    });
 }
 
 void Sequencer::append_stores(std::int64_t slot, int row, std::vector<std::uint8_t>& stores) const {
     const int tile_row = row % schedule_->tile_rows();
-    visit_due(*schedule_, slot, row, cols_, [&](int col, int) {
+    for_each_readout(*schedule_, slot, row, cols_, [&](int col, int) {
         const TilePixel pixel{tile_row, col % schedule_->tile_cols()};
         stores.push_back(static_cast<std::uint8_t>(open_store(*schedule_, slot, pixel) - 1));
     });

@@ -60,7 +60,7 @@ ordered_json empty_report(const std::string& title, const std::string& command) 
 
 ordered_json parsed_camera(const std::string& text) {
     ordered_json camera = ordered_json::parse(text, nullptr, false);
-    if (camera.is_discarded()) throw InputError("the figures of the camera", "are no JSON");
+    if (camera.is_discarded()) throw InputError("camera figures", "invalid JSON");
     return camera;
 }
 

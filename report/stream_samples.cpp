@@ -10,8 +10,8 @@
 #include <span>
 #include <string>
 
-#include "core/begun_exposure.h"
 #include "core/error.h"
+#include "core/exposure_starting_at.h"
 #include "decoder/pixel_response.h"
 #include "report/plane_code.h"
 #include "report/schedule_lanes.h"
@@ -67,7 +67,8 @@ StreamSamples::StreamSamples(const StreamHeader& header, const PixelArea& area)
 std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, int span_slots) {
     const ExposureSchedule& schedule = header_.schedule;
     const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
-    const std::size_t i = begun_exposure(schedule, tile_row, tile_col, last_slot - span_slots + 1);
+    const std::size_t i =
+        exposure_starting_at(schedule, tile_row, tile_col, last_slot - span_slots + 1);
     const std::uint64_t open_slots = schedule.exposures(tile_row, tile_col)[i].open_slots;
     const auto next = static_cast<std::uint16_t>(open_slots_.size());
     const auto [kind, is_new] = kind_of_.try_emplace(open_slots, next);
@@ -81,15 +82,16 @@ std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, i
 
 void StreamSamples::add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn) {
     const bool shown = row >= area_.first_row && row < area_.first_row + area_.rows;
-    visit_due(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int span_slots) {
-        if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
-            const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
-            kinds_[static_cast<std::size_t>(pixel)] =
-                static_cast<std::uint16_t>(1 + kind_at(packet.slot, row, col, span_slots));
-            dn_.insert(dn_.end(), dn, dn + header_.shape.planes);
-        }
-        dn += header_.shape.planes;
-    });
+    for_each_readout(
+        header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int span_slots) {
+            if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
+                const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
+                kinds_[static_cast<std::size_t>(pixel)] =
+                    static_cast<std::uint16_t>(1 + kind_at(packet.slot, row, col, span_slots));
+                dn_.insert(dn_.end(), dn, dn + header_.shape.planes);
+            }
+            dn += header_.shape.planes;
+        });
 }
 
 void StreamSamples::add(const SamplePacket& packet) {

@@ -37,7 +37,7 @@ struct Chip {
         return params.dark_e_per_slot();
     }
 
-    [[nodiscard]] SiteTraits site(const PhiloxCounter& words) const {
+    [[nodiscard]] SiteParams site(const PhiloxCounter& words) const {
         const double u = (static_cast<double>(words[3]) + 0.5) * 0x1p-32;
         if (u < terms.dead_pixel_fraction) return {};
         const double s = terms.read_noise_spread;
@@ -82,7 +82,7 @@ FixedPattern::FixedPattern(const SensorParams& params, FrameShape shape)
         parallel_for(0, shape.rows, [&](int row) {
             for (int col = 0; col < shape.cols; ++col) {
                 const std::size_t pixel = row_major(row, col, shape.cols);
-                SiteTraits site = chip.site(philox4x32(
+                SiteParams site = chip.site(philox4x32(
                     random_address(static_cast<std::uint32_t>(pixel), chip.terms.device_id,
                                    RandomPurpose::kFixedPattern, plane),
                     kPatternKey));

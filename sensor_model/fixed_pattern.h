@@ -9,7 +9,7 @@
 namespace stipple {
 
 /// Fixed-pattern parameters of one site.
-struct SiteTraits {
+struct SiteParams {
     float responsivity_e = 0;   ///< electrons that flux 1.0 gives per slot
     float dark_e_per_slot = 0;  ///< mean dark electrons of an open slot
     float offset_e = 0;         ///< added in every readout
@@ -37,13 +37,13 @@ class FixedPattern {
     FixedPattern(const SensorParams& params, FrameShape shape);
 
     /// Sites of one plane by row * cols + col. Precondition: plane < planes of the shape.
-    [[nodiscard]] const SiteTraits* plane(std::uint32_t plane) const noexcept {
+    [[nodiscard]] const SiteParams* plane(std::uint32_t plane) const noexcept {
         return &sites_[plane * pixels_];
     }
 
   private:
     std::size_t pixels_;
-    std::vector<SiteTraits> sites_;  ///< order (plane, row, col)
+    std::vector<SiteParams> sites_;  ///< order (plane, row, col)
 };
 
 }  // namespace stipple

@@ -22,7 +22,7 @@ const SensorParams& checked(const SensorParams& params) {
 }
 
 /// Mean electrons; light without end is held finite, so that no responsivity makes it NaN.
-float mean_of(const SiteTraits& site, float light, float dark_slots) {
+float mean_of(const SiteParams& site, float light, float dark_slots) {
     return site.responsivity_e * std::min(light, std::numeric_limits<float>::max()) +
            site.dark_e_per_slot * dark_slots;
 }
@@ -56,7 +56,7 @@ PhysicalPixels::PhysicalPixels(const SensorParams& params, FrameShape shape, std
       shot_noise_(params.shot_noise),
       seed_(seed) {}
 
-Charge PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
+Charge PhysicalPixels::charge(float count, const SiteParams& site, float noise,
                               float shared_noise_e) const noexcept {
     const float held = std::min(count, full_well_e_);
     const float sigma = held > dual_gain_limit_e_ ? low_gain_noise_e_ : site.read_noise_e;
@@ -64,7 +64,7 @@ Charge PhysicalPixels::charge(float count, const SiteTraits& site, float noise,
     return {site.gain * (read + (site.offset_e + shared_noise_e)), count > full_well_e_};
 }
 
-Charge PhysicalPixels::expose_one(const SiteTraits& site, float light, float dark_slots,
+Charge PhysicalPixels::expose_one(const SiteParams& site, float light, float dark_slots,
                                   const SampleDraws& draws) const noexcept {
     const float mean = mean_of(site, light, dark_slots) + draws.storage_e;
     const float count = shot_noise_ ? static_cast<float>(poisson_one(mean, draws.shot)) : mean;
@@ -143,7 +143,7 @@ void PhysicalPixels::expose(const ExposedPixels& exposed, std::uint32_t slot, st
     assert(exposed.open_slots.size() == exposed.pixel.size());
     assert(charges.electrons.size() == exposed.pixel.size());
     assert(charges.clipped.empty() || charges.clipped.size() == exposed.pixel.size());
-    const SiteTraits* sites = pattern_.plane(plane);
+    const SiteParams* sites = pattern_.plane(plane);
     const SampleAddress address{.seed = seed_, .slot = slot, .plane = plane};
     std::array<std::uint32_t, kChunk> shot, read, count;
     std::array<float, kChunk> mean, noise, shared;

@@ -52,7 +52,7 @@ class PhysicalPixels {
 
     /// One sample with the given draws: the reference of `expose`. `dark_slots` is the number of
     /// open slots times `dark_factor`.
-    [[nodiscard]] Charge expose_one(const SiteTraits& site, float light, float dark_slots,
+    [[nodiscard]] Charge expose_one(const SiteParams& site, float light, float dark_slots,
                                     const SampleDraws& draws) const noexcept;
 
     /// Row noise of a sample in electrons.
@@ -73,7 +73,7 @@ class PhysicalPixels {
     [[nodiscard]] float dark_factor(std::uint32_t slot) const noexcept;
 
     /// Light that fills the well of a pixel; infinite without responsivity.
-    [[nodiscard]] float full_well_light(const SiteTraits& site) const noexcept {
+    [[nodiscard]] float full_well_light(const SiteParams& site) const noexcept {
         return full_well_e_ / site.responsivity_e;
     }
 
@@ -82,7 +82,7 @@ class PhysicalPixels {
   private:
     /// `storage_e` before the drift of the temperature.
     [[nodiscard]] float waiting_e(std::uint32_t pixel, std::uint32_t plane) const noexcept;
-    [[nodiscard]] Charge charge(float count, const SiteTraits& site, float noise,
+    [[nodiscard]] Charge charge(float count, const SiteParams& site, float noise,
                                 float shared_noise_e) const noexcept;
     void fill_row_noise(std::span<const std::uint32_t> pixel, std::uint32_t slot,
                         std::uint32_t plane, std::span<float> noise) const noexcept;

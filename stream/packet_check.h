@@ -22,7 +22,7 @@ struct DueRule {
 struct PacketFault {
     std::string text;
     /// Its number of samples is not that of the due pixels: the chip may have run another schedule.
-    bool is_undue = false;
+    bool is_unexpected = false;
 };
 
 /// The fault of a packet of kind 1 with correct CRCs; nothing if it is good. The packet must not

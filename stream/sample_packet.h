@@ -5,8 +5,8 @@
 
 namespace stipple {
 
-/// The samples of one slot, or of a band of its rows: for each pixel that `visit_due` visits, row
-/// by row, one DN per plane.
+/// The samples of one slot, or of a band of its rows: for each pixel that `for_each_readout`
+/// visits, row by row, one DN per plane.
 struct SamplePacket {
     static constexpr std::uint8_t kOverrun = 1;  ///< the readout took longer than its slot
     static constexpr std::uint8_t kDropped = 2;  ///< the chip discarded them: `dn` is empty

@@ -4,15 +4,15 @@
 
 #include <cstddef>
 
+#include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
-#include "stream/file_window.h"
 #include "stream/header_codec.h"
 #include "stream/trailing_index.h"
 
 namespace stipple {
 
 std::optional<std::string> stream_identity(const std::filesystem::path& file) {
-    FileWindow window(file);
+    BufferedReader window(file);
     const std::size_t bytes = header_bytes(window.peek(kHeaderStartBytes), file.string());
     const auto header = window.peek(bytes);
     if (header.size() < bytes) return std::nullopt;

@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "stream/bit_packing.h"
+#include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
-#include "stream/file_window.h"
 #include "stream/header_codec.h"
 #include "stream/packet_check.h"
 #include "stream/packet_codec.h"
@@ -29,7 +29,7 @@ constexpr std::string_view kOtherPackets =
 constexpr std::uint64_t kMaxRescanBytes = std::uint64_t{1} << 32U;
 
 /// The next `bytes` bytes, or fewer if they do not come.
-Bytes peek_or_wait(FileWindow& window, std::size_t bytes, const WaitForMore& wait) {
+Bytes peek_or_wait(BufferedReader& window, std::size_t bytes, const WaitForMore& wait) {
     Bytes there = window.peek(bytes);
     while (there.size() < bytes && wait && wait(window.bytes_read())) there = window.peek(bytes);
     return there;
@@ -43,11 +43,11 @@ struct Opened {
 };
 
 /// Of a file that is not followed.
-std::uint64_t bytes_of(const FileWindow& window, const WaitForMore& wait) {
+std::uint64_t bytes_of(const BufferedReader& window, const WaitForMore& wait) {
     return wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput);
 }
 
-Opened read_header(FileWindow& window, const std::string& where, ReadPolicy policy,
+Opened read_header(BufferedReader& window, const std::string& where, ReadPolicy policy,
                    const WaitForMore& wait) {
     const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), where);
     const Bytes header = peek_or_wait(window, bytes, wait);
@@ -71,7 +71,8 @@ struct StreamReader::Impl {
           strict(read_policy == ReadPolicy::kStrict),
           any_schedule(read_policy == ReadPolicy::kAnySchedule),
           wait(std::move(wait_for_more)),
-          window(file, wait ? FileWindow::EmptyPipe::kReturn : FileWindow::EmptyPipe::kWait),
+          window(file,
+                 wait ? BufferedReader::EmptyPipe::kReturn : BufferedReader::EmptyPipe::kWait),
           input_bytes(bytes_of(window, wait)),
           stream(read_header(window, where, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
@@ -109,7 +110,7 @@ struct StreamReader::Impl {
     bool strict;
     bool any_schedule;
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
-    FileWindow window;
+    BufferedReader window;
     std::uint64_t input_bytes;
     Opened stream;
     std::optional<std::int64_t> slots;
@@ -226,7 +227,7 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
     const auto fault = fault_of(found, payload);
     if (fault) {
         note(size, fault->text);
-        if (fault->is_undue) ++report.undue_packets;
+        if (fault->is_unexpected) ++report.unexpected_packets;
     } else if (found.kind == PacketKind::kIndex) {
         take_index(found);
     } else {
@@ -319,7 +320,7 @@ void StreamReader::Impl::count_bytes_after_end() {
 bool is_stream(const std::filesystem::path& path) {
     std::error_code error;  // the reader of the file says what it is
     if (!std::filesystem::is_regular_file(path, error)) return false;
-    FileWindow file(path);
+    BufferedReader file(path);
     return begins_as_stream(file.peek(kHeaderStartBytes));
 }
 

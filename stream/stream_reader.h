@@ -50,7 +50,7 @@ struct StreamReport {
     std::uint64_t tail_bytes = 0;  ///< of an incomplete packet at the end of the file
     /// Left out, as their number of samples is not that of the due pixels: the chip may have run
     /// another schedule.
-    std::uint64_t undue_packets = 0;
+    std::uint64_t unexpected_packets = 0;
     std::vector<StreamDamage> damage;
     std::uint64_t unlisted_damage = 0;  ///< further places, when `damage` is full
 };

@@ -12,7 +12,7 @@ namespace stipple {
 
 namespace {
 
-bool leads_to_slot(const IndexEntry& entry, const FileWindow& file, const Framing& framing) {
+bool leads_to_slot(const IndexEntry& entry, const BufferedReader& file, const Framing& framing) {
     const auto start = file.read_at(entry.offset, kPacketHeaderBytes);
     if (!start || start_of(*start, framing) != Start::kPacket) return false;
     const PacketHeader header = decode_packet_header(*start);
@@ -22,7 +22,8 @@ bool leads_to_slot(const IndexEntry& entry, const FileWindow& file, const Framin
 
 }  // namespace
 
-std::optional<TrailingIndex> read_trailing_index(const FileWindow& file, const Framing& framing) {
+std::optional<TrailingIndex> read_trailing_index(const BufferedReader& file,
+                                                 const Framing& framing) {
     const std::size_t marker_bytes = end_marker_bytes(framing);
     const std::uint64_t end = file.file_bytes().value_or(0);
     if (end < marker_bytes) return std::nullopt;
@@ -42,12 +43,12 @@ std::optional<TrailingIndex> read_trailing_index(const FileWindow& file, const F
     return TrailingIndex{static_cast<std::int64_t>(packet.slot), checksum, load_index(*payload)};
 }
 
-std::optional<std::int64_t> slots_by_index(const FileWindow& file, const Framing& framing) {
+std::optional<std::int64_t> slots_by_index(const BufferedReader& file, const Framing& framing) {
     const auto index = read_trailing_index(file, framing);
     return index ? std::optional(index->slots) : std::nullopt;
 }
 
-std::optional<IndexEntry> entry_before(const FileWindow& file, const Framing& framing,
+std::optional<IndexEntry> entry_before(const BufferedReader& file, const Framing& framing,
                                        std::int64_t slot) {
     const auto index = read_trailing_index(file, framing);
     if (!index || slot < 0) return std::nullopt;
@@ -59,7 +60,7 @@ std::optional<IndexEntry> entry_before(const FileWindow& file, const Framing& fr
 }
 
 std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
-                                       const FileWindow& file, const Framing& framing) {
+                                       const BufferedReader& file, const Framing& framing) {
     if (!file.file_bytes()) return std::nullopt;
     for (const IndexEntry& entry : entries)
         if (!leads_to_slot(entry, file, framing))

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stream/file_window.h"
+#include "stream/buffered_reader.h"
 #include "stream/framing.h"
 #include "stream/slot_index.h"
 
@@ -21,21 +21,21 @@ struct TrailingIndex {
 /// The index that the end marker of a file points to. Nothing if there is no index, if it is
 /// damaged, or if it is not where the marker says (then bytes of the file are missing, and no
 /// offset is correct).
-[[nodiscard]] std::optional<TrailingIndex> read_trailing_index(const FileWindow& file,
+[[nodiscard]] std::optional<TrailingIndex> read_trailing_index(const BufferedReader& file,
                                                                const Framing& framing);
 
 /// Its number of slots.
-[[nodiscard]] std::optional<std::int64_t> slots_by_index(const FileWindow& file,
+[[nodiscard]] std::optional<std::int64_t> slots_by_index(const BufferedReader& file,
                                                          const Framing& framing);
 
 /// Its last entry that is not after `slot`, if the first packet of that slot begins there.
-[[nodiscard]] std::optional<IndexEntry> entry_before(const FileWindow& file, const Framing& framing,
-                                                     std::int64_t slot);
+[[nodiscard]] std::optional<IndexEntry> entry_before(const BufferedReader& file,
+                                                     const Framing& framing, std::int64_t slot);
 
 /// Message on the first entry of an index that does not point to the first packet of its slot.
 /// Nothing if all do, or if `file` is a pipe.
 [[nodiscard]] std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
-                                                     const FileWindow& file,
+                                                     const BufferedReader& file,
                                                      const Framing& framing);
 
 }  // namespace stipple

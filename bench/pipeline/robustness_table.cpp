@@ -91,8 +91,9 @@ Fault change(const std::function<void(int, int, std::uint16_t&)>& change_dn) {
         for (SamplePacket& packet : recording.packets) {
             auto dn = packet.dn.begin();
             for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-                visit_due(recording.header.schedule, packet.slot, row, recording.header.shape.cols,
-                          [&](int col, int) { change_dn(row, col, *dn++); });
+                for_each_readout(recording.header.schedule, packet.slot, row,
+                                 recording.header.shape.cols,
+                                 [&](int col, int) { change_dn(row, col, *dn++); });
         }
     };
 }

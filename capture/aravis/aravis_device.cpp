@@ -27,7 +27,7 @@ ArvDevice* open_gige(const std::string& address, const std::string& ip) {
     const auto number = parse_ipv4(ip);
     if (!number)
         throw InputError(address,
-                         "is no IPv4 address: write gige:192.168.0.5 (\"stipple capture "
+                         "is not an IPv4 address: write gige:192.168.0.5 (\"stipple capture "
                          "list\" shows the cameras that answer)");
     check_genicam_download(address, *number);
     GlibError error;

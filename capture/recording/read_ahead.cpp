@@ -64,9 +64,9 @@ std::optional<double> ReadAhead::exposure_us() const {
     return footage == nullptr ? std::nullopt : footage->exposure_us();
 }
 
-SourceTraits ReadAhead::traits() const {
+SourceInfo ReadAhead::traits() const {
     const auto* const footage = std::get_if<FootageReader>(&reader_);
-    return footage == nullptr ? SourceTraits{} : footage->traits();
+    return footage == nullptr ? SourceInfo{} : footage->traits();
 }
 
 ColourFilter ReadAhead::filter() const {

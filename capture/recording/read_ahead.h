@@ -37,7 +37,7 @@ class ReadAhead {
     /// As FootageReader::exposure_us; unknown for a recording.
     [[nodiscard]] std::optional<double> exposure_us() const;
     /// As FootageReader::traits; empty of a recording.
-    [[nodiscard]] SourceTraits traits() const;
+    [[nodiscard]] SourceInfo traits() const;
     /// Colour filter array of the frames; kNone: they are no mosaic.
     [[nodiscard]] ColourFilter filter() const;
     /// As FootageReader::gamma_coded; a recording is not.

@@ -8,8 +8,8 @@
 
 #include "capture/payload_hash.h"
 #include "core/error.h"
+#include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
-#include "stream/file_window.h"
 #include "stream/little_endian.h"
 
 namespace stipple {
@@ -67,7 +67,7 @@ struct RecordingReader::Impl {
     std::string take(const BlockHeader& header, Bytes block, CapturedFrame* frame);
 
     std::string where;
-    FileWindow file;
+    BufferedReader file;
     SessionRecord session;
     std::optional<RecordingEnd> end;
     RecordingReport report;
@@ -194,7 +194,7 @@ RecordingReader::Impl::Found RecordingReader::Impl::read_block(BlockKind wanted,
 bool is_recording(const std::filesystem::path& path) {
     std::error_code error;  // the reader of the file says what it is
     if (!std::filesystem::is_regular_file(path, error)) return false;
-    FileWindow file(path);
+    BufferedReader file(path);
     const Bytes start = file.peek(kRecordingVersionOffset);
     return std::equal(start.begin(), start.end(), kRecordingMagic.begin(),
                       kRecordingMagic.begin() + kRecordingVersionOffset);

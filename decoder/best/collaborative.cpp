@@ -85,7 +85,7 @@ class CollaborativeSolver {
 
     [[nodiscard]] FrameShape shape() const { return x_.shape(); }
 
-    static RootScale scale_for(const SampleNoise& noise, const CollaborativeOptions& options) {
+    static AnscombeParams scale_for(const SampleNoise& noise, const CollaborativeOptions& options) {
         const float offset =
             std::clamp(noise.variance(0) / noise.per_light() / options.offset_slots,
                        options.light_offset, kMaxOffset);
@@ -184,7 +184,7 @@ class CollaborativeSolver {
     Measurements& measurements_;
     const SampleNoise& noise_;
     const CollaborativeOptions& options_;
-    RootScale scale_;
+    AnscombeParams scale_;
     float last_sigma_;
     float first_sigma_;
     FluxVideo& x_;

@@ -17,7 +17,7 @@ PlaneTriple planes_of(std::span<float> frame) {
 
 }  // namespace
 
-void stabilise_variance(std::span<const float> light, int planes, RootScale scale,
+void stabilise_variance(std::span<const float> light, int planes, AnscombeParams scale,
                         std::span<float> stabilised) {
     assert(stabilised.size() == light.size());
     for (std::size_t i = 0; i < light.size(); ++i)
@@ -25,7 +25,7 @@ void stabilise_variance(std::span<const float> light, int planes, RootScale scal
     if (planes == 3) to_opponents(light.size() / 3, planes_of(stabilised));
 }
 
-void restore_light(std::span<const float> stabilised, int planes, RootScale scale,
+void restore_light(std::span<const float> stabilised, int planes, AnscombeParams scale,
                    std::span<float> light) {
     assert(stabilised.size() == light.size());
     std::ranges::copy(stabilised, light.begin());

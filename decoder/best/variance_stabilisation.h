@@ -9,16 +9,16 @@ namespace stipple {
 // opponents (opponent_planes.h). Frames have the order (plane, row, col).
 
 /// Light below `min_light` is replaced by `min_light`. Precondition: 0 <= -min_light <= offset.
-struct RootScale {
+struct AnscombeParams {
     float offset;
     float min_light = 0;
 };
 
-void stabilise_variance(std::span<const float> light, int planes, RootScale scale,
+void stabilise_variance(std::span<const float> light, int planes, AnscombeParams scale,
                         std::span<float> stabilised);
 
 /// The inverse; the result is at least `min_light`.
-void restore_light(std::span<const float> stabilised, int planes, RootScale scale,
+void restore_light(std::span<const float> stabilised, int planes, AnscombeParams scale,
                    std::span<float> light);
 
 }  // namespace stipple

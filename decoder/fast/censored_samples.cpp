@@ -53,7 +53,7 @@ float inverse_mills_ratio(float z) {
 
 CensoredSamples::CensoredSamples(Measurements& measurements, const SampleNoise& noise)
     : measurements_(measurements),
-      half_dn_((measurements.one_dn > 0 ? measurements.one_dn : noise.one_dn()) / 2) {
+      half_dn_((measurements.lsb_light > 0 ? measurements.lsb_light : noise.lsb_light()) / 2) {
     for (std::size_t i = 0; i < measurements.voxels(); ++i)
         if ((measurements.state[i] & Measurements::kZero) != 0)
             samples_.push_back({i, measurements.sum[i], measurements.sum[i]});

@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "decoder/fast/box_blur.h"
 #include "decoder/fast/censored_samples.h"
-#include "decoder/fast/presumed_samples.h"
+#include "decoder/fast/pseudo_samples.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
@@ -156,7 +156,7 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
     const MotionTvOptions options = options_for(measurements, all_options);
     WorkCount work(options, progress);
     FluxVideo x = nearest_samples(measurements);
-    const PresumedSamples presumed(measurements, x, noise);
+    const PseudoSamples presumed(measurements, x, noise);
     std::list<CensoredSamples> censored;
     for_each_sensor(measurements,
                     [&](Measurements& sensor) { censored.emplace_back(sensor, noise); });

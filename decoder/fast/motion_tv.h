@@ -13,7 +13,7 @@ class SampleNoise;
 struct Measurements;
 
 /// Decodes one block. Presumed samples are added for voxels that no sample determines
-/// (presumed_samples.h). Static total variation follows, then rounds of variances, motion, and
+/// (pseudo_samples.h). Static total variation follows, then rounds of variances, motion, and
 /// total variation along motion, each from the estimate of the previous round. The result may be
 /// slightly negative. Returns nothing if `progress` has stopped it.
 [[nodiscard]] std::optional<FluxVideo> decode_motion_tv(

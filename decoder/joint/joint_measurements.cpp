@@ -100,7 +100,7 @@ Measurements collect_one(const SensorSamples& sensor, VideoWindow window) {
 
 /// Gives each exposure the noise of its sensor, as it is among others now.
 void add_own_noise(Measurements& m, const SampleNoise& noise) {
-    m.one_dn = noise.one_dn();
+    m.lsb_light = noise.lsb_light();
     if (!m.dark_variance.empty()) return;
     m.dark_variance.resize(m.voxels());
     m.variance_per_light.resize(m.voxels());
@@ -139,10 +139,10 @@ Calibration joint_calibration(std::span<const SensorSamples> sensors) {
         joint.noise_free = joint.noise_free && own.noise_free;
     }
     // A DN stays that of the first sensor; its rounding is a part of the noise.
-    const auto one_dn =
-        static_cast<double>(SampleNoise(sensors.front().header.calibration).one_dn());
-    const double read_variance = std::max(1 / inverse_variance - one_dn * one_dn / 12, 0.0);
-    joint.gain_e_per_dn = joint.electrons_per_unit * one_dn;
+    const auto lsb_light =
+        static_cast<double>(SampleNoise(sensors.front().header.calibration).lsb_light());
+    const double read_variance = std::max(1 / inverse_variance - lsb_light * lsb_light / 12, 0.0);
+    joint.gain_e_per_dn = joint.electrons_per_unit * lsb_light;
     joint.read_noise_e = joint.electrons_per_unit * std::sqrt(read_variance);
     return joint;
 }

@@ -28,7 +28,7 @@ class ExposureTable {
 
     [[nodiscard]] int slots() const { return slots_; }
     [[nodiscard]] FrameShape shape() const { return shape_; }
-    [[nodiscard]] float most_light_slots() const { return most_light_slots_; }
+    [[nodiscard]] float max_light_slots() const { return most_light_slots_; }
 
     /// Weights of a site from a slot on; null without weights.
     [[nodiscard]] const float* weights(std::size_t site, int slot) const {
@@ -57,14 +57,14 @@ class ExposureTable {
 };
 
 /// `open_slots` relative to a first slot that is `slots` later: earlier bits are dropped.
-[[nodiscard]] constexpr std::uint64_t seen_from(std::uint64_t open_slots, int slots) {
+[[nodiscard]] constexpr std::uint64_t shift_mask(std::uint64_t open_slots, int slots) {
     if (slots <= -64 || slots >= 64) return 0;
     return slots >= 0 ? open_slots >> static_cast<unsigned>(slots)
                       : open_slots << static_cast<unsigned>(-slots);
 }
 
 /// The first `slots` bits, 0..64.
-[[nodiscard]] constexpr std::uint64_t first_bits(int slots) {
+[[nodiscard]] constexpr std::uint64_t lowest_bits(int slots) {
     return slots >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << static_cast<unsigned>(slots)) - 1;
 }
 

@@ -11,7 +11,7 @@
 
 #include "core/light.h"
 #include "core/parallel.h"
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 #include "decoder/motion/motion.h"
 
 namespace stipple {
@@ -122,7 +122,7 @@ class Follower {
   private:
     void add(const PatchPosition& reference, const PatchPosition& at,
              std::vector<PatchMatch>& matches) const {
-        const float bound = kFaintestMatch * 2 * options_.sigma * options_.sigma;
+        const float bound = kMaxMatchDistance * 2 * options_.sigma * options_.sigma;
         const float distance = patch_difference(video_, size_, reference, at, bound);
         if (distance > bound) return;
         matches.push_back({static_cast<std::int16_t>(at.slot), static_cast<std::int16_t>(at.row),

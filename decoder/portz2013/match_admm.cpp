@@ -105,7 +105,7 @@ void minimise_by_admm(MatchOperator& problem, const MatchAdmmOptions& options,
     Eigen::Map<Eigen::VectorXf> light(x.data(), m.cols());
     problem.start_duals(x, v);
     for (int i = 0; i < options.iterations; ++i) {
-        problem.right_side(v, threshold, {d.data(), problem.voxels()});
+        problem.right_hand_side(v, threshold, {d.data(), problem.voxels()});
         const Eigen::VectorXd solution =
             inverse.solveWithGuess(d.cast<double>(), light.cast<double>());
         if (!m.keep_going()) return;

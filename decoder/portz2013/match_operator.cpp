@@ -25,7 +25,7 @@ inline void for_each_bit(std::uint64_t bits, const Body& body) {
 
 /// Whether a sample is met first in slot `offset` of a patch that begins in `slot`.
 bool first_seen(const TimedSample& sample, int slot, int offset) {
-    return (seen_from(sample.open_slots, slot - sample.first_slot) & first_bits(offset)) == 0;
+    return (shift_mask(sample.open_slots, slot - sample.first_slot) & lowest_bits(offset)) == 0;
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ std::size_t MatchOperator::visit_match(const Match& match, std::size_t row,
                 const int first = sample->first_slot + later;
                 if (first < 0 || first + sample->span_slots > table_.slots()) continue;
                 // tau_max / tau of the paper
-                const float exposure_weight = table_.most_light_slots() / sample->light_slots;
+                const float exposure_weight = table_.max_light_slots() / sample->light_slots;
                 sampled(Sampled{row, voxel(site_i, first), sample->open_slots,
                                 table_.weights(site_j, sample->first_slot),
                                 j.weight * exposure_weight, sample->light, sample->saturated});
@@ -284,7 +284,7 @@ double MatchOperator::update_duals(std::span<const float> x, float threshold, st
     return sum;
 }
 
-void MatchOperator::right_side(std::span<const float> v, float threshold, std::span<float> d) {
+void MatchOperator::right_hand_side(std::span<const float> v, float threshold, std::span<float> d) {
     accumulate(
         [&](const Part& part, std::span<float> sums) {
             visit(

@@ -40,7 +40,7 @@ class MatchOperator {
     /// v = K x - [b; 0] + u. Returns the objective (Eq. 4) of x.
     double update_duals(std::span<const float> x, float threshold, std::span<float> v);
     /// d = K^T([b; 0] + z - u)
-    void right_side(std::span<const float> v, float threshold, std::span<float> d);
+    void right_hand_side(std::span<const float> v, float threshold, std::span<float> d);
 
   private:
     struct Sampled;

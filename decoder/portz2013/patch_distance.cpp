@@ -25,7 +25,8 @@ struct PixelInPatch {
     }
     /// Slots of the patch that it covers.
     [[nodiscard]] int cover(const TimedSample& sample, int slots) const {
-        return std::popcount(seen_from(sample.open_slots, -offset_of(sample)) & first_bits(slots));
+        return std::popcount(shift_mask(sample.open_slots, -offset_of(sample)) &
+                             lowest_bits(slots));
     }
 };
 
@@ -58,7 +59,7 @@ Blurred blur_to(const Target& target, int target_offset, const PixelInPatch& sou
         const TimedSample* sample = source.at(target_offset + std::countr_zero(rest));
         if (sample == nullptr) return z;
         const int later = target_offset - source.offset_of(*sample);
-        const std::uint64_t shared = seen_from(sample->open_slots, later) & rest;
+        const std::uint64_t shared = shift_mask(sample->open_slots, later) & rest;
         const float weight = target.light_slots(shared) / sample->light_slots;
         z.light += weight * sample->light;
         z.variance += weight * weight;

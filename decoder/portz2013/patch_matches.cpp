@@ -76,7 +76,7 @@ class Searcher {
     }
 
     [[nodiscard]] std::vector<PatchMatch> matches_of(const PatchPosition& reference) const {
-        const float farthest = kFaintestMatch * 2 * search_.sigma * search_.sigma;
+        const float farthest = kMaxMatchDistance * 2 * search_.sigma * search_.sigma;
         const int count = max_matches_(search_.size, reference);
         std::vector<PatchMatch> matches;
         if (search_.with_itself) matches.push_back(match_at(reference, search_.weight));

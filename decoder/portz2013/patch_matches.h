@@ -39,7 +39,7 @@ struct MatchList {
 };
 
 /// Largest distance of a match in units of 2 sigma^2: beyond it the weight is below 0.0004.
-inline constexpr float kFaintestMatch = 8;
+inline constexpr float kMaxMatchDistance = 8;
 
 /// Distance of the patch at `other` from the patch at `reference`, mean square error in flux^2. If
 /// it exceeds `bound`, any value above `bound` may be returned.

@@ -9,7 +9,7 @@
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "core/parallel.h"
-#include "decoder/rivals/bell.h"
+#include "decoder/rivals/fast_gaussian.h"
 
 namespace stipple {
 namespace {
@@ -87,7 +87,7 @@ class Accumulation {
         const float scale = 1 / (2 * options_.range_sigma * options_.range_sigma);
         for (std::size_t i = 0; i < square.size(); ++i) {
             const float excess = std::max(square[i] / expected[i] - 1, 0.0F);
-            square[i] = bell(scale * excess * excess);
+            square[i] = fast_gaussian(scale * excess * excess);
         }
         return square;
     }
@@ -158,8 +158,8 @@ class Accumulation {
         const auto down = static_cast<float>(row - at.row);
         const auto right = static_cast<float>(col - at.col);
         const auto half = [](float sigma) { return 1 / (2 * sigma * sigma); };
-        return bell(half(options_.spatial_sigma_px) * (down * down + right * right)) *
-               bell(half(options_.spatial_range_sigma) * (square / expected));
+        return fast_gaussian(half(options_.spatial_sigma_px) * (down * down + right * right)) *
+               fast_gaussian(half(options_.spatial_range_sigma) * (square / expected));
     }
 
     const DeliveredFrames& frames_;

@@ -23,8 +23,8 @@ void BlockPaths::follow(const BlockPlace& start, int reach, std::uint8_t min_con
     walk(start, 1, std::min(reach, frames_ - 1 - start.frame), min_confidence, path);
 }
 
-void BlockPaths::follow_anyway(const BlockPlace& start, int first, int last,
-                               std::vector<BlockPlace>& path) const {
+void BlockPaths::follow_unchecked(const BlockPlace& start, int first, int last,
+                                  std::vector<BlockPlace>& path) const {
     path.clear();
     walk(start, -1, start.frame - first, 0, path);
     std::ranges::reverse(path);

@@ -29,8 +29,8 @@ class BlockPaths {
 
     /// As `follow`, in exactly the frames from `first` to `last`, whatever the confidence.
     /// Precondition: first <= start.frame <= last.
-    void follow_anyway(const BlockPlace& start, int first, int last,
-                       std::vector<BlockPlace>& path) const;
+    void follow_unchecked(const BlockPlace& start, int first, int last,
+                          std::vector<BlockPlace>& path) const;
 
   private:
     /// Appends the places in the frames after (step 1) or before (step -1) the start.

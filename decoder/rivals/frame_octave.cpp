@@ -11,7 +11,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/motion/frame_interpolation.h"
-#include "decoder/rivals/bell.h"
+#include "decoder/rivals/fast_gaussian.h"
 
 namespace stipple {
 namespace {
@@ -223,7 +223,7 @@ class OctaveSolver {
 
     void add(const Example& example, const Place& target, std::vector<FluxVideo>& sum,
              std::vector<float>& weight) const {
-        const float w = bell(example.distance);
+        const float w = fast_gaussian(example.distance);
         const int side = options_.patch_px;
         for (int row = 0; row < side; ++row)
             for (int col = 0; col < side; ++col) {

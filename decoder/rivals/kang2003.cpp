@@ -15,7 +15,7 @@
 #include "decoder/frame_video.h"
 #include "decoder/measurements.h"
 #include "decoder/motion/frame_interpolation.h"
-#include "decoder/rivals/bell.h"
+#include "decoder/rivals/fast_gaussian.h"
 #include "decoder/rivals/frame_decoding.h"
 
 namespace stipple {
@@ -148,7 +148,7 @@ class MergedFrame {
         box_blur({shape_.rows, shape_.cols, 1}, noise);
         for (std::size_t i = 0; i < likeness.size(); ++i) {
             const float excess = noise[i] > 0 ? std::max(likeness[i] / noise[i] - 1, 0.0F) : 0.0F;
-            likeness[i] = bell(excess * excess / 8);
+            likeness[i] = fast_gaussian(excess * excess / 8);
         }
         return likeness;
     }

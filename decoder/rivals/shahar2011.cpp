@@ -103,7 +103,7 @@ std::optional<FluxVideo> super_resolve_time(const BlockTask& block,
         if (!block.progress((octave + 1.0) / (options.octaves + 1.0))) return {};
     }
     FluxVideo x = at_slots(frames, measurements.slots);
-    add_what_frames_lack(measurements, exposures, delivered.light, x);
+    back_project_residual(measurements, exposures, delivered.light, x);
     return x;
 }
 

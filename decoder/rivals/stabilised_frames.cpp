@@ -12,7 +12,7 @@ StabilisedFrames stabilised(const DeliveredFrames& frames) {
     const FluxVideo& light = frames.light;
     const float offset = std::min(frames.noise.dark_variance / frames.noise.per_light, kMaxOffset);
     StabilisedFrames result{FluxVideo(light.slots(), light.shape()),
-                            RootScale{.offset = offset, .min_light = -offset},
+                            AnscombeParams{.offset = offset, .min_light = -offset},
                             std::sqrt(frames.noise.per_light)};
     parallel_for(0, light.slots(), [&](int frame) {
         stabilise_variance(light.frame(frame), light.shape().planes, result.scale,
@@ -21,7 +21,7 @@ StabilisedFrames stabilised(const DeliveredFrames& frames) {
     return result;
 }
 
-FluxVideo restored(const FluxVideo& values, RootScale scale, const FrameNoise& noise) {
+FluxVideo restored(const FluxVideo& values, AnscombeParams scale, const FrameNoise& noise) {
     FluxVideo light(values.slots(), values.shape());
     parallel_for(0, values.slots(), [&](int frame) {
         restore_light(values.frame(frame), values.shape().planes, scale, light.frame(frame));

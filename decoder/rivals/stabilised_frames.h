@@ -10,7 +10,7 @@ namespace stipple {
 /// deviation `sigma` everywhere; three planes as luma and opponent colours.
 struct StabilisedFrames {
     FluxVideo values;
-    RootScale scale;
+    AnscombeParams scale;
     float sigma = 0;
 };
 
@@ -18,6 +18,7 @@ struct StabilisedFrames {
 
 /// The light of frames without noise: y^2 / 4 - d + per_light / 4. The last term corrects the mean
 /// of square roots, which is below the square root of the mean.
-[[nodiscard]] FluxVideo restored(const FluxVideo& values, RootScale scale, const FrameNoise& noise);
+[[nodiscard]] FluxVideo restored(const FluxVideo& values, AnscombeParams scale,
+                                 const FrameNoise& noise);
 
 }  // namespace stipple

@@ -65,8 +65,8 @@ class VolumeFilter {
         for (int row = std::max(reference.row - radius, 0); row <= last_row; ++row)
             for (int col = std::max(reference.col - radius, 0); col <= last_col; ++col) {
                 if (row == reference.row && col == reference.col) continue;
-                paths_.follow_anyway({reference.frame, row, col}, reference_path_.front().frame,
-                                     reference_path_.back().frame, path);
+                paths_.follow_unchecked({reference.frame, row, col}, reference_path_.front().frame,
+                                        reference_path_.back().frame, path);
                 const float distance = distance_to(path);
                 if (distance <= stage_.max_distance) similar_.push_back({distance, path});
             }

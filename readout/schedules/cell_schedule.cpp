@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "readout/schedules/tile_list.h"
+#include "readout/schedules/schedule_builder.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
@@ -39,7 +39,7 @@ ExposureSchedule cell_schedule(const Cell& cell) {
         throw InputError("cell", fmt::format("the period of {} slots has {} exposures; 2^24 fit a "
                                              "stream",
                                              period, exposures));
-    TileList list(cell.rows, cell.cols, static_cast<int>(period));
+    ScheduleBuilder list(cell.rows, cell.cols, static_cast<int>(period));
     for (std::size_t p = 0; p < pixels; ++p) {
         if (cell.exposure_slots[p] > cell.every_slots[p])
             throw InputError(
@@ -65,7 +65,7 @@ ExposureSchedule rolling_schedule(const RollingShutter& shutter, int array_rows)
                                      exposure_slots, period_slots, rows_per_slot, kMaxPeriodSlots));
     const auto rows = static_cast<int>(
         std::min<std::int64_t>(std::int64_t{period_slots} * rows_per_slot, array_rows));
-    TileList list(rows, 1, period_slots);
+    ScheduleBuilder list(rows, 1, period_slots);
     for (int row = 0; row < rows; ++row) {
         list.add_open(static_cast<std::uint32_t>(row / rows_per_slot), exposure_slots);
         list.end_pixel();

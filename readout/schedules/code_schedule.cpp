@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "readout/program/sequencer_program.h"
-#include "readout/schedules/tile_list.h"
+#include "readout/schedules/schedule_builder.h"
 
 namespace stipple {
 namespace {
@@ -89,7 +89,7 @@ class CodeReader {
 
     TileSize size_;
     const Message& where_;
-    TileList list_;
+    ScheduleBuilder list_;
     std::size_t pixel_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "readout/schedules/draws.h"
-#include "readout/schedules/tile_list.h"
+#include "readout/schedules/schedule_builder.h"
 
 namespace stipple {
 namespace {
@@ -33,7 +33,7 @@ std::uint64_t draw_mask(Draws& draws, int slots, int open) {
     return mask;
 }
 
-void add_mask(TileList& list, int begin, std::uint64_t mask) {
+void add_mask(ScheduleBuilder& list, int begin, std::uint64_t mask) {
     if (mask == 0) return;
     const int closed = std::countr_zero(mask);
     list.add(static_cast<std::uint32_t>(begin + closed), mask >> static_cast<unsigned>(closed));
@@ -58,7 +58,7 @@ ExposureSchedule scattered_schedule(const Scatter& scatter, std::span<const int>
                                      open, scatter.period_slots, kMaxPeriodSlots));
     std::vector<int> items(exposure_slots.begin(), exposure_slots.end());
     items.resize(items.size() + static_cast<std::size_t>(scatter.period_slots - open), kClosed);
-    TileList list(scatter.tile_rows, scatter.tile_cols, scatter.period_slots);
+    ScheduleBuilder list(scatter.tile_rows, scatter.tile_cols, scatter.period_slots);
     Draws draws(seed, DrawPlane::kScattered);
     for (int pixel = 0; pixel < scatter.tile_rows * scatter.tile_cols; ++pixel) {
         shuffle(items, draws);
@@ -85,7 +85,7 @@ ExposureSchedule flutter_schedule(const Flutter& flutter, std::uint64_t seed) {
                                    flutter.codes, flutter.code_slots, flutter.open_slots,
                                    flutter.complement ? " and a complement" : "", kMaxExposureSlots,
                                    max_open, kMaxPeriodSlots));
-    TileList list(flutter.tile_rows, flutter.tile_cols, flutter.codes * flutter.code_slots);
+    ScheduleBuilder list(flutter.tile_rows, flutter.tile_cols, flutter.codes * flutter.code_slots);
     Draws draws(seed, DrawPlane::kFlutter);
     const std::uint64_t all = open_without_gap(flutter.code_slots);
     for (int pixel = 0; pixel < flutter.tile_rows * flutter.tile_cols; ++pixel) {

@@ -27,7 +27,7 @@ constexpr ConfigKey kOpenSlots{"open_slots", kExposure, "slots", "open slots of 
 constexpr ConfigKey kPeriodSlots{"period_slots", kPeriod, "slots", "period of the schedule"};
 
 /// What a schedule is made for.
-struct Made {
+struct BuildContext {
     FrameShape shape;
     std::uint64_t seed;
     ColumnAddressing addressing;
@@ -50,7 +50,7 @@ void read_tile_size(Config& config, KeyRange range, int& rows, int& cols) {
     read({"tile_cols", range, "pixels", "columns of the tile"}, cols);
 }
 
-NamedSchedule read_random(Config& config, const Made& made) {
+NamedSchedule read_random(Config& config, const BuildContext& made) {
     const FrameShape shape = made.shape;
     std::vector<int> lengths = read_exposure_slots(config);
     if (shape.pixels() * lengths.size() > kMaxRandomExposures)
@@ -68,14 +68,14 @@ NamedSchedule read_random(Config& config, const Made& made) {
             .schedule = std::move(schedule)};
 }
 
-NamedSchedule read_tiled(Config& config, const Made& made) {
+NamedSchedule read_tiled(Config& config, const BuildContext& made) {
     int rows = 16, cols = 16;
     read_tile_size(config, {1, kMaxTiledSide}, rows, cols);
     const std::vector<int> lengths = read_exposure_slots(config);
     return {"tiled", {}, tiled_schedule(rows, cols, lengths, made.seed)};
 }
 
-NamedSchedule read_full(Config& config, const Made& /*made*/) {
+NamedSchedule read_full(Config& config, const BuildContext& /*made*/) {
     const KeyReader read(config);
     int open_slots = 4, period_slots = 4;
     read(kOpenSlots, open_slots);
@@ -115,7 +115,7 @@ ExposureSchedule at_key(const Config& config, const char* key, const Make& make)
     }
 }
 
-NamedSchedule read_cell(Config& config, const Made& /*made*/) {
+NamedSchedule read_cell(Config& config, const BuildContext& /*made*/) {
     Cell cell;
     read_tile_size(config, {1, kMaxTiledSide}, cell.rows, cell.cols);
     const auto pixels = static_cast<std::size_t>(cell.rows) * static_cast<std::size_t>(cell.cols);
@@ -135,7 +135,7 @@ NamedSchedule read_cell(Config& config, const Made& /*made*/) {
     return {"cell", {}, at_key(config, "every_slots", [&] { return cell_schedule(cell); })};
 }
 
-NamedSchedule read_rolling(Config& config, const Made& made) {
+NamedSchedule read_rolling(Config& config, const BuildContext& made) {
     const KeyReader read(config);
     RollingShutter shutter{.exposure_slots = 4, .period_slots = 4, .rows_per_slot = 0};
     read({"exposure_slots", kExposure, "slots", "open slots of an exposure"},
@@ -150,7 +150,7 @@ NamedSchedule read_rolling(Config& config, const Made& made) {
             })};
 }
 
-NamedSchedule read_scattered(Config& config, const Made& made) {
+NamedSchedule read_scattered(Config& config, const BuildContext& made) {
     const KeyReader read(config);
     Scatter scatter{.tile_rows = 16, .tile_cols = 16, .period_slots = 16};
     read_tile_size(config, {1, kMaxTiledSide}, scatter.tile_rows, scatter.tile_cols);
@@ -162,7 +162,7 @@ NamedSchedule read_scattered(Config& config, const Made& made) {
             })};
 }
 
-NamedSchedule read_flutter(Config& config, const Made& made) {
+NamedSchedule read_flutter(Config& config, const BuildContext& made) {
     const KeyReader read(config);
     Flutter flutter{.tile_rows = 16, .tile_cols = 16, .code_slots = 8, .open_slots = 4};
     read_tile_size(config, {1, kMaxTiledSide}, flutter.tile_rows, flutter.tile_cols);
@@ -180,7 +180,7 @@ NamedSchedule read_flutter(Config& config, const Made& made) {
             })};
 }
 
-NamedSchedule read_code(Config& config, const Made& /*made*/) {
+NamedSchedule read_code(Config& config, const BuildContext& /*made*/) {
     TileSize size{.rows = 1, .cols = 1, .period_slots = 1};
     read_tile_size(config, {1, kMaxTileSide}, size.rows, size.cols);
     const KeyReader read(config);
@@ -206,7 +206,7 @@ NamedSchedule read_code(Config& config, const Made& /*made*/) {
     return result;
 }
 
-NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
+NamedSchedule read_hardware_tiled(Config& config, const BuildContext& made) {
     static constexpr std::array<std::string_view, 4> kArrangements{"auto", "lattice", "scatter",
                                                                    "random"};
     const KeyReader read(config);
@@ -223,7 +223,7 @@ NamedSchedule read_hardware_tiled(Config& config, const Made& made) {
 
 struct Kind {
     std::string_view name;
-    NamedSchedule (*read)(Config& config, const Made& made);
+    NamedSchedule (*read)(Config& config, const BuildContext& made);
 };
 constexpr Kind kKinds[] = {
     {"random", read_random},

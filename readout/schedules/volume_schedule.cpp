@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/index.h"
-#include "readout/schedules/tile_list.h"
+#include "readout/schedules/schedule_builder.h"
 
 namespace stipple {
 namespace {
@@ -40,7 +40,8 @@ float weight_at(const Masks& masks, int slot, TilePixel pixel) {
 }
 
 /// Adds the exposure of a pixel, and its weights to `weights` of order (slot, row, col).
-void add_mask(const Masks& masks, TilePixel pixel, TileList& list, std::vector<float>& weights) {
+void add_mask(const Masks& masks, TilePixel pixel, ScheduleBuilder& list,
+              std::vector<float>& weights) {
     const NpyVolume& volume = masks.volume;
     int first = -1;
     std::uint64_t mask = 0;
@@ -110,7 +111,7 @@ double white_of(const NpyVolume& masks) {
 }
 
 ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view where, double white) {
-    TileList list(masks.rows, masks.cols, masks.layers);
+    ScheduleBuilder list(masks.rows, masks.cols, masks.layers);
     const Masks marked{masks, white > 0 ? white : white_of(masks), where};
     std::vector<float> weights(masks.values.size());
     for_each_pixel(masks, [&](TilePixel pixel) { add_mask(marked, pixel, list, weights); });
@@ -123,7 +124,7 @@ ExposureSchedule mask_schedule(const NpyVolume& masks, std::string_view where, d
 
 ExposureSchedule lengths_schedule(const NpyVolume& lengths, int period_slots,
                                   std::string_view where) {
-    TileList list(lengths.rows, lengths.cols, checked_period(lengths, period_slots, where));
+    ScheduleBuilder list(lengths.rows, lengths.cols, checked_period(lengths, period_slots, where));
     for_each_pixel(lengths, [&](TilePixel pixel) {
         std::uint32_t slot = 0;
         for (int layer = 0; layer < lengths.layers; ++layer) {

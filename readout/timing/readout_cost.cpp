@@ -47,7 +47,7 @@ ReadoutCost::ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& sc
 SlotTimes ReadoutCost::times(std::int64_t slot, const SlotCost& cost) {
     SlotTimes times = scans_.times(slot, cost.scan_begin);
     std::erase_if(times.rows, [&](const RowTimes& row) { return row.load.row >= cost.end_row; });
-    times.end = times.rows.empty() ? cost.scan_begin : times.rows.back().end_if_last;
+    times.end = times.rows.empty() ? cost.scan_begin : times.rows.back().frame_end;
     return times;
 }
 
@@ -61,14 +61,14 @@ ReadoutCost::Cut ReadoutCost::cut(std::int64_t delay) {
     const SlotTimes times = scans_.times(slots_, delay);
     const auto is_late = [&](const RowTimes& row) {
         return row.load.row >= 0 &&
-               row.end_if_last > scans_.deadline_slots(slots_, row.load.row) * budget_.clocks;
+               row.frame_end > scans_.deadline_slots(slots_, row.load.row) * budget_.clocks;
     };
     const auto first_late = std::ranges::find_if(times.rows, is_late);
     Cut left{.delay = delay, .counts = {}, .end_row = first_late->load.row};
     if (first_late != times.rows.begin() && std::prev(first_late)->load.row >= 0)
         for (const RowTimes& row : std::span(times.rows.begin(), first_late)) {
             scans_.count(row, left.counts);
-            left.counts.readout_clocks = row.end_if_last - delay;
+            left.counts.readout_clocks = row.frame_end - delay;
         }
     for (const RowTimes& row : std::span(first_late, times.rows.end()))
         left.counts.dropped_samples +=

@@ -10,7 +10,7 @@ void ReadoutPipeline::begin_slot(std::int64_t cycle, std::int64_t full_row_clock
     begin_ = cycle;
     first_transfer_ = cycle + timing_.overhead_clocks + timing_.overhead_rows * full_row_clocks;
     first_select_ = first_transfer_;
-    if (timing_.overhead_rows > 0 && !takes_turns()) first_select_ -= full_row_clocks;
+    if (timing_.overhead_rows > 0 && !is_sequential()) first_select_ -= full_row_clocks;
     link_free_ = cycle;
     any_row_ = false;
     // Stands for the rows before the first one; its end lets that one begin at once.
@@ -22,10 +22,10 @@ void ReadoutPipeline::begin_slot(std::int64_t cycle, std::int64_t full_row_clock
 
 std::int64_t ReadoutPipeline::earliest_select(int row) const noexcept {
     if (row <= newest_.row || !newest_.converted) return kNever;
-    const Row& before = takes_turns() ? newest_ : older_;  // whose latch this row takes
+    const Row& before = is_sequential() ? newest_ : older_;  // whose latch this row takes
     if (!before.transferred) return kNever;
     const std::int64_t rest = timing_.blanking_clocks;
-    if (takes_turns()) return std::max(first_select_, before.transfer_end + rest);
+    if (is_sequential()) return std::max(first_select_, before.transfer_end + rest);
     return std::max({first_select_, newest_.convert_end + rest, before.transfer_end + rest});
 }
 
@@ -35,7 +35,7 @@ std::int64_t ReadoutPipeline::earliest_transfer(int row) const noexcept {
     const Row& it = is_newest ? newest_ : older_;
     if (!any_row_ || !it.converted || it.transferred) return kNever;
     if (is_newest && !older_.transferred) return kNever;
-    if (takes_turns()) return it.convert_end;
+    if (is_sequential()) return it.convert_end;
     return std::max({first_transfer_, link_free_, it.convert_end + timing_.blanking_clocks});
 }
 
@@ -95,7 +95,7 @@ bool ReadoutPipeline::issue(const ReadoutCommand& command, std::int64_t cycle) n
 std::int64_t ReadoutPipeline::end_cycle() const noexcept {
     if (!any_row_) return begin_;
     std::int64_t end = newest_.transfer_end;
-    if (!takes_turns()) end = std::max(end, newest_.transfer_begin + newest_.convert_clocks);
+    if (!is_sequential()) end = std::max(end, newest_.transfer_begin + newest_.convert_clocks);
     return end + timing_.blanking_clocks;
 }
 

@@ -61,7 +61,7 @@ class ReadoutPipeline {
         std::int64_t transfer_begin = 0;
         std::int64_t transfer_end = 0;
     };
-    [[nodiscard]] bool takes_turns() const noexcept {
+    [[nodiscard]] bool is_sequential() const noexcept {
         return timing_.row_timing == RowTiming::kSequential;
     }
     [[nodiscard]] std::int64_t earliest_select(int row) const noexcept;

@@ -77,7 +77,7 @@ void RowLoads::mark_block(std::int64_t slot, int first_row) {
     marked_.clear();
     for (int row = first_row; row < end_row; ++row) {
         int due = 0;
-        visit_due(schedule_, slot, row, shape_.cols, [&](int col, int) {
+        for_each_readout(schedule_, slot, row, shape_.cols, [&](int col, int) {
             ++due;
             std::uint8_t& is_marked = is_marked_[index(col / width)];
             if (is_marked != 0) return;

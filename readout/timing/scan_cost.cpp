@@ -46,7 +46,7 @@ TimeShares shares_overlapped(const ReadoutTiming& timing, const SlotTimes& times
             next.convert_end - next.convert);
     }
     const RowTimes& last = times.rows.back();
-    add(last, last.end_if_last > last.transfer_end + timing.blanking_clocks,
+    add(last, last.frame_end > last.transfer_end + timing.blanking_clocks,
         last.convert_end - last.convert);
     return shares;
 }
@@ -176,7 +176,7 @@ ScanCost ScanCosts::compute(std::int64_t slot) {
     for (const RowTimes& row : times.rows) {
         count(row, cost.counts);
         if (row.load.row >= 0)
-            add_deadline({deadline_slots(slot, row.load.row), row.end_if_last}, cost.deadlines);
+            add_deadline({deadline_slots(slot, row.load.row), row.frame_end}, cost.deadlines);
     }
     cost.settle_clocks = times.settle;
     cost.counts.readout_clocks = times.end;

@@ -48,8 +48,8 @@ SlotTimes read_slot(const ReadoutTiming& timing, int cols, std::span<const RowLo
         row.convert_end = row.convert + pipeline.clocks(convert);
         row.transfer = issue_early(pipeline, transfer);
         row.transfer_end = row.transfer + pipeline.clocks(transfer);
-        row.end_if_last = pipeline.end_cycle();
-        times.end = row.end_if_last;
+        row.frame_end = pipeline.end_cycle();
+        times.end = row.frame_end;
     }
     return times;
 }

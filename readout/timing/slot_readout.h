@@ -17,7 +17,7 @@ struct RowTimes {
     std::int64_t convert_end = 0;
     std::int64_t transfer = 0;  ///< beginning of the transfer
     std::int64_t transfer_end = 0;
-    std::int64_t end_if_last = 0;  ///< end of the readout if this row is the last
+    std::int64_t frame_end = 0;  ///< end of the readout if this row is the last
 
     bool operator==(const RowTimes&) const = default;
 };

@@ -191,7 +191,7 @@ class CineTest(CameraFilesTest):
                 self.refuse(parts, self.write("clip.cine", content.content()))
         self.refuse(["end within a byte"], self.cine(MOSAIC[:, :, :7], packing=1024, bits=12))
         self.refuse(["does not begin with"], self.write("clip.cine", bytes(100)))
-        self.fails(INPUT, ["clip.cine: byte 84: is no SETUP"], "emulate", self.write(
+        self.fails(INPUT, ["clip.cine: byte 84: has an unsupported camera SETUP"], "emulate", self.write(
             "clip.cine", Cine(MOSAIC).content().replace(b"ST", b"XX")), "-o", "x.stipple")
 
     def test_damage(self):

@@ -298,7 +298,7 @@ ChipEstimate estimate_of(const SensorParams& params, int levels) {
 // the mean square error of the gains may exceed the variances reported by.
 void expect_pattern(const SensorParams& params, const ChipEstimate& estimate, double excess) {
     const FixedPattern truth(params, kShape);
-    const SiteTraits* traits = truth.plane(0);
+    const SiteParams* traits = truth.plane(0);
     double mean = 0;
     for (std::size_t i = 0; i < kShape.sites(); ++i)
         mean += static_cast<double>(traits[i].responsivity_e) / kPixels;

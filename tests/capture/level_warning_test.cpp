@@ -11,7 +11,7 @@ SensorParams sensor_of_12_bits(double black_dn) {
     return sensor;
 }
 
-SourceTraits footage(double black_dn, double white_dn) {
+SourceInfo footage(double black_dn, double white_dn) {
     return {.bits = 16, .black_dn = black_dn, .white_dn = white_dn};
 }
 

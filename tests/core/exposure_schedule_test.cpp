@@ -60,8 +60,8 @@ void expect_visits_match_brute_force(const ExposureSchedule& schedule, int rows,
         std::size_t count = 0;
         for (int row = 0; row < rows; ++row) {
             Due visited;
-            visit_due(schedule, slot, row, cols,
-                      [&](int col, int span) { visited.emplace_back(col, span); });
+            for_each_readout(schedule, slot, row, cols,
+                             [&](int col, int span) { visited.emplace_back(col, span); });
             ASSERT_EQ(visited, brute_force_due(schedule, slot, row, cols))
                 << "slot " << slot << " row " << row;
             count += visited.size();

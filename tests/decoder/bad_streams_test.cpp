@@ -155,7 +155,7 @@ TEST_P(BadStreamsTest, AScheduleThatTheSamplesContradictCostsSlots) {
         decoded(recorded, random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 2));
     expect_light(outcome, recorded, 0);
     EXPECT_GE(outcome.report.missing_slots, 15);
-    EXPECT_GE(outcome.report.undue_packets, 15U);
+    EXPECT_GE(outcome.report.unexpected_packets, 15U);
 }
 
 TEST_P(BadStreamsTest, AWrongScheduleThatFitsTheCountsIsDecoded) {

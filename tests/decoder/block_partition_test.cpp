@@ -17,7 +17,7 @@ TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
             const HaloRange s = slot_range(done, slots);
             ASSERT_EQ(s.core_begin, done);
             ASSERT_GT(s.core_end, s.core_begin);
-            ASSERT_LE(s.core_end - s.core_begin, kCoreSlots + kRestSlots);
+            ASSERT_LE(s.core_end - s.core_begin, kCoreSlots + kRemainderSlots);
             ASSERT_EQ(s.begin, std::max<std::int64_t>(0, done - kHaloSlots));
             ASSERT_EQ(s.end, std::min(s.core_end + kHaloSlots, slots));
             done = s.core_end;
@@ -29,7 +29,7 @@ TEST(BlockPartitionTest, CoresOfSlotsFollowEachOtherAndHalosStayInside) {
 }
 
 TEST(BlockPartitionTest, ABlockIsTheSameWhateverFollowsIt) {
-    const std::int64_t known = 96 + kCoreSlots + kRestSlots + 1;
+    const std::int64_t known = 96 + kCoreSlots + kRemainderSlots + 1;
     for (const std::int64_t slots : {known, known + 1, known + 1000}) {
         const HaloRange s = slot_range(96, slots);
         EXPECT_EQ(s.core_end, 96 + kCoreSlots);
@@ -47,7 +47,7 @@ TEST(BlockPartitionTest, HalosHoldTheLongestExposureUpToALimit) {
     EXPECT_EQ(s.begin, 64);
     EXPECT_EQ(s.end, 96 + kCoreSlots + 32);
     // The last block, and one with two halos, fit the run of `data_prox`.
-    EXPECT_LE(kCoreSlots + kRestSlots + kMaxHaloSlots, kMaxRunSlots);
+    EXPECT_LE(kCoreSlots + kRemainderSlots + kMaxHaloSlots, kMaxRunSlots);
     EXPECT_LE(kCoreSlots + 2 * kMaxHaloSlots, kMaxRunSlots);
 }
 

@@ -27,10 +27,11 @@ void stick(Recorded& recording, int stuck_row, int stuck_col, std::uint16_t valu
     for (SamplePacket& packet : recording.packets) {
         auto dn = packet.dn.begin();
         for (int row = 0; row < kShape.rows; ++row)
-            visit_due(recording.header.schedule, packet.slot, row, kShape.cols, [&](int col, int) {
-                if (row == stuck_row && col == stuck_col) *dn = value;
-                ++dn;
-            });
+            for_each_readout(recording.header.schedule, packet.slot, row, kShape.cols,
+                             [&](int col, int) {
+                                 if (row == stuck_row && col == stuck_col) *dn = value;
+                                 ++dn;
+                             });
     }
 }
 

@@ -177,7 +177,7 @@ TEST_F(ExrFileTest, ReadsRateAndExposure) {
     Imf::addFramesPerSecond(header, {24000, 1001});
     Imf::addExpTime(header, 0.02F);
     write_channels(file_, {"Y"}, Imf::FLOAT, header);
-    const SourceTraits traits = read().traits;
+    const SourceInfo traits = read().traits;
     EXPECT_DOUBLE_EQ(*traits.frames_hz, 24000.0 / 1001);
     EXPECT_NEAR(*traits.exposure_us, 20000, 1e-2);
     ASSERT_EQ(traits.warnings.size(), 1);

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 
 namespace stipple {
 namespace {

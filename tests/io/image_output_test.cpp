@@ -66,14 +66,14 @@ TEST(ImageOutputTest, WordsAreTheLightToHalfAStep) {
 }
 
 TEST(ImageOutputTest, WordsClipAndRound) {
-    EXPECT_EQ(word_of(0, 1), 0);
-    EXPECT_EQ(word_of(1, 1), 65535);
-    EXPECT_EQ(word_of(5, 1), 65535);
-    EXPECT_EQ(word_of(-1, 1), 0);
-    EXPECT_EQ(word_of(std::nanf(""), 1), 0);
-    EXPECT_EQ(word_of(std::numeric_limits<float>::infinity(), 1), 65535);
-    EXPECT_EQ(word_of(0.5F, 1), 32768);
-    EXPECT_EQ(word_of(2, 4), 32768);
+    EXPECT_EQ(to_uint16(0, 1), 0);
+    EXPECT_EQ(to_uint16(1, 1), 65535);
+    EXPECT_EQ(to_uint16(5, 1), 65535);
+    EXPECT_EQ(to_uint16(-1, 1), 0);
+    EXPECT_EQ(to_uint16(std::nanf(""), 1), 0);
+    EXPECT_EQ(to_uint16(std::numeric_limits<float>::infinity(), 1), 65535);
+    EXPECT_EQ(to_uint16(0.5F, 1), 32768);
+    EXPECT_EQ(to_uint16(2, 4), 32768);
 }
 
 TEST(ImageOutputTest, HalfFloatsKeep11Bits) {

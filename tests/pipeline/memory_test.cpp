@@ -99,8 +99,8 @@ TEST_P(MemoryTest, ABlockTakesWhatTheTableOfMethodsSays) {
     decode_scene(8, {64, 64, 3}, GetParam());  // so that the program code it takes is in memory
     for (const FrameShape shape : {FrameShape{120, 200, 1}, FrameShape{80, 100, 3}}) {
         // Three blocks, the second with a halo on both sides.
-        const auto bytes =
-            static_cast<double>(decode_scene(2 * kCoreSlots + kRestSlots + 1, shape, GetParam()));
+        const auto bytes = static_cast<double>(
+            decode_scene(2 * kCoreSlots + kRemainderSlots + 1, shape, GetParam()));
         const auto voxels = static_cast<double>((kCoreSlots + 2 * kHaloSlots) * shape.sites());
         const auto frames = static_cast<double>(kCoreSlots * shape.sites() * sizeof(float));
         const double voxel_bytes = (bytes - frames) / voxels;

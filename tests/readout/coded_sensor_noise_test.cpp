@@ -70,7 +70,7 @@ Deviations expose_dim_footage(const SensorParams& params) {
         Deviation in_slot;
         auto dn = packet.dn.begin();
         for (int row = 0; row < kShape.rows; ++row)
-            visit_due(schedule, slot, row, kShape.cols, [&](int col, int span_slots) {
+            for_each_readout(schedule, slot, row, kShape.cols, [&](int col, int span_slots) {
                 for (int plane = 0; plane < kShape.planes; ++plane) {
                     double electrons = 0;
                     for (int open = slot - span_slots + 1; open <= slot; ++open)

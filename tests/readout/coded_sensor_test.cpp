@@ -157,7 +157,7 @@ TEST(CodedSensorTest, GivesTheDnOfTheFormulaWithoutNoise) {
     for (int slot = 0; slot < video.slots(); ++slot) {
         std::size_t i = 0;
         for (int row = 0; row < shape.rows; ++row)
-            visit_due(schedule, slot, row, shape.cols, [&](int, int span_slots) {
+            for_each_readout(schedule, slot, row, shape.cols, [&](int, int span_slots) {
                 const int expected = (span_slots * 255 + 4) / 8;
                 ASSERT_EQ(dn[static_cast<std::size_t>(slot)][i++], expected) << span_slots;
             });
@@ -208,7 +208,7 @@ TEST(CodedSensorTest, CountsSamplesThatTheFullWellClips) {
             for (int slot = 0; slot < video.slots(); ++slot) {
                 sensor.expose(video.frame(slot), packet);
                 for (int row = 0; row < 40; ++row)
-                    visit_due(schedule, slot, row, 24, [&](int, int span_slots) {
+                    for_each_readout(schedule, slot, row, 24, [&](int, int span_slots) {
                         if (span_slots * 500 > full_well_e) clipped += 3;
                     });
             }

@@ -32,7 +32,7 @@ TEST(ScheduleLanesTest, ALaneHoldsWhatIsReadOfItsPixel) {
         }
         std::map<int, int> due;
         for (int slot = 0; slot < kSlots; ++slot)
-            visit_due(schedule, slot, lane["row"], 8, [&](int col, int span) {
+            for_each_readout(schedule, slot, lane["row"], 8, [&](int col, int span) {
                 if (col == lane["col"]) due[slot] = span;
             });
         EXPECT_EQ(spans, due) << lane;

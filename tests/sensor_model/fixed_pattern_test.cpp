@@ -22,7 +22,7 @@ struct Moments {
     double deviation;
 };
 
-Moments moments(const FixedPattern& pattern, const std::function<double(const SiteTraits&)>& of) {
+Moments moments(const FixedPattern& pattern, const std::function<double(const SiteParams&)>& of) {
     double sum = 0, sum2 = 0;
     for (std::size_t i = 0; i < kShape.pixels(); ++i) {
         const double value = of(pattern.plane(0)[i]);
@@ -39,7 +39,7 @@ constexpr double kMean = 5 / 447.2, kDeviation = 5 / 632.4;
 TEST(FixedPatternTest, WithoutTermsIsThePixelOfEquationOne) {
     const FixedPattern pattern(physical({}), kShape);
     for (std::size_t i = 0; i < kShape.pixels(); i += 997) {
-        const SiteTraits& site = pattern.plane(0)[i];
+        const SiteParams& site = pattern.plane(0)[i];
         EXPECT_EQ(site.responsivity_e, 1000.0F);
         EXPECT_EQ(site.dark_e_per_slot, 0.0F);
         EXPECT_EQ(site.offset_e, 0.0F);
@@ -83,7 +83,7 @@ TEST(FixedPatternTest, HasTheShareOfHotAndDeadPixels) {
                                kShape);
     int hot = 0, dead = 0;
     for (std::size_t i = 0; i < kShape.pixels(); ++i) {
-        const SiteTraits& site = pattern.plane(0)[i];
+        const SiteParams& site = pattern.plane(0)[i];
         if (site.dark_e_per_slot > 1) {
             ++hot;
             EXPECT_FLOAT_EQ(site.dark_e_per_slot, 4010 * 5e-3F);
@@ -138,7 +138,7 @@ std::vector<float> traits_of(std::uint32_t device_id, FrameShape shape) {
     std::vector<float> traits;
     for (int plane = 0; plane < shape.planes; ++plane)
         for (std::size_t i = 0; i < shape.pixels(); ++i) {
-            const SiteTraits& s = pattern.plane(static_cast<std::uint32_t>(plane))[i];
+            const SiteParams& s = pattern.plane(static_cast<std::uint32_t>(plane))[i];
             traits.insert(traits.end(), {s.responsivity_e, s.offset_e, s.read_noise_e});
         }
     return traits;

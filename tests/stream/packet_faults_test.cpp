@@ -40,7 +40,7 @@ void expect_refused(const BrokenStream& s, const std::string& broken, const std:
     EXPECT_EQ(causes(report), cause + "\nslot 1 is missing\n");
     EXPECT_EQ(report.damage.front().offset, s.stream.begins[1]);
     EXPECT_EQ(report.damage.front().bytes, broken.size());
-    EXPECT_EQ(report.undue_packets, cause.ends_with("not what is due") ? 1U : 0U);
+    EXPECT_EQ(report.unexpected_packets, cause.ends_with("not what is due") ? 1U : 0U);
     expect_parts(
         message_of<InputError>([&] { return read_bytes(s.with(broken), ReadPolicy::kStrict); }),
         {": byte " + std::to_string(s.stream.begins[1]) + ": " + cause});

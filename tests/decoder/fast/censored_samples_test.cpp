@@ -45,7 +45,7 @@ Measurements dark_sample() {
 TEST(CensoredSamplesTest, ASampleAtHalfADnIsExpectedBelow) {
     Measurements m = dark_sample();
     CensoredSamples censored(m, paper_noise());
-    const float half_dn = paper_noise().one_dn() / 2;
+    const float half_dn = paper_noise().lsb_light() / 2;
     const FluxVideo x = one_voxel(half_dn);
     refresh_variances(m, paper_noise(), x.data());
     censored.expect(x.data());
@@ -60,7 +60,7 @@ TEST(CensoredSamplesTest, BesideBrightThingsASampleStaysNearHalfADn) {
     const FluxVideo x = one_voxel(1);
     refresh_variances(m, paper_noise(), x.data());
     censored.expect(x.data());
-    EXPECT_NEAR(m.sum[0], paper_noise().one_dn() / 2, 0.01);
+    EXPECT_NEAR(m.sum[0], paper_noise().lsb_light() / 2, 0.01);
 }
 
 TEST(CensoredSamplesTest, TheSumsAreRestoredAtTheEnd) {

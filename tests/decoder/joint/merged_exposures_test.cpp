@@ -12,7 +12,7 @@ constexpr int kSlots = 8;
 /// A sensor whose samples have the variance dark + per_light X.
 Measurements sensor(const std::vector<HandSample>& samples, float dark, float per_light) {
     Measurements m = hand_made(kSlots, kSite, samples);
-    m.one_dn = 1e-3F;
+    m.lsb_light = 1e-3F;
     m.dark_variance.assign(m.voxels(), dark);
     m.variance_per_light.assign(m.voxels(), per_light);
     return m;

@@ -153,7 +153,7 @@ TEST(FrameInterpolationTest, WhatFramesLackMakesTheirSlotsSumUpToThem) {
     ASSERT_TRUE(exposures);
     const FluxVideo frames = random_video(static_cast<int>(exposures->size()), kShape, 1);
     FluxVideo x = interpolate_frames(frames, centre_slots(*exposures), m.slots);
-    add_what_frames_lack(m, *exposures, frames, x);
+    back_project_residual(m, *exposures, frames, x);
     for (std::size_t k = 0; k < exposures->size(); ++k) {
         FluxVideo mean(1, kShape);
         for (int slot = (*exposures)[k].first_slot; slot <= (*exposures)[k].last_slot; ++slot)

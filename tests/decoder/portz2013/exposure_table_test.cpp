@@ -45,13 +45,13 @@ TEST(ExposureTableTest, FindsForEachOpenSlotTheSampleThatItIsIn) {
 }
 
 TEST(ExposureTableTest, BitsMoveByTheDistanceOfTheirFirstSlots) {
-    EXPECT_EQ(seen_from(0b1101, 2), 0b11U);
-    EXPECT_EQ(seen_from(0b1101, -1), 0b11010U);
-    EXPECT_EQ(seen_from(~std::uint64_t{0}, 64), 0U);
-    EXPECT_EQ(seen_from(~std::uint64_t{0}, -64), 0U);
-    EXPECT_EQ(first_bits(0), 0U);
-    EXPECT_EQ(first_bits(3), 7U);
-    EXPECT_EQ(first_bits(64), ~std::uint64_t{0});
+    EXPECT_EQ(shift_mask(0b1101, 2), 0b11U);
+    EXPECT_EQ(shift_mask(0b1101, -1), 0b11010U);
+    EXPECT_EQ(shift_mask(~std::uint64_t{0}, 64), 0U);
+    EXPECT_EQ(shift_mask(~std::uint64_t{0}, -64), 0U);
+    EXPECT_EQ(lowest_bits(0), 0U);
+    EXPECT_EQ(lowest_bits(3), 7U);
+    EXPECT_EQ(lowest_bits(64), ~std::uint64_t{0});
 }
 
 }  // namespace

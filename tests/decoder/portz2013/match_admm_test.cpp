@@ -133,7 +133,7 @@ TEST(MatchAdmmTest, SolvesAsTheMatrixFormedAndFactorised) {
         .iterations = 1, .rho = 2, .cg_iterations = 1000, .cg_tolerance = 1e-6F};
     std::vector<float> x(k.voxels(), 0.5F), v(k.rows()), d(k.voxels());
     k.start_duals(x, v);
-    k.right_side(v, 1 / options.rho, d);
+    k.right_hand_side(v, 1 / options.rho, d);
     minimise_by_admm(
         k, options, [](int, double) { return true; }, [] { return true; }, x);
 

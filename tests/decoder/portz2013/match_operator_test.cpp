@@ -122,7 +122,7 @@ TEST(MatchOperatorTest, OnlyExplainedSaturatedSamplesStartAtTheirResidual) {
     std::vector<float> v(3), d(3);
     k.start_duals(x, v);
     EXPECT_EQ(v, (std::vector<float>{2, 0, 0}));
-    k.right_side(v, 0.5F, d);  // b + z - u: nothing pulls the first one down
+    k.right_hand_side(v, 0.5F, d);  // b + z - u: nothing pulls the first one down
     EXPECT_EQ(d, (std::vector<float>{3, 1, 1}));
 }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "decoder/rivals/bell.h"
+#include "decoder/rivals/fast_gaussian.h"
 #include "tests/decoder/recordings.h"
 #include "tests/decoder/rivals/noisy_frames.h"
 #include "tests/support/expect_quality.h"
@@ -16,11 +16,11 @@ constexpr FrameShape kShape{.rows = 48, .cols = 64, .planes = 1};
 
 // exp(-x) to (x^2 / 32) exp(-x), the next term of the logarithm.
 TEST(BellTest, IsNearAnExponential) {
-    EXPECT_EQ(bell(0), 1);
-    EXPECT_NEAR(bell(0.5F), 0.6065, 0.006);
-    EXPECT_NEAR(bell(2), 0.1353, 0.02);
-    EXPECT_EQ(bell(16), 0);
-    EXPECT_EQ(bell(1e9F), 0);
+    EXPECT_EQ(fast_gaussian(0), 1);
+    EXPECT_NEAR(fast_gaussian(0.5F), 0.6065, 0.006);
+    EXPECT_NEAR(fast_gaussian(2), 0.1353, 0.02);
+    EXPECT_EQ(fast_gaussian(16), 0);
+    EXPECT_EQ(fast_gaussian(1e9F), 0);
 }
 
 // Of 9 frames with nearly equal weights; those of noise scatter.

@@ -34,7 +34,7 @@ TEST(BlockPathsTest, EndWithTheVideoAndStayInTheFrame) {
     ASSERT_EQ(path.size(), 5U);
     EXPECT_EQ(path.front().frame, 0);
     for (const BlockPlace& place : path) EXPECT_GE(place.col, 0);
-    paths.follow_anyway({2, 32, 72}, 1, 4, path);
+    paths.follow_unchecked({2, 32, 72}, 1, 4, path);
     ASSERT_EQ(path.size(), 4U);
     for (const BlockPlace& place : path) EXPECT_LE(place.col, kShape.cols - kSide);
 }

@@ -19,7 +19,7 @@ std::vector<std::uint8_t> pixels_of(const ExposureSchedule& schedule) {
     return compile_schedule(schedule).pixels;
 }
 
-/// Expects a program that says for each pixel and slot what `visit_due` and the masks say.
+/// Expects a program that says for each pixel and slot what `for_each_readout` and the masks say.
 void expect_as_defined(const ExposureSchedule& schedule) {
     const SequencerProgram program = compile_schedule(schedule);
     std::size_t word = 0;
@@ -34,9 +34,10 @@ void expect_as_defined(const ExposureSchedule& schedule) {
                     if (age < 64 && (e.open_slots >> age & 1U) != 0 && program.bits_per_pixel == 2)
                         expected[static_cast<std::size_t>(col)] |= kOpen;
                 }
-            visit_due(schedule, slot + std::int64_t{schedule.period_slots()} * 64, row,
-                      schedule.tile_cols(),
-                      [&](int col, int) { expected[static_cast<std::size_t>(col)] |= kRead; });
+            for_each_readout(schedule, slot + std::int64_t{schedule.period_slots()} * 64, row,
+                             schedule.tile_cols(), [&](int col, int) {
+                                 expected[static_cast<std::size_t>(col)] |= kRead;
+                             });
             for (std::size_t col = 0; col < expected.size(); ++col)
                 ASSERT_EQ(program.pixels[word * expected.size() + col], expected[col])
                     << "slot " << slot << " pixel " << row << ", " << col;
@@ -92,9 +93,9 @@ TEST(SequencerProgramTest, CoversTwoPeriodsWhereAnExposureChangesStores) {
     EXPECT_EQ(program.period_slots, 12);
     const ExposureSchedule twice = schedule_of(program, "test");
     for (int slot = 0; slot < 24; ++slot)
-        visit_due(odd, slot, 0, 1, [&](int, int span_slots) {
+        for_each_readout(odd, slot, 0, 1, [&](int, int span_slots) {
             int found = 0;
-            visit_due(twice, slot, 0, 1, [&](int, int span) { found = span; });
+            for_each_readout(twice, slot, 0, 1, [&](int, int span) { found = span; });
             EXPECT_EQ(found, span_slots) << "slot " << slot;
         });
 }

@@ -151,12 +151,12 @@ TEST(ReadoutCostTest, RowsAreDroppedFromTheFirstLateOneOn) {
                  read_slot_by_ticks(timing, shape.cols, loads, given.scan_begin).rows) {
                 if (row.load.row < 0) continue;
                 const bool in_time =
-                    row.end_if_last <=
+                    row.frame_end <=
                     (slot + row_loads.due_again_slots(slot, row.load.row)) * budget.clocks;
                 EXPECT_TRUE(in_time || row.load.row >= given.end_row);
                 EXPECT_TRUE(!in_time || row.load.row != given.end_row);
                 if (row.load.row >= given.end_row) continue;
-                free_from = row.end_if_last;
+                free_from = row.frame_end;
                 kept = true;
             }
             const auto planes = static_cast<std::uint64_t>(shape.planes);

@@ -23,7 +23,7 @@ std::set<int> transferred(const ReadoutTiming& timing, const ExposureSchedule& s
     std::set<int> columns;
     for (int other = 0; other < shape.rows; ++other) {
         if (other / rows != row / rows) continue;
-        visit_due(schedule, slot, other, shape.cols, [&](int due, int) {
+        for_each_readout(schedule, slot, other, shape.cols, [&](int due, int) {
             for (int col = 0; col < shape.cols; ++col)
                 if (col / cols == due / cols) columns.insert(col);
         });

@@ -51,7 +51,7 @@ TEST(ScanCostTest, DeadlinesAreThoseOfItsRows) {
                     };
                     if (row.load.row < 0) continue;
                     while (!due_again()) ++again;
-                    if (again <= slots) expected = row.end_if_last;
+                    if (again <= slots) expected = row.frame_end;
                 }
                 for (const ScanDeadline& deadline : cost.deadlines)
                     if (deadline.slots <= slots) given = deadline.end;

@@ -63,8 +63,8 @@ TEST(SlotReadoutTest, AFullSlotTakesAsLongAsTheFormulaSays) {
         ASSERT_EQ(slot.end - slot.begin, formula.total) << "seed " << seed;
         ASSERT_EQ(slot.settle, formula.settle) << "seed " << seed;
         const RowTimes& first = slot.rows.front();
-        const bool takes_turns = timing.row_timing == RowTiming::kSequential;
-        ASSERT_EQ((takes_turns ? first.select : first.transfer) - slot.begin, formula.lead)
+        const bool is_sequential = timing.row_timing == RowTiming::kSequential;
+        ASSERT_EQ((is_sequential ? first.select : first.transfer) - slot.begin, formula.lead)
             << "seed " << seed;
     }
 }

@@ -56,7 +56,7 @@ class TickChip {
     /// The scan that runs; the next one begins as soon as there is one.
     void scan() {
         while (true) {
-            for (; next_row_ < rows_.size() && rows_[next_row_].end_if_last <= now_; ++next_row_)
+            for (; next_row_ < rows_.size() && rows_[next_row_].frame_end <= now_; ++next_row_)
                 if (rows_[next_row_].load.row >= 0)
                     waits_[index(rows_[next_row_].load.row)] = false;
             if (next_row_ < rows_.size() || queue_.empty()) return;

@@ -151,7 +151,7 @@ bool Clockwork::enter_link() {
 bool Clockwork::end_rows() {
     const auto over = [&](const RowTime& time) {
         if (time.left > 0) return false;
-        rows_[time.row].end_if_last = now_ + timing_.blanking_clocks;
+        rows_[time.row].frame_end = now_ + timing_.blanking_clocks;
         ++ended_;
         return true;
     };
@@ -181,7 +181,7 @@ SlotTimes read_slot_by_ticks(const ReadoutTiming& timing, int cols, std::span<co
     while (!clockwork.done()) clockwork.step();
     SlotTimes times{
         .settle = clockwork.settle(), .begin = begin, .end = begin, .rows = clockwork.take_rows()};
-    if (!times.rows.empty()) times.end = times.rows.back().end_if_last;
+    if (!times.rows.empty()) times.end = times.rows.back().frame_end;
     return times;
 }
 

@@ -1,4 +1,4 @@
-#include "decoder/fast/presumed_samples.h"
+#include "decoder/fast/pseudo_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 /// The measurements while samples are presumed.
 Measurements presumed(Measurements m) {
     const FluxVideo nearest = nearest_samples(m);
-    const PresumedSamples samples(m, nearest, paper_noise());
+    const PseudoSamples samples(m, nearest, paper_noise());
     Measurements copy = m;
     return copy;
 }
@@ -117,7 +117,7 @@ TEST(PresumedSamplesTest, TheMeasurementsAreRestoredAtTheEnd) {
         Measurements m = before;
         const FluxVideo nearest = nearest_samples(m);
         {
-            const PresumedSamples samples(m, nearest, paper_noise());
+            const PseudoSamples samples(m, nearest, paper_noise());
             EXPECT_NE(m.sum, before.sum);
             EXPECT_TRUE(std::ranges::any_of(
                 m.state, [](auto s) { return (s & Measurements::kPresumed) != 0; }));

@@ -1,4 +1,4 @@
-#include "io/late_ffmpeg.h"
+#include "io/lazy_ffmpeg.h"
 
 #include <dlfcn.h>
 
@@ -16,15 +16,15 @@ extern "C" {
 namespace stipple {
 namespace {
 
-STIPPLE_LATE(av_frame_free);
-STIPPLE_LATE(av_freep);
-STIPPLE_LATE(av_packet_free);
-STIPPLE_LATE(av_strerror);
-STIPPLE_LATE(avcodec_free_context);
-STIPPLE_LATE(avformat_close_input);
-STIPPLE_LATE(avformat_free_context);
-STIPPLE_LATE(avio_context_free);
-STIPPLE_LATE(sws_freeContext);
+STIPPLE_LAZY(av_frame_free);
+STIPPLE_LAZY(av_freep);
+STIPPLE_LAZY(av_packet_free);
+STIPPLE_LAZY(av_strerror);
+STIPPLE_LAZY(avcodec_free_context);
+STIPPLE_LAZY(avformat_close_input);
+STIPPLE_LAZY(avformat_free_context);
+STIPPLE_LAZY(avio_context_free);
+STIPPLE_LAZY(sws_freeContext);
 
 /// Of the version whose headers were read. libavformat brings libavcodec and libavutil.
 constexpr std::array kLibraries = {"libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR),

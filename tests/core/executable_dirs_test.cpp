@@ -1,4 +1,4 @@
-#include "core/own_folders.h"
+#include "core/executable_dirs.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 TEST(OwnFoldersTest, OfAProgramAreItsOwnOnly) {
     const fs::path program = fs::read_symlink("/proc/self/exe");
-    EXPECT_EQ(own_folders(), std::vector<fs::path>{program.parent_path()});
+    EXPECT_EQ(executable_dirs(), std::vector<fs::path>{program.parent_path()});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "stream/file_window.h"
+#include "stream/buffered_reader.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -19,7 +19,7 @@ constexpr std::size_t kStepBytes = std::size_t{1} << 18U;
 
 }  // namespace
 
-FileWindow::FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe)
+BufferedReader::BufferedReader(const std::filesystem::path& file, EmptyPipe empty_pipe)
     : where_(file.string()),
       descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
       waits_(empty_pipe == EmptyPipe::kWait) {
@@ -29,11 +29,11 @@ FileWindow::FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe)
     if (!is_pipe_) ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK);
 }
 
-FileWindow::~FileWindow() {
+BufferedReader::~BufferedReader() {
     ::close(descriptor_);
 }
 
-std::span<const std::uint8_t> FileWindow::peek(std::size_t bytes) {
+std::span<const std::uint8_t> BufferedReader::peek(std::size_t bytes) {
     while (end_ - begin_ < bytes) {
         // No more than doubles what is there: a length is only a claim until the bytes come.
         const std::size_t missing = bytes - (end_ - begin_);
@@ -45,7 +45,7 @@ std::span<const std::uint8_t> FileWindow::peek(std::size_t bytes) {
     return std::span(buffer_).subspan(begin_, std::min(bytes, end_ - begin_));
 }
 
-std::size_t FileWindow::read_some(std::uint8_t* to, std::size_t bytes) {
+std::size_t BufferedReader::read_some(std::uint8_t* to, std::size_t bytes) {
     // Of a pipe that no program writes to, a read returns 0: at its end, and before its writer
     // comes. Only poll() tells them apart: POLLHUP is raised once a writer has come and gone.
     for (bool writer_has_gone = false;;) {
@@ -60,7 +60,7 @@ std::size_t FileWindow::read_some(std::uint8_t* to, std::size_t bytes) {
     }
 }
 
-void FileWindow::make_room(std::size_t bytes) {
+void BufferedReader::make_room(std::size_t bytes) {
     if (buffer_.size() - end_ >= bytes) return;
     std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
               buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
@@ -69,26 +69,26 @@ void FileWindow::make_room(std::size_t bytes) {
     if (buffer_.size() - end_ < bytes) buffer_.resize(end_ + bytes);
 }
 
-void FileWindow::skip(std::size_t bytes) {
+void BufferedReader::skip(std::size_t bytes) {
     assert(bytes <= end_ - begin_);
     begin_ += bytes;
     offset_ += bytes;
 }
 
-void FileWindow::seek(std::uint64_t offset) {
+void BufferedReader::seek(std::uint64_t offset) {
     if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) fail();
     offset_ = offset;
     begin_ = end_ = 0;
 }
 
-std::optional<std::uint64_t> FileWindow::file_bytes() const {
+std::optional<std::uint64_t> BufferedReader::file_bytes() const {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
     return static_cast<std::uint64_t>(status.st_size);
 }
 
-std::optional<std::vector<std::uint8_t>> FileWindow::read_at(std::uint64_t offset,
-                                                             std::size_t bytes) const {
+std::optional<std::vector<std::uint8_t>> BufferedReader::read_at(std::uint64_t offset,
+                                                                 std::size_t bytes) const {
     const auto length = file_bytes();
     if (!length || offset > *length || *length - offset < bytes) return std::nullopt;
     std::vector<std::uint8_t> result(bytes);
@@ -103,7 +103,7 @@ std::optional<std::vector<std::uint8_t>> FileWindow::read_at(std::uint64_t offse
     return result;
 }
 
-void FileWindow::fail() const {
+void BufferedReader::fail() const {
     throw InputError(where_, "cannot be read: " + std::generic_category().message(errno));
 }
 

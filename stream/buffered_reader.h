@@ -13,17 +13,18 @@ namespace stipple {
 /// A file or a pipe, read from front to back through a window of memory. It is read, not mapped:
 /// if another program shortens the file or the disk fails, the result is an end or an error, not a
 /// SIGBUS.
-class FileWindow {
+class BufferedReader {
   public:
     /// Behaviour of a read from an empty pipe.
     enum class EmptyPipe { kWait, kReturn };
 
     /// Does not wait for the writer of a pipe. \throws InputError naming the file if it cannot be
     /// opened.
-    explicit FileWindow(const std::filesystem::path& file, EmptyPipe empty_pipe = EmptyPipe::kWait);
-    ~FileWindow();
-    FileWindow(const FileWindow&) = delete;
-    FileWindow& operator=(const FileWindow&) = delete;
+    explicit BufferedReader(const std::filesystem::path& file,
+                            EmptyPipe empty_pipe = EmptyPipe::kWait);
+    ~BufferedReader();
+    BufferedReader(const BufferedReader&) = delete;
+    BufferedReader& operator=(const BufferedReader&) = delete;
 
     /// Offset in the file of the first byte of the window.
     [[nodiscard]] std::uint64_t offset() const { return offset_; }

@@ -1,4 +1,4 @@
-#include "decoder/fast/presumed_samples.h"
+#include "decoder/fast/pseudo_samples.h"
 
 #include <algorithm>
 #include <atomic>
@@ -53,7 +53,7 @@ class SitePresumption {
     SitePresumption(Measurements& measurements, const FluxVideo& nearest, const SampleNoise& noise,
                     Changes& changes)
         : m_(measurements), nearest_(nearest.data()), noise_(noise), changes_(changes) {}
-    [[nodiscard]] const std::vector<PresumedSamples::Bound>& bounds() const { return bounds_; }
+    [[nodiscard]] const std::vector<PseudoSamples::Bound>& bounds() const { return bounds_; }
 
     /// Of the next site, before any is added to.
     void note_changes(std::size_t site) {
@@ -205,7 +205,7 @@ class SitePresumption {
     const SampleNoise& noise_;
     Changes& changes_;
     std::vector<SiteExposure> exposures_;
-    std::vector<PresumedSamples::Bound> bounds_;
+    std::vector<PseudoSamples::Bound> bounds_;
 };
 
 /// Each squared change becomes the mean of those known around it; not negative.
@@ -223,8 +223,8 @@ void pool(const Measurements& m, Changes& changes) {
 
 }  // namespace
 
-PresumedSamples::PresumedSamples(Measurements& measurements, const FluxVideo& nearest,
-                                 const SampleNoise& noise)
+PseudoSamples::PseudoSamples(Measurements& measurements, const FluxVideo& nearest,
+                             const SampleNoise& noise)
     : measurements_(measurements), interleaved_(measurements.interleaved) {
     Changes changes{std::vector<float>(measurements.voxels()),
                     std::vector<float>(measurements.voxels()), closed_slots(measurements)};
@@ -249,7 +249,7 @@ PresumedSamples::PresumedSamples(Measurements& measurements, const FluxVideo& ne
         bounds_.insert(bounds_.end(), row.bounds().begin(), row.bounds().end());
 }
 
-PresumedSamples::~PresumedSamples() {
+PseudoSamples::~PseudoSamples() {
     Measurements& m = measurements_;
     for (const Bound& bound : bounds_) {
         m.sum[bound.voxel] = bound.sum;

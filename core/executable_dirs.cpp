@@ -1,4 +1,4 @@
-#include "core/own_folders.h"
+#include "core/executable_dirs.h"
 
 #include <dlfcn.h>
 
@@ -7,12 +7,12 @@
 namespace stipple {
 namespace fs = std::filesystem;
 
-std::vector<fs::path> own_folders() {
+std::vector<fs::path> executable_dirs() {
     std::vector<fs::path> folders;
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     Dl_info info{};
-    if (dladdr(reinterpret_cast<const void*>(&own_folders), &info) != 0) {
+    if (dladdr(reinterpret_cast<const void*>(&executable_dirs), &info) != 0) {
         // Of a program the name is what it was called by, which may be relative, or of another
         // file.
         const fs::path file(info.dli_fname);

@@ -1,4 +1,4 @@
-// What libstipple_opencv.so holds: decoder/motion/late_opencv.h.
+// What libstipple_opencv.so holds: decoder/motion/lazy_opencv.h.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <opencv2/optflow.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 /// the function is first called, in place of the linked function. It converts to the function and
 /// is called in the same way. `resolve(const char*)` gives the address of the function of a name.
 // NOLINTBEGIN(bugprone-macro-parentheses): these are names, no values
-#define STIPPLE_LATE_FROM(resolve, name)                                                   \
+#define STIPPLE_LAZY_FROM(resolve, name)                                                   \
     const struct {                                                                         \
         using Function = decltype(::name);                                                 \
         operator Function*() const { return reinterpret_cast<Function*>(resolve(#name)); } \

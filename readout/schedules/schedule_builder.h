@@ -9,9 +9,9 @@
 namespace stipple {
 
 /// Collects the exposures of a tile, pixel by pixel.
-class TileList {
+class ScheduleBuilder {
   public:
-    TileList(int rows, int cols, int period_slots)
+    ScheduleBuilder(int rows, int cols, int period_slots)
         : rows_(rows), cols_(cols), period_slots_(period_slots) {}
 
     /// Adds `open_slots` slots (bit 0 is set) from `slot`, which may lie beyond the period.

@@ -28,13 +28,13 @@ struct Measurements;
 /// if one of them has a sample of it; saturated samples remain bounds, as other sensors have the
 /// light. The presumed samples become those of the first sensor. The same bits for any thread
 /// count.
-class PresumedSamples {
+class PseudoSamples {
   public:
-    PresumedSamples(Measurements& measurements, const FluxVideo& nearest, const SampleNoise& noise);
+    PseudoSamples(Measurements& measurements, const FluxVideo& nearest, const SampleNoise& noise);
     /// Restores the measurements, except their variances.
-    ~PresumedSamples();
-    PresumedSamples(const PresumedSamples&) = delete;
-    PresumedSamples& operator=(const PresumedSamples&) = delete;
+    ~PseudoSamples();
+    PseudoSamples(const PseudoSamples&) = delete;
+    PseudoSamples& operator=(const PseudoSamples&) = delete;
 
     /// The sum of a saturated sample before the change.
     struct Bound {

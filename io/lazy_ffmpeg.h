@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "io/late_function.h"
+#include "io/lazy_function.h"
 
 struct AVCodecContext;  // of FFmpeg's libraries
 struct AVFormatContext;
@@ -20,7 +20,7 @@ namespace stipple {
 [[nodiscard]] void* ffmpeg_function(const char* name);
 
 /// In a source: a function of FFmpeg.
-#define STIPPLE_LATE(name) STIPPLE_LATE_FROM(ffmpeg_function, name)
+#define STIPPLE_LAZY(name) STIPPLE_LAZY_FROM(ffmpeg_function, name)
 
 /// Frees objects of FFmpeg.
 struct FfmpegDeleter {

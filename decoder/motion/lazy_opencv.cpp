@@ -1,4 +1,4 @@
-#include "decoder/motion/late_opencv.h"
+#include "decoder/motion/lazy_opencv.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/own_folders.h"
+#include "core/executable_dirs.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -16,7 +16,7 @@ namespace {
 void* load(const char* function) {
     constexpr const char* kName = "libstipple_opencv.so";
     std::vector<fs::path> folders;
-    for (const fs::path& own : own_folders()) {
+    for (const fs::path& own : executable_dirs()) {
         folders.push_back(own);
         folders.push_back(own / STIPPLE_LIBRARY_FROM_PROGRAM);
     }
