@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/calibrate_scene.h"
-#include "apps/calibrate_series.h"
+#include "apps/calibrate.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"

@@ -1,4 +1,4 @@
-#include "apps/calibrate_series.h"
+#include "apps/calibrate.h"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "apps/attached_calibration.h"
-#include "apps/emulate_part.h"
-#include "apps/emulate_rig.h"
+#include "apps/emulate.h"
 #include "apps/emulation_input.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"

@@ -1,4 +1,4 @@
-#include "apps/emulate_part.h"
+#include "apps/emulate.h"
 
 #include <fmt/format.h>
 

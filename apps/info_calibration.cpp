@@ -1,4 +1,4 @@
-#include "apps/info_calibration.h"
+#include "apps/info.h"
 
 #include <fmt/format.h>
 

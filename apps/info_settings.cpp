@@ -1,4 +1,4 @@
-#include "apps/info_settings.h"
+#include "apps/info.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,6 @@
 #include <sstream>
 #include <vector>
 
-#include "apps/info_rig.h"
-#include "apps/info_space.h"
 #include "apps/key_list.h"
 #include "apps/report/column_width.h"
 #include "apps/report/json_file.h"

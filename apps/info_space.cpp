@@ -1,4 +1,4 @@
-#include "apps/info_space.h"
+#include "apps/info.h"
 
 #include <fmt/format.h>
 

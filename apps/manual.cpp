@@ -3,9 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/report/completion.h"
-#include "apps/report/manual_page.h"
-#include "apps/report/markdown_page.h"
+#include "apps/report/manual.h"
 #include "apps/report/text_file.h"
 #include "apps/standard_output.h"
 #include "apps/subcommands.h"

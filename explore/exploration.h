@@ -10,8 +10,8 @@
 
 #include "explore/budget.h"
 #include "explore/mean_interval.h"
+#include "explore/ranking.h"
 #include "explore/space.h"
-#include "explore/tied_ranks.h"
 #include "explore/trial.h"
 #include "explore/trial_store.h"
 

@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "core/light.h"
-#include "io/dng_page.h"
-#include "io/lossless_jpeg.h"
 #include "io/pixel_unpack.h"
 #include "io/tiff_handle.h"
 

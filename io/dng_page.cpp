@@ -1,4 +1,4 @@
-#include "io/dng_page.h"
+#include "io/dng_file.h"
 
 #include <fmt/format.h>
 #include <tiffio.h>

@@ -1,4 +1,4 @@
-#include "io/lossless_jpeg.h"
+#include "io/dng_file.h"
 
 #include <fmt/format.h>
 

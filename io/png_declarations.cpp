@@ -1,4 +1,4 @@
-#include "io/png_declarations.h"
+#include "io/png_file.h"
 
 #include <fmt/format.h>
 

@@ -18,7 +18,6 @@
 #include "core/light.h"
 #include "core/memory_limit.h"
 #include "io/output_file.h"
-#include "io/png_declarations.h"
 
 namespace stipple {
 namespace {

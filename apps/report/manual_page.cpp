@@ -1,4 +1,4 @@
-#include "apps/report/manual_page.h"
+#include "apps/report/manual.h"
 
 #include <fmt/format.h>
 

@@ -11,8 +11,7 @@
 #include <set>
 #include <span>
 
-#include "capture/aravis/genicam_check.h"
-#include "capture/aravis/genicam_download.h"
+#include "capture/aravis/genicam_description.h"
 #include "capture/aravis/glib_error.h"
 #include "capture/doctor/usb_findings.h"
 #include "capture/network.h"

@@ -1,4 +1,4 @@
-#include "capture/aravis/description_zip.h"
+#include "capture/aravis/genicam_description.h"
 
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-#include "capture/aravis/genicam_download.h"
+#include "capture/aravis/genicam_description.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "capture/aravis/description_zip.h"
 #include "capture/serve/big_endian.h"
 #include "capture/serve/gige_registers.h"
 #include "capture/serve/gvcp_codec.h"

@@ -4,10 +4,25 @@
 
 #include "core/flux_video.h"
 #include "decoder/progress_callback.h"
-#include "decoder/rivals/bennett2005_options.h"
 #include "decoder/rivals/frame_decoding.h"
 
 namespace stipple {
+
+class Config;
+
+/// Options of the method `bennett2005`; docs/decoder_rivals.md has the formulas.
+struct Bennett2005Options {
+    int reach_frames = 4;           ///< frames before and after that are accumulated
+    float range_sigma = 1;          ///< of the excess distance D - 1 of two neighbourhoods
+    float target_noise = 0.01F;     ///< sets the samples that a pixel needs, relative to its light
+    int max_samples = 16;           ///< that a pixel needs
+    int radius_px = 3;              ///< of the spatial filter
+    float spatial_sigma_px = 1.5F;  ///< of the spatial filter
+    float spatial_range_sigma = 2;  ///< of the spatial filter, in standard deviations of the noise
+};
+
+/// The keys of `stipple list keys decoder`. \throws InputError as Config.
+void read_options(Config& config, Bennett2005Options& options);
 
 /// Adaptive spatio-temporal accumulation (Bennett and McMillan, SIGGRAPH 2005): each pixel
 /// accumulates the same pixel of other frames by a bilateral filter that compares neighbourhoods.

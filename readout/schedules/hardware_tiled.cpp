@@ -6,8 +6,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "readout/schedules/hardware_tiled_lattice.h"
-#include "readout/schedules/hardware_tiled_scatter.h"
+#include "readout/schedules/hardware_tiled_parts.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "readout/schedules/hardware_tiled_grid.h"
+#include "readout/schedules/hardware_tiled_parts.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "readout/schedules/hardware_tiled_lattice.h"
+#include "readout/schedules/hardware_tiled_parts.h"
 
 #include <algorithm>
 #include <numeric>

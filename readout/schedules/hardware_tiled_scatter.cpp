@@ -1,9 +1,7 @@
-#include "readout/schedules/hardware_tiled_scatter.h"
+#include "readout/schedules/hardware_tiled_parts.h"
 
 #include <algorithm>
 #include <numeric>
-
-#include "readout/schedules/hardware_tiled_swaps.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "explore/tied_ranks.h"
+#include "explore/ranking.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/aravis/genicam_check.h"
+#include "capture/aravis/genicam_description.h"
 
 #include <arv.h>
 #include <gtest/gtest.h>

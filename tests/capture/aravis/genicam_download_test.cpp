@@ -1,4 +1,4 @@
-#include "capture/aravis/genicam_download.h"
+#include "capture/aravis/genicam_description.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

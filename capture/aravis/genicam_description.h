@@ -1,9 +1,18 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace stipple {
+
+/// The file that Aravis takes from a zip file: the last one of its directory. Empty if part of the
+/// directory or of a file lies outside of `zip`, or a file has more than `max_bytes`.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> unzipped_description(
+    std::span<const std::uint8_t> zip, std::size_t max_bytes);
 
 /// A register of a camera, an ArvGcRegister.
 struct GenicamRegister {
@@ -31,5 +40,11 @@ class GenicamCheck {
     std::string address_;
     std::vector<GenicamRegister> variable_;  ///< with a pLength, in an order to evaluate them
 };
+
+/// Reads the GenICam description of a GigE Vision camera as Aravis will when it opens the camera,
+/// but within limits: Aravis (0.8.26) trusts the size and the place that a camera names, and the
+/// offsets in a zip file. `ip` in host byte order. \throws DeviceError at `address`: nothing
+/// answers, or the description is not in the camera, too large, damaged or not XML.
+void check_genicam_download(const std::string& address, std::uint32_t ip);
 
 }  // namespace stipple

@@ -15,6 +15,20 @@
 
 namespace stipple {
 
+/// Arguments of `stipple calibrate --scene`.
+struct SceneArguments {
+    std::string stream;  ///< empty: not given
+    std::string method = "best";
+    double prnu = 0;  ///< 0: as the stream tells
+};
+
+void add_scene_arguments(Command& command, SceneArguments& arguments);
+
+/// The gains of a chip from a stream of any scene. \throws InputError as `scene_calibration`, and
+/// if nothing tells the PRNU; Interrupted.
+[[nodiscard]] ChipCalibration calibrate_by_scene(const SceneArguments& arguments,
+                                                 const RunOptions& run);
+
 /// Arguments of `stipple calibrate` on series without light and of uniform light.
 struct SeriesArguments {
     SensorChoice sensor = {.sensor = ""};

@@ -9,4 +9,8 @@ namespace stipple {
 /// all of the part). \throws InputError, DeviceError, Interrupted; complete pieces are kept.
 void emulate_part(const EmulateArguments& arguments, const RunOptions& run);
 
+/// `stipple emulate --rig`: a folder with the stream of each sensor and the rig (docs/rig.md).
+/// \throws InputError, DeviceError, Interrupted.
+void emulate_rig(const EmulateArguments& arguments, const RunOptions& run);
+
 }  // namespace stipple
