@@ -9,7 +9,7 @@
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/camera_feature.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "report/json_figures.h"
 #include "stream/plain_text.h"
 

@@ -19,7 +19,6 @@
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/capture_end.h"
-#include "capture/image_camera.h"
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"

@@ -22,7 +22,7 @@
 #include "capture/recording/footage_notes.h"
 #include "capture/recording/read_ahead.h"
 #include "core/error.h"
-#include "core/shape_difference.h"
+#include "core/text.h"
 #include "io/footage_files.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"

@@ -1,4 +1,4 @@
-#include "apps/decode_file.h"
+#include "apps/decode.h"
 
 #include <fmt/format.h>
 
@@ -11,15 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/decode_schedule.h"
-#include "apps/decode_setup.h"
 #include "apps/interrupt.h"
+#include "apps/report/emulation_text.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
-#include "apps/report/zero_warning.h"
 #include "apps/rig_folder.h"
 #include "apps/standard_error.h"
 #include "core/error.h"

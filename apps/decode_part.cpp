@@ -1,4 +1,4 @@
-#include "apps/decode_part.h"
+#include "apps/decode.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/decode_setup.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"

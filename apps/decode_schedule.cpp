@@ -1,4 +1,4 @@
-#include "apps/decode_schedule.h"
+#include "apps/decode.h"
 
 #include <fmt/format.h>
 

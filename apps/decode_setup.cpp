@@ -1,4 +1,4 @@
-#include "apps/decode_setup.h"
+#include "apps/decode.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@
 #include "calibration/calibration_file.h"
 #include "core/config.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "explore/dictionary_file.h"
 
 namespace stipple {

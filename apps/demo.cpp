@@ -6,7 +6,6 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/arguments/footage.h"
-#include "apps/demo_trial.h"
 #include "apps/demo_trials.h"
 #include "apps/report/json_file.h"
 #include "apps/report/own_command.h"

@@ -1,4 +1,4 @@
-#include "apps/demo_trial.h"
+#include "apps/demo_trials.h"
 
 #include <fmt/format.h>
 

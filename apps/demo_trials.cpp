@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 
-#include "apps/demo_trial.h"
 #include "apps/report/side_by_side.h"
 #include "io/frame_writer.h"
 

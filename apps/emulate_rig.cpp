@@ -15,7 +15,6 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/text_file.h"
-#include "apps/report/zero_warning.h"
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"

@@ -18,8 +18,7 @@
 #include "apps/report/progress.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "explore/results_page.h"
-#include "explore/results_table.h"
+#include "explore/results.h"
 #include "report/run_report.h"
 
 namespace stipple {

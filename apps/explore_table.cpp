@@ -11,7 +11,7 @@
 
 #include "apps/report/column_width.h"
 #include "apps/report/number_text.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "explore/exploration.h"
 
 namespace stipple {

@@ -20,7 +20,7 @@
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
 #include "core/fault_list.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "stream/plain_text.h"
 
 namespace stipple {

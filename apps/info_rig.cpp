@@ -11,7 +11,7 @@
 #include "apps/rig_folder.h"
 #include "core/config.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {

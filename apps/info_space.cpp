@@ -12,7 +12,7 @@
 #include "apps/report/number_text.h"
 #include "core/config.h"
 #include "core/input_file.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "explore/space.h"
 #include "report/json_figures.h"
 

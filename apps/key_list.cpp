@@ -6,7 +6,7 @@
 
 #include "apps/arguments/command_line.h"
 #include "core/config.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "decoder/decode_options.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "readout/sensor_file.h"

@@ -15,7 +15,7 @@
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "decoder/reconstruct.h"
 #include "scenes/scene.h"
 

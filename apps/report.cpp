@@ -21,7 +21,7 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "core/shape_difference.h"
+#include "core/text.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"

@@ -12,7 +12,7 @@
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
-#include "explore/results_table.h"
+#include "explore/results.h"
 
 namespace stipple {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/colour_filter.h"
 #include "core/error.h"
 #include "core/exposure_schedule.h"
-#include "core/exposure_starting_at.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"

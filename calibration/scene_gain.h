@@ -9,7 +9,7 @@
 #include "calibration/chip_calibration.h"
 #include "decoder/decode_options.h"
 #include "decoder/pixel_response.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 #include "stream/stream_reader.h"

@@ -1,5 +1,8 @@
 #include "capture/loss_counter.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace stipple {
 namespace {
 
@@ -14,6 +17,25 @@ TransportCounts sum(TransportCounts a, const TransportCounts& b) {
 }
 
 }  // namespace
+
+std::uint64_t FrameGap::total() const {
+    return std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
+}
+
+GapCause FrameGap::cause() const {
+    const auto* const most = std::max_element(lost.begin(), lost.end());
+    return *most == 0 ? GapCause::kNone : static_cast<GapCause>(most - lost.begin());
+}
+
+GapCause cause_of(const TransportCounts& before, const TransportCounts& after,
+                  bool incomplete_frames) {
+    if (after.underruns > before.underruns) return GapCause::kHostUnderrun;
+    if (after.socket_drops > before.socket_drops || after.link_faults > before.link_faults)
+        return GapCause::kTransport;
+    if (after.packets_missing > before.packets_missing && !incomplete_frames)
+        return GapCause::kTransport;
+    return GapCause::kDevice;
+}
 
 void LossCounter::begin_epoch(Clock::time_point now) {
     counted_ = {};

@@ -6,10 +6,26 @@
 #include <utility>
 
 #include "capture/camera.h"
-#include "capture/frame_gap.h"
 #include "capture/frame_record.h"
 
 namespace stipple {
+
+/// Frames that are missing before the next one, by cause.
+struct FrameGap {
+    std::array<std::uint64_t, kGapCauseNames.size()> lost{};
+
+    void add(GapCause cause, std::uint64_t frames) {
+        lost[static_cast<std::size_t>(cause)] += frames;
+    }
+    [[nodiscard]] std::uint64_t total() const;
+    /// Of most of them.
+    [[nodiscard]] GapCause cause() const;
+};
+
+/// The cause of a loss, by what the transport had counted before and after it. `incomplete_frames`:
+/// whether frames have arrived incomplete meanwhile; their packets explain the loss of no others.
+[[nodiscard]] GapCause cause_of(const TransportCounts& before, const TransportCounts& after,
+                                bool incomplete_frames);
 
 /// Missing frames of a session by their cause, which the counters of the transport tell. An epoch
 /// lasts from opening the camera to losing it; its counters begin with 0.

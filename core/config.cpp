@@ -12,8 +12,7 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
-#include "core/joined.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "core/toml_keys.h"
 
 namespace stipple {

@@ -7,8 +7,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/executable_dirs.h"
-#include "core/joined.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 
 /// The folder of the package that a program was built with: stippleConfig.cmake gives it the source
 /// that defines this.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 

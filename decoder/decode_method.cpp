@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "decoder/best/collaborative.h"
 #include "decoder/block_partition.h"
 #include "decoder/block_task.h"

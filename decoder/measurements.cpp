@@ -7,7 +7,7 @@
 #include <cassert>
 
 #include "core/error.h"
-#include "core/exposure_starting_at.h"
+#include "core/exposure_schedule.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/pixel_response.h"

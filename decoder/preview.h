@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "decoder/decode_method.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 #include "decoder/video_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"

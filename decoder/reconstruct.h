@@ -8,7 +8,6 @@
 #include "core/flux_video.h"
 #include "decoder/decode_method.h"
 #include "decoder/joint/joint_measurements.h"
-#include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 #include "stream/stream_reader.h"
 

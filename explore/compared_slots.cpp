@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "explore/point_rig.h"
 #include "explore/point_view.h"
 #include "metrics/video_quality.h"
 #include "readout/sensor_file.h"

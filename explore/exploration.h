@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "explore/budget.h"
-#include "explore/mean_interval.h"
 #include "explore/ranking.h"
 #include "explore/space.h"
 #include "explore/trial.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/parsed_number.h"
-#include "core/shell_quoted.h"
+#include "core/text.h"
 #include "explore/point_view.h"
 #include "explore/trial.h"
 #include "readout/provenance.h"

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <string>
+
 #include "core/flux_video.h"
 #include "core/geometry.h"
 #include "explore/space.h"
+#include "readout/rig.h"
 #include "sensor_model/binning.h"
 
 namespace stipple {
@@ -33,5 +36,16 @@ struct PointView {
 /// The mean light of the binned pixels of the window. \throws InputError if it has no whole number
 /// of them.
 [[nodiscard]] FluxVideo binned_light(const FluxVideo& window, const PointView& view);
+
+/// The sensors of a point of a space.
+struct PointRig {
+    Rig rig;           ///< of one sensor if the point names a schedule
+    std::string keys;  ///< of the file of the rig, as lines of TOML; empty: it has no file
+};
+
+/// Keys of the section `sensor` change all sensors of a rig, and the seed s adds kMaxSensors (s -
+/// 1) to theirs. \throws InputError as read_rig; if a sensor of the rig is another one than that of
+/// the point; for keys of a schedule with a rig, and keys of a rig without one.
+[[nodiscard]] PointRig rig_of(const Space& space, const SpacePoint& point);
 
 }  // namespace stipple

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "core/toml_keys.h"
 #include "scenes/scene.h"
 

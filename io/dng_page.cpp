@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/joined.h"
 #include "core/light.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -25,9 +25,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/joined.h"
 #include "core/light.h"
 #include "core/memory_limit.h"
+#include "core/text.h"
 #include "io/output_file.h"
 #include "io/primaries.h"
 

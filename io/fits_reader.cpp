@@ -13,9 +13,9 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/joined.h"
 #include "core/light.h"
 #include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/footage_files.h"
 
 namespace stipple {

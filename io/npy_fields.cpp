@@ -1,4 +1,4 @@
-#include "io/npy_fields.h"
+#include "io/npy_header.h"
 
 #include <fmt/format.h>
 

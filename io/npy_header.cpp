@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/joined.h"
 #include "core/light.h"
-#include "io/npy_fields.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -13,7 +13,6 @@
 #include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
-#include "io/npy_fields.h"
 #include "io/npy_header.h"
 
 namespace stipple {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "capture/camera_kind.h"
-#include "capture/image_camera.h"
 #include "capture/live_camera.h"
+#include "capture/open_camera.h"
 #include "capture/session_figures.h"
 #include "core/config.h"
 #include "core/error.h"

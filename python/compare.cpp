@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/shape_difference.h"
+#include "core/text.h"
 #include "metrics/video_quality.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"

@@ -13,8 +13,7 @@
 
 #include "core/error.h"
 #include "explore/exploration.h"
-#include "explore/results_page.h"
-#include "explore/results_table.h"
+#include "explore/results.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"

@@ -10,7 +10,7 @@
 #include "capture/capture_end.h"
 #include "capture/live_figures.h"
 #include "capture/live_origin.h"
-#include "capture/rate_warning.h"
+#include "capture/sensor_warnings.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/output_names.h"

@@ -1,6 +1,6 @@
 #include "readout/light_throughput.h"
 
-#include "core/exposure_starting_at.h"
+#include "core/exposure_schedule.h"
 
 namespace stipple {
 namespace {

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/shell_quoted.h"
+#include "core/text.h"
 #include "core/toml_keys.h"
 #include "core/version.h"
 #include "readout/sensor_file.h"

@@ -9,7 +9,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/input_file.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "io/footage_files.h"
 #include "readout/program/program_text.h"
 #include "readout/schedules/schedule_catalogue.h"

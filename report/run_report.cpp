@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/shape_difference.h"
+#include "core/text.h"
 #include "core/version.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/exposure_starting_at.h"
+#include "core/exposure_schedule.h"
 #include "decoder/pixel_response.h"
 #include "report/plane_code.h"
 #include "report/schedule_lanes.h"

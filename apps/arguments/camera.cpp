@@ -9,7 +9,7 @@
 #include "apps/arguments/checks.h"
 #include "apps/interrupt.h"
 #include "capture/camera_kind.h"
-#include "capture/image_camera.h"
+#include "capture/open_camera.h"
 #include "core/config.h"
 
 namespace stipple {

@@ -14,7 +14,7 @@
 #include "apps/standard_error.h"
 #include "apps/standard_output.h"
 #include "capture/recording/replay_camera.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -9,11 +9,9 @@
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
 #include "capture/recording/recording_footage.h"
-#include "capture/serve/coded_frames.h"
-#include "capture/serve/footage_frames.h"
-#include "capture/serve/recording_frames.h"
+#include "capture/serve/served_frames.h"
 #include "core/error.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "readout/footage_origin.h"
 
 namespace stipple {

@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/joined.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 #include "io/footage_files.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "apps/report/demo_report.h"
+#include "apps/demo_trials.h"
 
 #include <fmt/format.h>
 

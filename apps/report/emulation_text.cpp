@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/number_text.h"
-#include "apps/report/readout_text.h"
 #include "readout/emulation_figures.h"
 #include "readout/sensor_file.h"
 #include "report/json_figures.h"

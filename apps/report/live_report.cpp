@@ -1,4 +1,4 @@
-#include "apps/report/live_report.h"
+#include "apps/report/session_report.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 
 #include "apps/report/emulation_text.h"
 #include "apps/report/number_text.h"
-#include "apps/report/session_report.h"
 #include "report/json_figures.h"
 
 namespace stipple {

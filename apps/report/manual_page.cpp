@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

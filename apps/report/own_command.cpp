@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "core/shell_quoted.h"
+#include "core/text.h"
 
 namespace stipple {
 

@@ -1,4 +1,4 @@
-#include "apps/report/readout_text.h"
+#include "apps/report/emulation_text.h"
 
 #include <fmt/format.h>
 

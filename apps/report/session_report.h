@@ -4,6 +4,7 @@
 #include <string>
 
 #include "capture/capture_session.h"
+#include "capture/live_figures.h"
 
 namespace stipple {
 
@@ -29,5 +30,12 @@ void say_event(const SessionEvent& event);
 
 /// Warns of what may cost frames.
 void say_warnings(const CameraDescription& camera);
+
+/// The keys of `capture live` in docs/outputs.md, without `preview`.
+[[nodiscard]] nlohmann::ordered_json live_json(const LiveReport& report);
+
+/// The same for people; slots are late after `late_after_slots`.
+[[nodiscard]] std::string live_text(const LiveReport& report, const std::string& output,
+                                    double late_after_slots);
 
 }  // namespace stipple

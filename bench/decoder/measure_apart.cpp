@@ -10,7 +10,7 @@
 #include "bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/parallel.h"
-#include "core/shell_quoted.h"
+#include "core/text.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"

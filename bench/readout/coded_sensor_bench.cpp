@@ -10,7 +10,6 @@
 #include "core/parallel.h"
 #include "readout/coded_sensor.h"
 #include "readout/column_adc.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "scenes/scene.h"
 

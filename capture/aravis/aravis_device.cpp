@@ -17,7 +17,7 @@
 #include "capture/network.h"
 #include "core/error.h"
 #include "core/parsed_number.h"
-#include "core/suggestion.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

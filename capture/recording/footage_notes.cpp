@@ -4,9 +4,8 @@
 
 #include <utility>
 
-#include "capture/level_warning.h"
-#include "capture/rate_warning.h"
-#include "core/joined.h"
+#include "capture/sensor_warnings.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

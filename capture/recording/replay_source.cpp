@@ -10,7 +10,7 @@
 
 #include "capture/clipping.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 #include "stream/little_endian.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "capture/serve/coded_frames.h"
+#include "capture/serve/served_frames.h"
 
 #include <utility>
 

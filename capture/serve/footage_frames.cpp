@@ -1,4 +1,4 @@
-#include "capture/serve/footage_frames.h"
+#include "capture/serve/served_frames.h"
 
 #include <fmt/format.h>
 

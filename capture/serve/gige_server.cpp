@@ -16,7 +16,6 @@
 #include "capture/network.h"
 #include "capture/serve/gige_device.h"
 #include "capture/serve/gvsp_sender.h"
-#include "capture/serve/served_block.h"
 #include "capture/serve/udp_socket.h"
 #include "core/error.h"
 

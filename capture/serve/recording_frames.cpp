@@ -1,4 +1,4 @@
-#include "capture/serve/recording_frames.h"
+#include "capture/serve/served_frames.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "capture/frame_rate.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

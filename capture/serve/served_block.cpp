@@ -1,4 +1,4 @@
-#include "capture/serve/served_block.h"
+#include "capture/serve/gvsp_sender.h"
 
 #include <algorithm>
 #include <array>

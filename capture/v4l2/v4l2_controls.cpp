@@ -11,7 +11,7 @@
 
 #include "capture/setting_value.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

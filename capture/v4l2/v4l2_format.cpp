@@ -12,7 +12,7 @@
 #include "capture/setting_value.h"
 #include "core/error.h"
 #include "core/geometry.h"
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -15,7 +15,7 @@
 #include "capture/v4l2/v4l2_device.h"
 #include "capture/v4l2/v4l2_format.h"
 #include "core/error.h"
-#include "core/joined.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/flux_video.h"
 #include "decoder/best/patch_matching.h"
 #include "decoder/fast/motion_tv.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 

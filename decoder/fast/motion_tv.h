@@ -5,7 +5,7 @@
 #include "core/flux_video.h"
 #include "decoder/fast/total_variation.h"
 #include "decoder/motion/motion.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 

@@ -5,7 +5,7 @@
 
 #include "core/flux_video.h"
 #include "decoder/hitomi2011/patch_dictionary.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 

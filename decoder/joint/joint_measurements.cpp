@@ -8,7 +8,6 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/joint/merged_exposures.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 

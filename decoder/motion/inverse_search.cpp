@@ -1,13 +1,8 @@
-// Compiled once per SIMD target by foreach_target.h, chosen at run time. Sums of patches are in
-// integers, so every target gives the same bits.
 #include "decoder/motion/inverse_search.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "decoder/motion/inverse_search.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>
 
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,6 +10,13 @@
 #include <vector>
 
 #include "core/index.h"
+#include "core/light.h"
+
+// Compiled once per SIMD target by foreach_target.h, chosen at run time. Sums of patches are in
+// integers, so every target gives the same bits.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decoder/motion/inverse_search.cpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
@@ -323,7 +325,23 @@ DenseFlow search_images(const FlowImage& from, const FlowImage& to, const DenseF
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
 namespace stipple {
+
+std::vector<std::uint8_t> grey_levels(const FluxVideo& video, int slot) {
+    std::span<const float> light = video.frame(slot);
+    std::vector<float> luminance;
+    if (video.shape().planes == 3) {
+        luminance.resize(video.shape().pixels());
+        reduce_to_luminance(light, luminance);
+        light = luminance;
+    }
+    std::vector<std::uint8_t> levels(light.size());
+    std::ranges::transform(light, levels.begin(), [](float value) {
+        return static_cast<std::uint8_t>(255 * std::sqrt(std::clamp(value, 0.0F, 1.0F)) + 0.5F);
+    });
+    return levels;
+}
 
 HWY_EXPORT(search_images);
 
@@ -333,4 +351,3 @@ DenseFlow inverse_search(const FlowImage& from, const FlowImage& to, const Dense
 }
 
 }  // namespace stipple
-#endif  // HWY_ONCE

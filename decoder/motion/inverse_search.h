@@ -4,9 +4,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "decoder/motion/inverse_search_options.h"
+#include "core/flux_video.h"
 
 namespace stipple {
+
+inline constexpr int kFlowShiftsPerPixel = 64;  ///< shifts are in 1 / 64 pixels
+
+/// Of the dense inverse search (inverse_search.h).
+struct InverseSearchOptions {
+    int patch_stride_px = 4;       ///< between patches
+    float range_sigma_px = 0.03F;  ///< range sigma of the bilateral filter of the shifts
+};
+
+/// Input of the optical flow: 255 sqrt(luminance) of a slot, order (row, col). The square root
+/// gives the same bits everywhere; a power of 1/2.2 does not.
+[[nodiscard]] std::vector<std::uint8_t> grey_levels(const FluxVideo& video, int slot);
 
 /// Pixels repeated around the image of a flow, so that patches may leave the image.
 inline constexpr int kFlowBorder = 16;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "decoder/motion/grey_levels.h"
 #include "decoder/motion/inverse_search.h"
 
 namespace stipple {

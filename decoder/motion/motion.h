@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/motion/inverse_search_options.h"
+#include "decoder/motion/inverse_search.h"
 
 namespace stipple {
 

@@ -8,7 +8,7 @@
 #include "core/flux_video.h"
 #include "decoder/portz2013/patch_distance.h"
 #include "decoder/portz2013/portz2013.h"
-#include "decoder/progress_callback.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 

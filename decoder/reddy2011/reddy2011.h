@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "core/flux_video.h"
-#include "decoder/progress_callback.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {

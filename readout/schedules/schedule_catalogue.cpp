@@ -12,7 +12,6 @@
 #include "readout/column_addressing.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/random_codes.h"
 #include "readout/schedules/tiled_schedule.h"

@@ -118,6 +118,15 @@ void even_out(Tile& tile, SlotCounts& counts, std::span<const int> lengths, Draw
 
 }  // namespace
 
+ExposureSchedule full_schedule(int open_slots, int period_slots) {
+    if (open_slots < 1 || open_slots > kMaxExposureSlots || open_slots > period_slots)
+        throw InputError("exposure schedule",
+                         fmt::format("{} open slots in a period of {}: needs 1 to {} open slots "
+                                     "and a period not shorter",
+                                     open_slots, period_slots, kMaxExposureSlots));
+    return {1, 1, period_slots, {0, 1}, {{0, open_without_gap(open_slots)}}};
+}
+
 ExposureSchedule tiled_schedule(int tile_rows, int tile_cols, std::span<const int> exposure_slots,
                                 std::uint64_t seed) {
     check(tile_rows, tile_cols, exposure_slots);

@@ -8,6 +8,10 @@
 
 namespace stipple {
 
+/// Every pixel of the array exposes `open_slots` slots together, every `period_slots` slots: a
+/// conventional camera. \throws InputError unless 1 <= open_slots <= 64, open_slots <= period.
+[[nodiscard]] ExposureSchedule full_schedule(int open_slots, int period_slots);
+
 /// Pixels along the sides of such a tile and lengths of a pixel: 2^24 exposures, a stream's most.
 inline constexpr int kMaxTiledSide = 256;
 inline constexpr std::size_t kMaxTiledLengths = 255;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 
 namespace stipple {
 namespace {

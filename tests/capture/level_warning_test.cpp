@@ -1,4 +1,4 @@
-#include "capture/level_warning.h"
+#include "capture/sensor_warnings.h"
 
 #include <gtest/gtest.h>
 

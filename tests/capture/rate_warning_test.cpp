@@ -1,4 +1,4 @@
-#include "capture/rate_warning.h"
+#include "capture/sensor_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

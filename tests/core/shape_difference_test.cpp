@@ -1,4 +1,4 @@
-#include "core/shape_difference.h"
+#include "core/text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/shell_quoted.h"
+#include "core/text.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {

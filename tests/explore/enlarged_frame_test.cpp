@@ -1,4 +1,4 @@
-#include "explore/enlarged_frame.h"
+#include "explore/trial_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "explore/results_table.h"
+#include "explore/results.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "explore/mean_interval.h"
+#include "explore/ranking.h"
 
 #include <gtest/gtest.h>
 

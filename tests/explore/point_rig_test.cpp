@@ -1,4 +1,4 @@
-#include "explore/point_rig.h"
+#include "explore/point_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "explore/results_table.h"
+#include "explore/results.h"
 
 #include <gtest/gtest.h>
 

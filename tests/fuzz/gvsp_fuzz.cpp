@@ -4,7 +4,7 @@
 #include "capture/serve/big_endian.h"
 #include "capture/serve/gvcp_codec.h"
 #include "capture/serve/gvsp_codec.h"
-#include "capture/serve/served_block.h"
+#include "capture/serve/gvsp_sender.h"
 #include "tests/fuzz/framed_file.h"
 #include "tests/fuzz/require.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "readout/timing/full_readout.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/slot_readout.h"

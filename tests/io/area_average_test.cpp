@@ -1,4 +1,4 @@
-#include "io/area_average.h"
+#include "io/footage_part.h"
 
 #include <gtest/gtest.h>
 

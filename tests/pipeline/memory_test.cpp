@@ -8,7 +8,7 @@
 #include "decoder/block_partition.h"
 #include "decoder/decode_method.h"
 #include "decoder/decode_options.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/hitomi2011/cosine_dictionary.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"

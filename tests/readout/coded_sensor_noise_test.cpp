@@ -9,7 +9,7 @@
 
 #include "core/flux_video.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 
 namespace stipple {
 namespace {

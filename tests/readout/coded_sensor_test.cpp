@@ -15,7 +15,6 @@
 #include "core/flux_video.h"
 #include "core/parallel.h"
 #include "readout/column_adc.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "sensor_model/pixel_array.h"
 #include "tests/readout/gapped_schedule.h"

@@ -7,7 +7,7 @@
 
 #include "core/flux_video.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/gapped_schedule.h"
 
 namespace stipple {

@@ -3,8 +3,7 @@
 
 #include <array>
 
-#include "capture/serve/footage_frames.h"
-#include "capture/serve/recording_frames.h"
+#include "capture/serve/served_frames.h"
 #include "core/error.h"
 #include "tests/capture/recording/recordings.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,7 @@
 #include "decoder/pixel_response.h"
 #include "decoder/reconstruct.h"
 #include "decoder/sampling_operator.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 

@@ -7,7 +7,6 @@
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
 #include "readout/coded_sensor.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"

@@ -1,4 +1,4 @@
-#include "decoder/joint/merged_exposures.h"
+#include "decoder/joint/joint_measurements.h"
 
 #include <gtest/gtest.h>
 

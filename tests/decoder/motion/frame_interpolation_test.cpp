@@ -10,7 +10,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/reconstruct.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 #include "tests/support/expect_quality.h"

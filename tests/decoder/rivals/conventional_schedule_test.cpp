@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/stream/stream_bytes.h"
 

@@ -13,7 +13,6 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "decoder/rivals/conventional_schedule.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"

@@ -10,7 +10,6 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"

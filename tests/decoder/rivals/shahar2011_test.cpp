@@ -9,7 +9,7 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/recordings.h"
 #include "tests/support/expect_quality.h"
 

@@ -6,7 +6,6 @@
 
 #include "core/parallel.h"
 #include "decoder/schedule_check/schedule_residual.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"

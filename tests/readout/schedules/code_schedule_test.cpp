@@ -8,8 +8,8 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/schedule_catalogue.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/gapped_schedule.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,4 @@
 #include "readout/schedules/schedule_catalogue.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 
 #include <gtest/gtest.h>

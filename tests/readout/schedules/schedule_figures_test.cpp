@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "readout/program/sequencer_program.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/gapped_schedule.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "readout/program/sequencer_program.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
 #include "readout/schedules/hardware_tiled.h"
 #include "readout/schedules/schedule_catalogue.h"
 #include "readout/schedules/tiled_schedule.h"

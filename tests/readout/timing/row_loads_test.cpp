@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "readout/timing/full_readout.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "readout/schedules/full_schedule.h"
+#include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/timing/random_readout.h"
 #include "tests/readout/timing/sensor_timing.h"
 

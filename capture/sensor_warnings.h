@@ -4,6 +4,7 @@
 
 #include "capture/frame_rate.h"
 #include "core/message.h"
+#include "io/image.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {
@@ -25,5 +26,11 @@ namespace stipple {
 /// Warning for footage whose exposure time is longer than a slot; else empty.
 [[nodiscard]] std::string exposure_warning(const std::string& file, double exposure_us,
                                            const SensorParams& sensor);
+
+/// Warning that a camera file has its black level elsewhere than a sensor of as many bits, by more
+/// than a DN; else empty. Numbers of other bits do not compare, and a sensor in paper mode has no
+/// black level.
+[[nodiscard]] Message black_level_warning(const std::string& file, const SourceInfo& footage,
+                                          const SensorParams& sensor);
 
 }  // namespace stipple

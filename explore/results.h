@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "explore/exploration.h"
 
 namespace stipple {
 
@@ -30,5 +33,16 @@ struct TableCell {
 
 /// The points that were reached as RFC 4180 has it, the names of the columns first.
 [[nodiscard]] std::string csv_table(const Exploration& exploration);
+
+/// What the page of an exploration holds at most. The best points come first.
+struct PageBounds {
+    std::size_t points = 5000;                           ///< the table holds all
+    std::size_t picture_bytes = std::size_t{16} << 20U;  ///< of the pictures in base64
+};
+
+/// The page of an exploration (docs/explore.md): an HTML file that needs no other one. `command`
+/// made it; empty: not known.
+[[nodiscard]] std::string results_page(const Exploration& exploration, const std::string& title,
+                                       const std::string& command, const PageBounds& bounds = {});
 
 }  // namespace stipple

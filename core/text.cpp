@@ -1,13 +1,12 @@
-#include "core/suggestion.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <string_view>
 #include <utility>
-
-#include "core/joined.h"
 
 namespace stipple {
 namespace {
@@ -36,6 +35,25 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string shape_text(FrameShape shape) {
+    return fmt::format("{} x {} x {}", shape.cols, shape.rows, shape.planes);
+}
+
+std::string shape_difference(FrameShape found, FrameShape wanted, std::string_view others) {
+    return fmt::format("has frames of {} (width x height x planes), {} {}", shape_text(found),
+                       others, shape_text(wanted));
+}
+
+std::string shell_quoted(const std::string& argument) {
+    constexpr std::string_view kPlain =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./=:,%+@-";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos)
+        return argument;
+    std::string text = "'";
+    for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
     const std::string wanted = lower_case(name);

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace stipple {
+
+/// The strings of `items` with ", " between them. (fmt::join makes g++ 12 warn at -O3.)
+template <typename Strings>
+[[nodiscard]] std::string joined(const Strings& items) {
+    std::string text;
+    for (const auto& item : items) {
+        if (!text.empty()) text += ", ";
+        text += item;
+    }
+    return text;
+}
+
+/// `argument` as a POSIX shell takes it for one word: as it is if all of its characters are plain,
+/// else in single quotes.
+[[nodiscard]] std::string shell_quoted(const std::string& argument);
+
+/// The name of `known` that a misspelt `name` probably means: the first one that begins with it, or
+/// the one with the min edit distance, if that is at most a third of its characters.
+/// Edits are insertions, deletions, replacements and swaps of neighbours; case is ignored. Empty if
+/// there is none.
+[[nodiscard]] std::string nearest_name(std::string_view name,
+                                       const std::vector<std::string>& known);
+
+/// Message on a `name` that is not in `known`: `did you mean "x"?`, or the list of known names.
+[[nodiscard]] std::string suggestion(std::string_view name, const std::vector<std::string>& known);
+
+/// "640 x 480 x 3": width, height, planes.
+[[nodiscard]] std::string shape_text(FrameShape shape);
+
+/// Message on frames of a wrong shape: "has frames of 8 x 6 x 3 (width x height x planes), but the
+/// reference has 8 x 6 x 1" for `others` = "but the reference has".
+[[nodiscard]] std::string shape_difference(FrameShape found, FrameShape wanted,
+                                           std::string_view others);
+
+}  // namespace stipple
