@@ -17,7 +17,6 @@
 #include "core/exposure_schedule.h"
 #include "core/memory_limit.h"
 #include "decoder/hitomi2011/ksvd.h"
-#include "decoder/hitomi2011/training_patches.h"
 #include "io/npy_writer.h"
 #include "io/pending_output.h"
 

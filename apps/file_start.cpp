@@ -1,4 +1,4 @@
-#include "apps/file_start.h"
+#include "apps/info.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "apps/arguments/footage.h"
-#include "apps/file_start.h"
 #include "apps/fixed_pattern.h"
 #include "apps/info.h"
 #include "apps/interrupt.h"

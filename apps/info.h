@@ -49,4 +49,9 @@ void info_settings(SettingsKind kind, const std::string& name, const RunOptions&
 /// InputError as parse_space.
 void info_space(const std::string& name, const RunOptions& run);
 
+/// What a file that nothing knows seems to be, by its first bytes: "an empty file", "a web page
+/// (HTML)", `text that begins "..."`, "a file that begins with the bytes 89 41 42".
+/// \throws InputError if the file cannot be read.
+[[nodiscard]] std::string sniff_file_type(const std::string& file);
+
 }  // namespace stipple

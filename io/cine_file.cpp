@@ -1,6 +1,6 @@
 // Offsets and meanings: libavformat/cinedec.c of FFmpeg, pims/cine.py of PIMS, and pycine
 // (docs/references.md). All numbers are little-endian.
-#include "io/cine_file.h"
+#include "io/camera_file.h"
 
 #include <fmt/format.h>
 

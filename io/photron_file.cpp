@@ -1,5 +1,5 @@
 // Keys and their meaning: pyMRAW (docs/references.md).
-#include "io/photron_file.h"
+#include "io/camera_file.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>

@@ -1,4 +1,4 @@
-#include "io/video_encoder.h"
+#include "io/video_writer.h"
 
 #include <fmt/format.h>
 

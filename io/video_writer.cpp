@@ -20,7 +20,6 @@
 #include "io/lazy_ffmpeg.h"
 #include "io/output_file.h"
 #include "io/tone_map.h"
-#include "io/video_encoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/camera_file.h"
 #include "io/footage_files.h"
-#include "io/photron_file.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

@@ -20,7 +20,6 @@
 #include "report/report_page.h"
 #include "report/report_videos.h"
 #include "report/schedule_lanes.h"
-#include "report/stream_loads.h"
 #include "report/stream_samples.h"
 #include "report/stream_text.h"
 #include "stream/stream_figures.h"

@@ -1,4 +1,4 @@
-#include "report/stream_loads.h"
+#include "report/stream_samples.h"
 
 #include <cstddef>
 #include <nlohmann/json.hpp>

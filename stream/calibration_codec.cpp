@@ -1,4 +1,4 @@
-#include "stream/calibration_codec.h"
+#include "stream/header_sections.h"
 
 #include <fmt/format.h>
 

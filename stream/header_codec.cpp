@@ -8,12 +8,10 @@
 
 #include "core/error.h"
 #include "core/geometry.h"
-#include "stream/calibration_codec.h"
 #include "stream/crc32c.h"
+#include "stream/header_sections.h"
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"
-#include "stream/schedule_codec.h"
-#include "stream/weight_codec.h"
 
 namespace stipple {
 namespace {

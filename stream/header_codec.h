@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "stream/framing.h"
-#include "stream/schedule_codec.h"
+#include "stream/header_sections.h"
 #include "stream/stream_header.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "stream/weight_codec.h"
+#include "stream/header_sections.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 
 #include "capture/aravis/gige_link.h"
 #include "capture/aravis/glib_error.h"
-#include "capture/aravis/usb_packets.h"
 #include "capture/frame_holes.h"
 #include "capture/host_clock.h"
 #include "core/error.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "capture/aravis/glib_error.h"
-#include "capture/aravis/gvsp_filter.h"
 #include "capture/doctor/network_facts.h"
 #include "capture/serve/big_endian.h"
 

@@ -1,4 +1,4 @@
-#include "capture/aravis/gvsp_filter.h"
+#include "capture/aravis/gige_link.h"
 
 #include <arpa/inet.h>
 #include <linux/filter.h>

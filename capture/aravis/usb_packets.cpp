@@ -1,4 +1,4 @@
-#include "capture/aravis/usb_packets.h"
+#include "capture/aravis/aravis_stream.h"
 
 #include <algorithm>
 #include <array>

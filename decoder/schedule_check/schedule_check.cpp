@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "decoder/schedule_check/schedule_residual.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "decoder/schedule_check/schedule_residual.h"
+#include "decoder/schedule_check/schedule_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "capture/aravis/usb_packets.h"
+#include "capture/aravis/aravis_stream.h"
 #include "capture/frame_holes.h"
 #include "stream/little_endian.h"
 #include "tests/fuzz/require.h"

@@ -1,4 +1,4 @@
-#include "stream/schedule_codec.h"
+#include "stream/header_sections.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/aravis/gvsp_filter.h"
+#include "capture/aravis/gige_link.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "decoder/hitomi2011/training_patches.h"
+#include "decoder/hitomi2011/ksvd.h"
 
 #include <gtest/gtest.h>
 

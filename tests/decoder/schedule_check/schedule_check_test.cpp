@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "decoder/schedule_check/schedule_residual.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/recordings.h"

@@ -15,6 +15,39 @@
 
 namespace stipple {
 
+/// Max pixels of a calibration tile.
+inline constexpr std::size_t kMaxCalibrationPixels = std::size_t{1} << 22U;
+
+/// True if the calibration has values that the fixed part of a header does not hold.
+[[nodiscard]] bool needs_calibration_section(const Calibration& calibration);
+
+/// The calibration section of a header. \throws InputError at `where` if a value is outside its
+/// limits. Precondition: needs_calibration_section(calibration).
+[[nodiscard]] std::vector<std::uint8_t> encode_calibration(const Calibration& calibration,
+                                                           std::string_view where);
+
+/// The inverse: sets the values of the section in `calibration`. `section` begins at `offset` of
+/// the file that messages call `where`. \throws InputError naming file and offset.
+void decode_calibration(std::span<const std::uint8_t> section, std::size_t offset,
+                        std::string_view where, Calibration& calibration);
+
+/// Max weights of a tile: slots of its period x pixels.
+inline constexpr std::size_t kMaxWeights = std::size_t{1} << 26U;
+
+/// Bytes of the weights section of a schedule, if it has one.
+[[nodiscard]] std::size_t weight_bytes(const ExposureSchedule& schedule);
+
+/// The weights section of a header. \throws InputError at `where` if there are more than 2^26
+/// weights. Precondition: schedule.weighted().
+[[nodiscard]] std::vector<std::uint8_t> encode_weights(const ExposureSchedule& schedule,
+                                                       std::string_view where);
+
+/// The inverse: sets the weights of `schedule`. `section` begins at `offset` of the file that
+/// messages call `where`. \throws InputError naming file and offset. Precondition: section.size()
+/// == weight_bytes(schedule).
+void decode_weights(std::span<const std::uint8_t> section, std::size_t offset,
+                    std::string_view where, ExposureSchedule& schedule);
+
 /// A schedule and its storage.
 struct StoredSchedule {
     ExposureSchedule schedule;
