@@ -3,10 +3,7 @@
 # Same bits everywhere: no contraction to FMA, no reassociation (docs/style.md, "Numbers").
 add_compile_options(-ffp-contract=off)
 # libFuzzer is guided by the branches that the modules take, so they count them.
-set(stipple_counted)
-if(STIPPLE_FUZZ)
-    set(stipple_counted -fsanitize=fuzzer-no-link)
-endif()
+set(stipple_counted $<$<BOOL:${STIPPLE_FUZZ}>:-fsanitize=fuzzer-no-link>)
 
 # For what has no inner loop: a short build rather than a fast program.
 set(STIPPLE_SHORT_BUILD
