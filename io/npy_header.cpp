@@ -27,7 +27,7 @@ constexpr TypeName kTypes[] = {{"|u1", NpyType::kUint8},  {"<u1", NpyType::kUint
 std::string type_for(std::string_view name) {
     const std::string_view kind = name.substr(std::min<std::size_t>(1, name.size()));
     if (name.starts_with('>') && (kind == "u2" || kind.starts_with('f')))
-        return "<" + std::string(kind);
+        return fmt::format("<{}", kind);
     return kind == "b1" || kind == "i1" ? "u1" : kind == "i2" ? "u2" : "f4";
 }
 

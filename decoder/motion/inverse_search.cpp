@@ -1,8 +1,13 @@
+// Compiled once per SIMD target by foreach_target.h, chosen at run time. Sums of patches are in
+// integers, so every target gives the same bits.
 #include "decoder/motion/inverse_search.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decoder/motion/inverse_search.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>
 
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,12 +16,6 @@
 
 #include "core/index.h"
 #include "core/light.h"
-
-// Compiled once per SIMD target by foreach_target.h, chosen at run time. Sums of patches are in
-// integers, so every target gives the same bits.
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "decoder/motion/inverse_search.cpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
