@@ -1,10 +1,10 @@
 #include "apps/attached_calibration.h"
 
-#include "apps/fixed_pattern.h"
-#include "apps/report/text_file.h"
 #include "calibration/calibration_file.h"
+#include "io/text_file.h"
 #include "readout/emulator.h"
 #include "readout/provenance.h"
+#include "session/stream_calibration.h"
 
 namespace stipple {
 namespace {

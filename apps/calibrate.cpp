@@ -12,10 +12,10 @@
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
-#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "calibration/chip_estimate.h"
+#include "io/text_file.h"
 
 namespace stipple {
 namespace {

@@ -16,7 +16,6 @@
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/recording/footage_notes.h"
@@ -26,6 +25,7 @@
 #include "io/footage_files.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 #include "metrics/video_quality.h"
 #include "report/quality_metrics.h"
 

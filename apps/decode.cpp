@@ -6,10 +6,10 @@
 #include "apps/arguments/settings.h"
 #include "apps/arguments/video_output.h"
 #include "apps/decode.h"
-#include "apps/rig_folder.h"
 #include "apps/subcommands.h"
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
+#include "session/rig_folder.h"
 
 namespace stipple {
 namespace {

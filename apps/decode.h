@@ -8,10 +8,10 @@
 
 #include "apps/arguments/run_options.h"
 #include "apps/part_of_work.h"
-#include "decoder/decode_options.h"
 #include "decoder/schedule_check/schedule_check.h"
 #include "io/image_coding.h"
 #include "io/video_coding.h"
+#include "session/decode_session.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {
@@ -22,9 +22,6 @@ enum class CheckSchedule : std::uint8_t {
     kRefuseShift,  ///< samples that follow the schedule with a shift are an error
     kFixShift      ///< they are decoded with this shift
 };
-
-/// Of `DecodeArguments::calibration`: do not calibrate.
-inline constexpr std::string_view kNoCalibration = "none";
 
 /// The arguments of `stipple decode`.
 struct DecodeArguments {
@@ -37,31 +34,17 @@ struct DecodeArguments {
     bool strict = false;
     bool fill_gaps = false;
     std::int64_t until = 0;   ///< frames wanted; 0: all
-    PartOfWork part;          ///< of the windows of the stream
+    Shard part;               ///< of the windows of the stream
     bool follow = false;      ///< the stream is still being written
     double timeout_s = 10;    ///< with `follow`: without growth
-    std::string calibration;  ///< file of the chip's calibration, or "none"; empty: beside stream
+    std::string calibration;  ///< as calibration_choice
     CheckSchedule check_schedule = CheckSchedule::kNo;
     VideoCoding video;   ///< of .mp4 and .mkv
     ImageCoding images;  ///< of folders and .tif
 };
 
-/// A method with its options.
-struct DecodeSetup {
-    DecodeOptions options;
-    std::string given;  ///< options that the user gave, lines of TOML sorted by key
-};
-
-/// \throws InputError as read_decode_options, or if the method has no stages to keep.
-[[nodiscard]] DecodeSetup read_decode_setup(const DecodeArguments& arguments);
-
-/// The calibration file of a stream: the one that is given, or the one beside the stream. Empty
-/// without one, and of "none".
-[[nodiscard]] std::string calibration_file(const DecodeArguments& arguments);
-
-/// Uses the calibration of the chip, or warns what it costs that there is none.
-/// \throws InputError as read_calibration.
-void calibrate(StreamReader& reader, const DecodeArguments& arguments);
+/// \throws InputError as read_decode_setup, or if the method has no stages to keep.
+[[nodiscard]] DecodeSetup setup_of(const DecodeArguments& arguments);
 
 /// The name of its file, or null.
 [[nodiscard]] nlohmann::ordered_json calibration_json(const DecodeArguments& arguments);

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
@@ -18,14 +16,9 @@
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/report/stage_outputs.h"
-#include "apps/rig_folder.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "decoder/decode_cost.h"
-#include "decoder/decode_options.h"
-#include "decoder/measurements.h"
-#include "decoder/reconstruct.h"
 #include "io/frame_writer.h"
 #include "io/growing_file.h"
 #include "stream/stream_figures.h"
@@ -40,8 +33,10 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
         const auto file = growing.wait_for_file();
         if (!file) throw Interrupted{};
         try {
-            return StreamReader(*file, policy,
+            StreamReader reader(*file, policy,
                                 [&](std::uint64_t bytes) { return growing.more(bytes); });
+            reader.use_name(arguments.stream);
+            return reader;
         } catch (const InputError&) {
             throw_if_stopped();  // the rest of the header may still have come
             if (std::filesystem::exists(*file)) throw;
@@ -50,14 +45,13 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
     }
 }
 
-/// The streams of the folder of a rig; of any other input the one stream.
-RigFolder open_streams(const DecodeArguments& arguments, GrowingFile& growing) {
+DecodeSession open_session(const DecodeArguments& arguments, GrowingFile& growing) {
     const ReadPolicy policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant;
-    if (is_rig_folder(arguments.stream)) return open_rig_folder(arguments.stream, policy);
-    RigFolder alone;
-    alone.rig.sensors.resize(1);
-    alone.readers.push_back(open_stream(arguments, policy, growing));
-    return alone;
+    const CalibrationChoice calibration = calibration_choice(arguments.calibration);
+    if (is_rig_folder(arguments.stream))
+        return {open_rig_folder(arguments.stream, policy, [] { throw_if_stopped(); }),
+                setup_of(arguments), calibration};
+    return {open_stream(arguments, policy, growing), setup_of(arguments), calibration};
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -121,18 +115,15 @@ class DecodeRun {
     [[nodiscard]] nlohmann::ordered_json figures() const;
     [[nodiscard]] std::string summary() const;
     void warn_of_end() const;
-    [[nodiscard]] const std::string& name_of(const StreamReader& reader) const;
     void warn_of_faults(const StreamReader& reader) const;
     void refuse_damage(const StreamReader& reader) const;
 
     const DecodeArguments& arguments_;
     const RunOptions& run_;
-    DecodeOptions options_;
     GrowingFile growing_;
     JsonFile json_;
     std::optional<ScheduleCheck> check_;
-    RigFolder input_;
-    StreamReader& reader_;  ///< of the stream, or of the first one of a rig
+    DecodeSession session_;
     FrameWriter writer_;
     StageOutputs stages_;
     DecodeReport report_;
@@ -142,24 +133,20 @@ class DecodeRun {
 DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       run_(run),
-      options_(read_decode_setup(arguments).options),
       growing_(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; }),
       json_(run),
       check_(check_schedule()),
-      input_(open_streams(arguments, growing_)),
-      reader_(input_.readers.front()),
-      writer_(arguments.output, decoded_shape(reader_.header()),
-              writer_options(arguments, run, reader_.header())),
-      stages_(arguments.stages, decoded_shape(reader_.header()), run.force) {
-    if (check_ && check_->verdict == ScheduleCheck::Verdict::kShifted)
-        reader_.use_schedule(shifted_schedule(reader_.header().schedule, check_->shift));
-    for (StreamReader& reader : input_.readers) {
-        DecodeArguments own = arguments;
-        if (input_.readers.size() > 1) own.stream = reader.name();
-        calibrate(reader, own);
-    }
+      session_(open_session(arguments, growing_)),
+      writer_(arguments.output, session_.shape(),
+              writer_options(arguments, run, session_.streams().front().header())),
+      stages_(arguments.stages, session_.shape(), run.force) {
+    if (StreamReader& stream = session_.streams().front();
+        check_ && check_->verdict == ScheduleCheck::Verdict::kShifted)
+        stream.use_schedule(shifted_schedule(stream.header().schedule, check_->shift));
+    for (const Message& warning : session_.warnings()) say_warning(warning);
     say_leftover(arguments.output);
-    options_.stages = stages_.sink();
+    session_.keep_stages(stages_.sink());
+    if (arguments.until > 0) session_.end_after(arguments.until);
 }
 
 std::optional<ScheduleCheck> DecodeRun::check_schedule() {
@@ -172,30 +159,23 @@ void DecodeRun::run() {
     report_ = decode_frames();
     if (report_.slots == 0)
         throw_if_stopped("nothing is written, for frames are completed 48 at a time");
-    if (report_.slots == 0) throw InputError(arguments_.stream, "holds no slot to decode");
     writer_.finish();
     stages_.finish();
     end_ = found_end();
 }
 
 DecodeReport DecodeRun::decode_frames() {
-    std::optional<std::int64_t> total = reader_.slots();
-    const std::int64_t until = arguments_.until;
-    if (until > 0) total = std::min(total.value_or(until), until);
-    std::int64_t written = 0;
-    const std::vector<RigStream> streams = input_.streams();
-    Progress progress(run_, "decoding", total);
-    if (const auto slots = reader_.slots()) {
-        const std::int64_t computed = computed_slots(*total, *slots);
-        progress.set_work(static_cast<double>(computed));
-        say_cost(expected_cost(streams, options_.method, computed), run_);
+    Progress progress(run_, "decoding", session_.frames());
+    if (const auto slots = session_.computed_slots()) {
+        progress.set_work(static_cast<double>(*slots));
+        say_cost(session_.expected_cost(*slots), run_);
     }
-    return decode_rig(
-        streams, options_,
+    std::int64_t written = 0;
+    return session_.run(
         [&](std::int64_t slot, std::span<const float> frame) {
             writer_.write(frame);
             written = slot + 1;
-            return written != until && stop_signal() == 0;
+            return stop_signal() == 0;
         },
         [&](double slots) {
             progress.reach(slots, written);
@@ -205,13 +185,13 @@ DecodeReport DecodeRun::decode_frames() {
 
 void DecodeRun::tell() {
     warn_of_end();
-    say_warning(
-        zero_warning(arguments_.stream, zero_fraction(report_), reader_.header().calibration));
-    for (const StreamReader& reader : input_.readers) warn_of_faults(reader);
+    say_warning(zero_warning(arguments_.stream, zero_fraction(report_),
+                             session_.streams().front().header().calibration));
+    for (const StreamReader& stream : session_.streams()) warn_of_faults(stream);
     json_.write(figures());
     run_.say(summary());
     if (const auto levels = writer_.light_levels()) run_.say(light_levels_text(*levels));
-    for (const StreamReader& reader : input_.readers) refuse_damage(reader);
+    for (const StreamReader& stream : session_.streams()) refuse_damage(stream);
 }
 
 DecodeEnd DecodeRun::found_end() const {
@@ -236,7 +216,7 @@ nlohmann::ordered_json DecodeRun::figures() const {
                                 {"peak_memory_bytes", peak_memory_bytes()},
                                 {"threads", thread_count()},
                                 {"calibration", calibration_json(arguments_)}};
-    if (input_.readers.size() > 1) json["sensors"] = input_.readers.size();
+    if (session_.streams().size() > 1) json["sensors"] = session_.streams().size();
     if (check_) json["schedule_check"] = check_json(*check_);
     if (!stages_.figures().empty()) json["convergence"] = stages_.figures();
     if (const auto levels = writer_.light_levels())
@@ -268,16 +248,12 @@ void DecodeRun::warn_of_end() const {
                     counted(report_.slots, "slot"), arguments_.until);
 }
 
-const std::string& DecodeRun::name_of(const StreamReader& reader) const {
-    return arguments_.follow ? arguments_.stream : reader.name();
-}
-
 void DecodeRun::warn_of_faults(const StreamReader& reader) const {
     const StreamReport& found = reader.report();
     if (const auto text = no_sample_text(found); !text.empty())
-        say_warning("{}: {}", name_of(reader), text);
+        say_warning("{}: {}", reader.name(), text);
     if (const auto text = no_end_text(found); end_ == DecodeEnd::kStream && !text.empty())
-        say_warning("{}: {} (--follow)", name_of(reader), text);
+        say_warning("{}: {} (--follow)", reader.name(), text);
 }
 
 void DecodeRun::refuse_damage(const StreamReader& reader) const {
@@ -285,7 +261,7 @@ void DecodeRun::refuse_damage(const StreamReader& reader) const {
     if (end_ == DecodeEnd::kSignal)
         found.tail_bytes = 0;  // of a packet that was still being written
     if (const auto text = decoded_damage_text(found, schedule_hint(found)); !text.empty())
-        throw InputError(name_of(reader), text);
+        throw InputError(reader.name(), text);
 }
 
 }  // namespace

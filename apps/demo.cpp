@@ -9,12 +9,12 @@
 #include "apps/demo_trials.h"
 #include "apps/report/json_file.h"
 #include "apps/report/own_command.h"
-#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "explore/trial.h"
 #include "io/disk_sync.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 #include "report/run_report.h"
 
 namespace stipple {

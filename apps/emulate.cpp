@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/arguments/footage.h"
 #include "apps/attached_calibration.h"
 #include "apps/emulate.h"
 #include "apps/emulation_input.h"
@@ -69,10 +70,11 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     std::optional<AttachedCalibration> calibration;
     if (!options.calibration.empty())
         calibration.emplace(options.calibration, options.output, setup, run);
-    StreamRecorder recorder =
-        open_stream_output(options.output, run, setup, footage_origin(options));
+    StreamRecorder recorder = open_stream_output(options.output, run, setup,
+                                                 options.source.origin([] { throw_if_stopped(); }));
     Progress progress(run, "emulating", slots.slots());
-    const bool at_end = expose_slots(slots, recorder, truth.get(), progress, options.footage);
+    const bool at_end =
+        expose_slots(slots, recorder, truth.get(), progress, options.source.footage);
     if (truth) truth->finish();
     recorder.finish();
     if (calibration) calibration->write();
@@ -84,8 +86,8 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
                         [] { return stop_signal() == 0; });
     }
     if (at_end)
-        for (const Message& note : end_notes(options.footage, input.footage(), setup.params,
-                                             options.resampling.has_value()))
+        for (const Message& note : end_notes(options.source.footage, input.footage(), setup.params,
+                                             options.source.resampling.has_value()))
             say_warning(note);
     say_warning(
         zero_warning(options.output, recorder.zero_fraction(), calibration_of(setup.params)));
@@ -156,7 +158,7 @@ void add_emulate(Command& app, Action& action) {
     const auto options = std::make_shared<EmulateArguments>();
     command
         .add_option(
-            "FOOTAGE", options->footage,
+            "FOOTAGE", options->source.footage,
             "folder or printf pattern of PNG, TIFF, EXR or DNG, video or camera file, .npy, or a "
             "recording")
         .required()
@@ -167,10 +169,10 @@ void add_emulate(Command& app, Action& action) {
         .output(kStreamName);
     add_sensor_arguments(command, options->sensor);
     add_rig(command, *options);
-    add_footage_arguments(command, options->reading);
-    add_part_arguments(command, options->reading);
-    add_resample_arguments(command, options->resampling, options->reading);
-    add_max_value(command, options->reading.max_value);
+    add_footage_arguments(command, options->source.reading);
+    add_part_arguments(command, options->source.reading);
+    add_resample_arguments(command, options->source.resampling, options->source.reading);
+    add_max_value(command, options->source.reading.max_value);
     command
         .add_option("--truth", options->truth,
                     "write the reference light, in the formats of \"decode\"")
@@ -198,7 +200,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate scene -o tocci --rig tocci2011\n"
         "  stipple emulate film.npy -o pieces --part 3/16");
     set_action(command, action, options, emulate_all_or_part, [command, options] {
-        options->reading.at_their_times = options->resampling.has_value();
+        options->source.reading.at_their_times = options->source.resampling.has_value();
         check_rig(command, *options);
         if (options->part.count > 0) check_part(command, *options);
     });

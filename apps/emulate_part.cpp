@@ -2,89 +2,44 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
+#include <string>
 #include <system_error>
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/piece_folder.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
+#include "apps/standard_error.h"
 #include "core/error.h"
-#include "io/pending_output.h"
 #include "readout/emulator.h"
 #include "readout/lead_in.h"
-#include "stream/stream_writer.h"
+#include "session/stream_shards.h"
 
 namespace stipple {
 namespace {
 
 constexpr auto kGoOn = "complete pieces are kept, and the same command goes on";
-constexpr int kSkip = 1024;  ///< frames between looks for a signal
 
-/// The same, if the footage can be read more than once. \throws InputError.
-const EmulateArguments& of_files(const EmulateArguments& arguments) {
+/// \throws InputError unless the footage can be read more than once.
+ShardedEmulation emulation_of(const EmulateArguments& arguments) {
+    const std::string& footage = arguments.source.footage;
     std::error_code error;
-    const auto type = std::filesystem::status(arguments.footage, error).type();
+    const auto type = std::filesystem::status(footage, error).type();
     if (type == std::filesystem::file_type::fifo || type == std::filesystem::file_type::character)
-        throw InputError(arguments.footage, "--part needs files, which are read more than once");
-    return arguments;
+        throw InputError(footage, "--part needs files, which are read more than once");
+    const EmulationInput input(arguments);
+    const SensorSetup& setup = input.setup();
+    return {.source = arguments.source,
+            .setup = setup,
+            .header = stream_header_of(
+                setup, provenance_of(setup, arguments.source.origin([] { throw_if_stopped(); }))),
+            .warn = [](const Message& warning) { say_warning(warning); }};
 }
-
-/// The slots that the footage declares, or else those that come when it is read.
-std::int64_t count_slots(const EmulateArguments& arguments, EmulationInput& input) {
-    if (const auto declared = input.slots().slots()) return *declared;
-    ReadAhead footage = read_footage(arguments.footage, arguments.reading);
-    ResampledFootage slots = slots_of(footage, arguments, input.setup().params.slot_us);
-    std::int64_t count = 0;
-    for (; !slots.next().empty(); ++count) throw_if_stopped();
-    return count;
-}
-
-/// Pieces of a stream, written one after the other.
-class PieceWriter {
-  public:
-    PieceWriter(const PieceFolder& folder, const StreamHeader& header, std::int64_t first)
-        : folder_(folder), header_(header), number_(first) {}
-
-    /// Writes the packets of a slot.
-    void write(std::span<const SamplePacket> packets, std::int64_t slot) {
-        if (!writer_) begin();
-        for (const SamplePacket& packet : packets) {
-            writer_->write(packet);
-            samples_ += packet.dn.size();
-        }
-        if (slot + 1 < folder_.end_slot(number_)) return;
-        writer_->finish();
-        output_->commit();
-        writer_.reset();
-        output_.reset();
-        ++number_;
-    }
-    [[nodiscard]] std::uint64_t samples() const { return samples_; }
-
-  private:
-    void begin() {
-        const std::filesystem::path file = folder_.piece(number_);
-        remove_leftovers(file);
-        output_.emplace(file, true, OutputKind::kManagedFile);
-        writer_.emplace(output_->partial(), header_, file.string(), folder_.begin_slot(number_));
-    }
-
-    const PieceFolder& folder_;
-    const StreamHeader& header_;
-    std::int64_t number_;
-    std::uint64_t samples_ = 0;
-    std::optional<PendingOutput> output_;
-    std::optional<StreamWriter> writer_;
-};
 
 /// A run of the command: opened by the constructor, then `run`, then `tell`.
 class PartRun {
@@ -95,16 +50,15 @@ class PartRun {
     void tell();
 
   private:
-    void emulate_pieces(const NumberRange& pieces, Progress& progress);
+    void emulate_missing(const NumberRange& pieces, Progress& progress);
     [[nodiscard]] std::int64_t slots_of_range(const NumberRange& pieces) const;
 
     const EmulateArguments& arguments_;
     const RunOptions& run_;
-    EmulationInput input_;
+    ShardedEmulation emulation_;
     std::int64_t lead_in_;
-    StreamHeader header_;
     JsonFile json_;
-    PieceFolder folder_;
+    StreamShards folder_;
     NumberRange pieces_;
     std::vector<std::int64_t> missing_;
     std::int64_t slots_ = 0;  ///< written in this run
@@ -115,20 +69,14 @@ class PartRun {
 PartRun::PartRun(const EmulateArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       run_(run),
-      input_(of_files(arguments)),
-      lead_in_(lead_in_slots(input_.setup())),
-      header_(stream_header_of(input_.setup(),
-                               provenance_of(input_.setup(), footage_origin(arguments)))),
+      emulation_(emulation_of(arguments)),
+      lead_in_(lead_in_slots(emulation_.setup)),
       json_(run),
-      folder_(arguments.output, header_,
-              [&] {
-                  const std::int64_t slots = count_slots(arguments, input_);
-                  if (slots == 0) refuse_short_footage(arguments.footage);
-                  return slots;
-              }),
+      folder_(arguments.output, emulation_.header,
+              [&] { return count_slots(emulation_, [] { throw_if_stopped(); }); }),
       pieces_(range_of(arguments.part, folder_.pieces().count)) {
     if (!run.force)
-        missing_ = folder_.pieces().missing(pieces_.begin, pieces_.end);
+        missing_ = folder_.pieces().missing(pieces_);
     else
         for (std::int64_t number = pieces_.begin; number < pieces_.end; ++number)
             missing_.push_back(number);
@@ -144,36 +92,19 @@ void PartRun::run() {
     for (const NumberRange& range : ranges) total += slots_of_range(range);
     const auto start = std::chrono::steady_clock::now();
     Progress progress(run_, "emulating", total);
-    for (const NumberRange& range : ranges) emulate_pieces(range, progress);
+    for (const NumberRange& range : ranges) emulate_missing(range, progress);
     seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void PartRun::emulate_pieces(const NumberRange& pieces, Progress& progress) {
-    const std::int64_t begin = folder_.begin_slot(pieces.begin);
-    const std::int64_t first = std::max<std::int64_t>(begin - lead_in_, 0);
-    ReadAhead footage = read_footage(arguments_.footage, arguments_.reading);
-    ResampledFootage slots = slots_of(footage, arguments_, input_.setup().params.slot_us);
-    for (std::int64_t skipped = 0; skipped < first; skipped += kSkip) {
-        throw_if_stopped(kGoOn);
-        slots.skip(static_cast<int>(std::min<std::int64_t>(first - skipped, kSkip)));
-    }
-    Emulator emulator(input_.setup(), first);
-    PieceWriter writer(folder_, header_, pieces.begin);
-    const std::int64_t end = folder_.end_slot(pieces.end - 1);
-    for (std::int64_t slot = first; slot < end; ++slot) {
-        throw_if_stopped(kGoOn);
-        const auto frame = slots.next();
-        if (frame.empty())
-            throw InputError(arguments_.footage,
-                             fmt::format("ends before slot {}, but has {} slots by {}", slot,
-                                         folder_.slots(), kEmulationFolder.identity));
-        const auto packets = emulator.expose(frame);
-        if (slot < begin) continue;
-        writer.write(packets, slot);
-        ++slots_;
-        progress.advance();
-    }
-    samples_ += writer.samples();
+void PartRun::emulate_missing(const NumberRange& pieces, Progress& progress) {
+    const std::int64_t before = slots_;
+    const auto samples = emulate_pieces(folder_, emulation_, pieces, [&](std::int64_t slots) {
+        progress.reach(static_cast<double>(before + slots));
+        return stop_signal() == 0;
+    });
+    if (!samples) throw_if_stopped(kGoOn);
+    samples_ += samples.value();
+    slots_ += slots_of_range(pieces);
 }
 
 void PartRun::tell() {

@@ -14,12 +14,12 @@
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
-#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"
 #include "io/frame_writer.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 #include "readout/coded_sensor.h"
 #include "readout/footage_origin.h"
 #include "readout/rig.h"
@@ -101,14 +101,14 @@ void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& js
 void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
     Config config(find_config(ConfigKind::kRigs, arguments.rig), arguments.rig_settings, "rig");
     const Rig rig = read_rig(config);
-    ReadAhead footage = read_footage(arguments.footage, arguments.reading);
+    ReadAhead footage = read_footage(arguments.source.footage, arguments.source.reading);
     const auto setups = set_up_rig(rig, footage.shape(), footage.filter());
     const SensorSetup& first = setups.front();
     say_warning(mosaic_warning(first, footage.filter()));
-    for (const Message& note :
-         sensor_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
+    for (const Message& note : sensor_notes(arguments.source.footage, footage, first.params,
+                                            arguments.source.resampling.has_value()))
         say_warning(note);
-    ResampledFootage slots = slots_of(footage, arguments, first.params.slot_us);
+    ResampledFootage slots = arguments.source.slots_of(footage, first.params.slot_us);
     JsonFile json(run);
     PendingOutput folder(arguments.output, run.force, OutputKind::kFolder, is_rig_file);
     say_leftover(arguments.output);
@@ -116,7 +116,7 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
     if (!arguments.truth.empty())
         truth = std::make_unique<FrameWriter>(arguments.truth, first.footage,
                                               FrameWriterOptions{.force = run.force});
-    const FootageOrigin origin = footage_origin(arguments);
+    const FootageOrigin origin = arguments.source.origin([] { throw_if_stopped(); });
     std::list<RigRecorder> runs;
     for (std::size_t i = 0; i < setups.size(); ++i)
         runs.emplace_back(rig.sensors[i], setups[i], folder.partial() / rig.sensors[i].file(),
@@ -125,7 +125,7 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
     const bool at_end = expose_all(slots, runs, truth.get(), progress);
     if (progress.done() == 0) {
         throw_if_stopped();
-        refuse_short_footage(arguments.footage);
+        refuse_short_footage(arguments.source.footage);
     }
     for (RigRecorder& sensor : runs) sensor.finish(progress.done());
     if (truth) truth->finish();
@@ -133,8 +133,8 @@ void emulate_rig(const EmulateArguments& arguments, const RunOptions& run) {
                 rig_text(config, rig, folder.partial()));
     folder.commit();
     if (at_end)
-        for (const Message& note :
-             end_notes(arguments.footage, footage, first.params, arguments.resampling.has_value()))
+        for (const Message& note : end_notes(arguments.source.footage, footage, first.params,
+                                             arguments.source.resampling.has_value()))
             say_warning(note);
     tell(arguments, run, json, runs, static_cast<double>(progress.done()) / progress.seconds());
 }

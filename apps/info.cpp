@@ -6,13 +6,11 @@
 #include <string>
 
 #include "apps/arguments/footage.h"
-#include "apps/fixed_pattern.h"
 #include "apps/info.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
-#include "apps/rig_folder.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
@@ -23,6 +21,8 @@
 #include "readout/timing/stretched_slots.h"
 #include "report/json_figures.h"
 #include "report/stream_text.h"
+#include "session/rig_folder.h"
+#include "session/stream_calibration.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {

@@ -8,10 +8,10 @@
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
-#include "apps/rig_folder.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "session/rig_folder.h"
 #include "stream/stream_figures.h"
 
 namespace stipple {
@@ -92,7 +92,7 @@ struct StreamTotals {
 }  // namespace
 
 void info_rig(const std::string& folder, const RunOptions& run) {
-    RigFolder opened = open_rig_folder(folder, ReadPolicy::kCounts);
+    RigFolder opened = open_rig_folder(folder, ReadPolicy::kCounts, [] { throw_if_stopped(); });
     JsonFile json(run);
     ordered_json figures{{"kind", "rig"}, {"name", opened.rig.name}, {"sensors", {}}};
     StreamTotals totals;

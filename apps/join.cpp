@@ -8,17 +8,17 @@
 
 #include "apps/arguments/video_output.h"
 #include "apps/interrupt.h"
-#include "apps/join_stream.h"
-#include "apps/piece_folder.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
 #include "apps/report/number_text.h"
 #include "apps/report/progress.h"
 #include "apps/subcommands.h"
-#include "apps/window_folder.h"
 #include "io/frame_writer.h"
 #include "io/npy_reader.h"
 #include "io/output_names.h"
+#include "io/pending_output.h"
+#include "session/stream_shards.h"
+#include "session/video_shards.h"
 
 namespace stipple {
 namespace {
@@ -30,12 +30,28 @@ struct JoinArguments {
     ImageCoding images;  ///< of folders and .tif
 };
 
-void join(const JoinArguments& arguments, const RunOptions& run) {
-    if (is_piece_folder(arguments.folder))
-        return join_stream(arguments.folder, arguments.output, run);
-    const WindowFolder folder(arguments.folder);
-    folder.windows().require_all(arguments.folder, kDecodingFolder);
-    const WindowIdentity& identity = folder.identity();
+void join_stream(const JoinArguments& arguments, const RunOptions& run) {
+    const StreamShards folder(arguments.folder);
+    folder.require_all();
+    JsonFile json(run);
+    say_leftover(arguments.output);
+    PendingOutput output(arguments.output, run.force);
+    Progress progress(run, "joining", folder.slots(), "slot");
+    const auto packets = join_pieces(folder, output, [&](double slots) {
+        progress.reach(slots);
+        return stop_signal() == 0;
+    });
+    if (!packets) throw_if_stopped();
+    const std::int64_t pieces = folder.pieces().count;
+    json.write({{"slots", folder.slots()}, {"pieces", pieces}, {"packets", packets.value()}});
+    run.say(fmt::format("{}: {} of {}", arguments.output, counted(folder.slots(), "slot"),
+                        counted(pieces, "piece")));
+}
+
+void join_video(const JoinArguments& arguments, const RunOptions& run) {
+    const VideoShards folder(arguments.folder);
+    folder.require_all();
+    const DecodingIdentity& identity = folder.identity();
     JsonFile json(run);
     FrameWriterOptions options{
         .video = arguments.video, .images = arguments.images, .force = run.force};
@@ -60,6 +76,13 @@ void join(const JoinArguments& arguments, const RunOptions& run) {
                 {"planes", identity.shape.planes}});
     run.say(fmt::format("{}: {} of {}", arguments.output, counted(identity.slots, "frame"),
                         counted(folder.count(), "window")));
+}
+
+void join(const JoinArguments& arguments, const RunOptions& run) {
+    if (is_stream_shards(arguments.folder))
+        join_stream(arguments, run);
+    else
+        join_video(arguments, run);
 }
 
 }  // namespace
@@ -94,7 +117,7 @@ void add_join(Command& app, Action& action) {
         "  stipple join pieces -o film.stipple\n"
         "The stream has the same bytes as that of one run of \"stipple emulate\".");
     set_action(command, action, options, join, [command, options] {
-        const bool stream = is_piece_folder(options->folder);
+        const bool stream = is_stream_shards(options->folder);
         check_extension("--output", options->output, stream ? kStreamName : kVideoName);
         if (stream)
             command.refuse({"--video", "--codec", "--fps", "--cd-per-unit", "--peak-cd", "--images",

@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "apps/report/manual.h"
-#include "apps/report/text_file.h"
 #include "apps/standard_output.h"
 #include "apps/subcommands.h"
 #include "core/version.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 
 namespace stipple {
 namespace {

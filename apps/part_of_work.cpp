@@ -1,6 +1,7 @@
 #include "apps/part_of_work.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 
 #include "core/parsed_number.h"
@@ -9,7 +10,7 @@ namespace stipple {
 namespace {
 
 /// \throws UsageError.
-PartOfWork parsed_part(const std::string& text) {
+Shard parsed_part(const std::string& text) {
     constexpr std::int64_t kMaxParts = 1'000'000;
     const std::size_t slash = text.find('/');
     const auto number = parsed_number<std::int64_t>(text.substr(0, slash));
@@ -22,7 +23,7 @@ PartOfWork parsed_part(const std::string& text) {
 
 }  // namespace
 
-void add_part(Command& command, PartOfWork& part, const std::string& text) {
+void add_part(Command& command, Shard& part, const std::string& text) {
     command
         .add_parsed(
             "--part", [&part](const std::string& given) { part = parsed_part(given); }, text)
@@ -34,20 +35,6 @@ void check_part_folder(const std::string& output) {
     if (output == "-") throw UsageError("--output", "with --part it is a folder; give it a name");
     if (folder.has_extension() && !std::filesystem::is_directory(folder))
         throw UsageError("--output", "with --part it is a folder, and has no extension");
-}
-
-NumberRange range_of(const PartOfWork& part, std::int64_t count) {
-    return {count * (part.number - 1) / part.count, count * part.number / part.count};
-}
-
-std::vector<NumberRange> ranges_of(const std::vector<std::int64_t>& numbers) {
-    std::vector<NumberRange> ranges;
-    for (const std::int64_t number : numbers)
-        if (!ranges.empty() && ranges.back().end == number)
-            ++ranges.back().end;
-        else
-            ranges.push_back({number, number + 1});
-    return ranges;
 }
 
 }  // namespace stipple

@@ -16,7 +16,6 @@
 #include "apps/report/number_text.h"
 #include "apps/report/own_command.h"
 #include "apps/report/progress.h"
-#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -26,6 +25,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
+#include "io/text_file.h"
 #include "report/run_report.h"
 #include "report/stream_text.h"
 

@@ -5,9 +5,9 @@
 
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
-#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "io/output_names.h"
+#include "io/text_file.h"
 #include "readout/program/program_text.h"
 
 namespace stipple {

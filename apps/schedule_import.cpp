@@ -6,10 +6,10 @@
 
 #include "apps/arguments/checks.h"
 #include "apps/report/json_file.h"
-#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "io/output_names.h"
+#include "io/text_file.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
 #include "report/schedule_text.h"

@@ -4,9 +4,9 @@
 
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
-#include "apps/report/text_file.h"
 #include "apps/subcommands.h"
 #include "io/output_names.h"
+#include "io/text_file.h"
 #include "readout/schedules/code_schedule.h"
 #include "report/schedule_text.h"
 

@@ -17,7 +17,6 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
-#include "explore/dictionary_file.h"
 #include "explore/point_view.h"
 #include "explore/trial_picture.h"
 #include "io/footage_reader.h"
@@ -26,6 +25,7 @@
 #include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_rate.h"
 #include "scenes/scene.h"
+#include "session/decode_setup.h"
 #include "stream/stream_reader.h"
 
 namespace stipple {

@@ -17,9 +17,9 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "io/disk_sync.h"
-#include "io/output_file.h"
 #include "io/partial_output.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -35,12 +35,9 @@ std::string text_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void write_text(const fs::path& file, std::string_view text) {
+void write_managed(const fs::path& file, std::string_view text) {
     PendingOutput output(file, true, OutputKind::kManagedFile);
-    OutputFile to(output.partial(), file.string());
-    to.write(std::as_bytes(std::span(text)));
-    to.close();
-    output.commit();
+    write_text(output, text);
 }
 
 ordered_json json_of(const TrialFigures& figures) {
@@ -117,7 +114,7 @@ TrialStore::TrialStore(fs::path folder) : folder_(std::move(folder)) {
     } else {
         check_free(folder_);
         make_folder(folder_);
-        write_text(version_file, own);
+        write_managed(version_file, own);
     }
     make_folder(folder_ / "trials");
     refuse_links(folder_ / "trials");
@@ -165,14 +162,14 @@ void TrialStore::store(const std::string& identity, const TrialOutcome& outcome)
     PendingOutput output(picture, true, OutputKind::kManagedFile);
     write_png_file(output.partial(), outcome.picture, picture.string());
     output.commit();
-    write_text(path(address, ".json"),
-               ordered_json{{"identity", identity}, {"figures", json_of(outcome.figures)}}.dump(
-                   2, ' ', false, ordered_json::error_handler_t::replace) +
-                   "\n");
+    write_managed(path(address, ".json"),
+                  ordered_json{{"identity", identity}, {"figures", json_of(outcome.figures)}}.dump(
+                      2, ' ', false, ordered_json::error_handler_t::replace) +
+                      "\n");
 }
 
 void TrialStore::write(const std::string& name, std::string_view text) const {
-    write_text(folder_ / name, text);
+    write_managed(folder_ / name, text);
 }
 
 }  // namespace stipple

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "apps/standard_output.h"
+#include "io/text_file.h"
 #include "stream/plain_text.h"
 
 namespace stipple {

@@ -6,9 +6,9 @@
 #include <bit>
 #include <map>
 
-#include "apps/report/text_file.h"
 #include "core/error.h"
 #include "io/footage_files.h"
+#include "io/text_file.h"
 #include "report/chart.h"
 
 namespace stipple {

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "apps/report/text_file.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
+#include "io/text_file.h"
 #include "report/chart.h"
 
 namespace stipple {

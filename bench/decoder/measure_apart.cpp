@@ -14,10 +14,10 @@
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
-#include "explore/dictionary_file.h"
 #include "io/footage_reader.h"
 #include "io/npy_writer.h"
 #include "metrics/video_quality.h"
+#include "session/decode_setup.h"
 
 namespace stipple {
 namespace {

@@ -16,7 +16,6 @@ from . import _stipple
 
 __all__ = ["BlockOutput", "block_output", "slots_of_block"]
 
-IDENTITY = "decoding.json"
 Identity = Mapping[str, Any]
 
 
@@ -36,8 +35,9 @@ class BlockOutput(Protocol):
         """Stores a block; the last axis of colour is its plane."""
 
 
-def block_output(name: str, identity: Identity) -> BlockOutput:
-    """That of a name: an array of Zarr by the extension .zarr, else a folder of windows."""
+def block_output(name: str, identity: str) -> BlockOutput:
+    """That of a name: an array of Zarr by the extension .zarr, else a folder of windows; `identity` is the JSON of
+    docs/scaling.md."""
     if Path(name).suffix == ".zarr":
         return ZarrArray(name, identity)
     return WindowFolder(name, identity)
@@ -70,87 +70,34 @@ def _require_folder(folder: Path) -> None:
 class WindowFolder:
     """The folder that "stipple decode --part" fills; "stipple join" makes a video of it."""
 
-    def __init__(self, folder: str, identity: Identity) -> None:
-        self.folder = Path(folder)
-        self.identity = dict(identity)
+    def __init__(self, folder: str, identity: str) -> None:
+        self.folder = folder
+        self.identity = identity
+
+    def _shards(self) -> _stipple.VideoShards:
+        _require_folder(Path(self.folder).parent)
+        return _stipple.VideoShards(self.folder, self.identity)
 
     def claimed(self) -> bool:
-        _require_folder(self.folder.parent)
-        if not self.folder.exists():
-            return False
-        for path in self.folder.iterdir():
-            if path.is_symlink():
-                raise ValueError(f"{path}: is a link, which is neither followed nor replaced in a folder that this program "
-                                 "fills; remove it")
-        file = self.folder / IDENTITY
-        if not file.exists():
-            for path in self.folder.iterdir():
-                if not path.name.startswith(".") and path.name != IDENTITY:
-                    raise ValueError(f"{self.folder}: holds {path.name}, and is not a folder of windows; "
-                                     "give another name")
-            return False
-        try:
-            there = json.loads(file.read_text(encoding="utf-8"))
-        except ValueError:
-            there = None
-        _require_same(self.folder, there, self.identity)
-        return True
+        return self._shards().claimed()
 
     def claim(self) -> None:
-        if not self.claimed():
-            self.folder.mkdir(exist_ok=True)
-            text = json.dumps(self.identity, indent=2) + "\n"
-            self._put(self.folder / IDENTITY, lambda stream: stream.write(text.encode()))
-            self.claimed()  # by another decoding, if that was first
-
-    def window(self, number: int) -> Path:
-        return self.folder / f"window_{number:06d}.npy"
-
-    def _header(self, number: int) -> bytes:
-        """It names the decoding, so that no window of another one is taken for one of this."""
-        begin, end = slots_of_block(number, self.identity["slots"])
-        rows, cols, planes = (self.identity[key] for key in ("rows", "cols", "planes"))
-        return _stipple.window_header(number, (end - begin, rows, cols, planes), (self.folder / IDENTITY).read_bytes())
+        self._shards().claim()
 
     def holds(self, number: int) -> bool:
-        file = self.window(number)
-        try:
-            np.load(file, mmap_mode="r")
-        except (FileNotFoundError, ValueError, EOFError):
-            return False  # absent, or cut off by a power failure
-        header = self._header(number)
-        with open(file, "rb") as stream:
-            if stream.read(len(header)) != header:
-                raise ValueError(f"{file}: is not this window of the decoding that {IDENTITY} describes: it was copied "
-                                 "from elsewhere, or an earlier version wrote it; remove it")
-        return True
+        return self._shards().holds(number)
 
     def write(self, number: int, frames: npt.NDArray[np.float32]) -> None:
-        content = self._header(number) + np.ascontiguousarray(frames).tobytes()
-        self._put(self.window(number), lambda stream: stream.write(content))
-        for left in self.folder.glob(f".window_{number:06d}.*.partial.npy"):
-            left.unlink(missing_ok=True)  # of workers that were killed
-
-    def _put(self, file: Path, write: Any) -> None:
-        """The file gets its name when it is on the disk; the hidden name is that of the program's."""
-        partial = self.folder / f".{file.stem}.{os.getpid()}-{secrets.token_hex(4)}.partial{file.suffix}"
-        with open(partial, "xb") as stream:
-            write(stream)
-            stream.flush()
-            os.fsync(stream.fileno())
-        try:
-            os.replace(partial, file)
-        except FileNotFoundError:
-            if not file.exists():  # else a second worker of the same block was first
-                raise
+        planes_first = frames if frames.ndim == 3 else np.moveaxis(frames, 3, 1)
+        self._shards().write(number, np.ascontiguousarray(planes_first))
 
 
 class ZarrArray:
     """An array of Zarr, a chunk for each block; its attribute "decoding" holds the identity."""
 
-    def __init__(self, name: str, identity: Identity) -> None:
+    def __init__(self, name: str, identity: str) -> None:
         self.name = name
-        self.identity = dict(identity)
+        self.identity = json.loads(identity)
 
     def _open(self, mode: str, name: str = "") -> Any:
         zarr: Any = importlib.import_module("zarr")

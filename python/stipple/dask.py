@@ -7,7 +7,6 @@
 
 Each worker needs this package, and the files under the same paths."""
 
-import hashlib
 import warnings
 from os import PathLike, fsdecode, path
 from typing import Any, List, Mapping, NamedTuple, Optional, Tuple, Union
@@ -36,7 +35,7 @@ class _Job(NamedTuple):
     method: str
     options: Mapping[str, object]
     fill_gaps: bool
-    calibration: str
+    calibration: Optional[str]
     threads: int
 
     def task(self, until: int) -> _stipple.DecodeTask:
@@ -65,18 +64,15 @@ class _Job(NamedTuple):
         return None, said
 
 
-def _calibration_of(stream: str, calibration: Optional[Name]) -> str:
-    """The file that `stipple.decode` would use, or "none"."""
-    if calibration is None:
-        beside = path.splitext(stream)[0] + ".stcal"
-        return beside if path.isfile(beside) else "none"
-    return "none" if calibration == "none" else path.abspath(fsdecode(calibration))
+def _calibration_of(calibration: Optional[Name]) -> Optional[str]:
+    """As the workers find it; None: the file beside the stream."""
+    return calibration if calibration in (None, "none") else path.abspath(fsdecode(calibration))
 
 
 def _job(client: Any, stream: Source, method: str, more: Mapping[str, Any]) -> _Job:
     caller = check_workers(client)
     name = path.abspath(fsdecode(stream))
-    chip = _calibration_of(name, more["calibration"])
+    chip = _calibration_of(more["calibration"])
     slots = Stream.open(name).slots()
     if slots == 0:
         raise ValueError(f"{name}: holds no slot to decode")
@@ -142,38 +138,9 @@ def decode_to(
     """
     more = {"options": options, "fill_gaps": fill_gaps, "calibration": calibration, "threads": threads}
     job = _job(client, stream, method, more)
-    store = block_output(path.abspath(fsdecode(output)), _identity(job))
+    store = block_output(path.abspath(fsdecode(output)), _stipple.decoding_identity(job.stream, job.task(job.slots)))
     store.claimed()
     missing = [number for number in range(_stipple.decode_blocks(job.slots)) if not store.holds(number)]
     tasks = [client.submit(_Job.store, job, number, store, pure=False) for number in missing]
     _gather(client, tasks)
     return len(missing)
-
-
-def _sha256(name: str) -> str:
-    digest = hashlib.sha256()
-    with open(name, "rb") as file:
-        while piece := file.read(1 << 20):
-            digest.update(piece)
-    return digest.hexdigest()
-
-
-def _identity(job: _Job) -> Mapping[str, Any]:
-    """All that determines the frames: the keys of docs/scaling.md."""
-    stream = Stream.open(job.stream)
-    rows, cols, planes = stream.shape
-    return {
-        "version": _stipple.__version__,
-        "stream_bytes": path.getsize(job.stream),
-        "stream": _stipple.stream_identity(job.stream) or f"sha256 {_sha256(job.stream)}",
-        "method": job.method,
-        "options": job.task(job.slots).given,
-        "calibration_sha256": "" if job.calibration == "none" else _sha256(job.calibration),
-        "fill_gaps": job.fill_gaps,
-        "slots": job.slots,
-        "rows": rows,
-        "cols": cols,
-        "planes": planes if stream.header["cfa"] == "none" else 3,
-        "slot_us": stream.header["slot_us"],
-        "window_slots": _stipple.block_begin(1),
-    }

@@ -1,4 +1,4 @@
-#include "apps/report/text_file.h"
+#include "io/text_file.h"
 
 #include <span>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "explore/dictionary_file.h"
+#include "session/decode_setup.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace stipple {
 namespace {
 
-TEST(DictionaryFileTest, ReadsTheFileThatTheOptionsName) {
+TEST(DecodeSetupTest, ReadsTheFileThatTheOptionsName) {
     const TemporaryFolder folder;
     write_text(folder / "d.npy", dictionary_bytes(4));
     DecodeOptions options;
@@ -25,7 +25,7 @@ TEST(DictionaryFileTest, ReadsTheFileThatTheOptionsName) {
     EXPECT_EQ(dictionary.values, (std::vector<float>{0.6F, 0.8F}));
 }
 
-TEST(DictionaryFileTest, AMissingFileSaysHowToMakeIt) {
+TEST(DecodeSetupTest, AMissingFileSaysHowToMakeIt) {
     DecodeOptions options;
     options.hitomi2011.dictionary_file = "nosuch.npy";
     expect_parts(message_of<InputError>([&] { read_dictionary(options); }),

@@ -1,14 +1,25 @@
-#include "explore/dictionary_file.h"
+#include "session/decode_setup.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "core/error.h"
-#include "decoder/decode_options.h"
 #include "io/npy_volume.h"
 
 namespace stipple {
+
+DecodeSetup decode_setup(std::string_view method, Config config) {
+    return {.options = read_decode_options(decode_method_from_name(method), config),
+            .given = config.as_toml("")};
+}
+
+DecodeSetup read_decode_setup(std::string_view method, Config config) {
+    DecodeSetup setup = decode_setup(method, std::move(config));
+    read_dictionary(setup.options);
+    return setup;
+}
 
 void read_dictionary(DecodeOptions& options) {
     const std::string& file = options.hitomi2011.dictionary_file;

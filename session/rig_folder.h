@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct RigFolder {
 
 /// \throws InputError as read_rig and StreamReader; if a stream is missing; and if one is not that
 /// of the rig: of other footage than the first, or with other bytes than rig.toml tells.
-[[nodiscard]] RigFolder open_rig_folder(const std::filesystem::path& folder, ReadPolicy policy);
+/// `check` is called before each MiB of a stream whose bytes are compared, and may throw to give
+/// up.
+[[nodiscard]] RigFolder open_rig_folder(
+    const std::filesystem::path& folder, ReadPolicy policy,
+    const std::function<void()>& check = [] {});
 
 }  // namespace stipple

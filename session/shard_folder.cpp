@@ -1,4 +1,4 @@
-#include "apps/shared_folder.h"
+#include "session/shard_folder.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,11 +10,11 @@
 #include <random>
 #include <system_error>
 
-#include "apps/report/text_file.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/partial_output.h"
 #include "io/pending_output.h"
+#include "io/text_file.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ std::string differing(const std::string& key, const nlohmann::ordered_json& ther
 
 }  // namespace
 
-bool has_identity(const fs::path& folder, const SharedFolderKind& kind,
+bool has_identity(const fs::path& folder, const ShardFolderKind& kind,
                   const nlohmann::ordered_json& identity) {
     std::error_code error;
     if (!fs::exists(folder, error)) {
@@ -63,7 +63,9 @@ bool has_identity(const fs::path& folder, const SharedFolderKind& kind,
                                 entry.path().filename().string(), kind.parts));
         return false;
     }
-    const std::string other = first_difference(read_identity(folder, kind, identity), identity);
+    const auto there =
+        parsed_identity(stored_identity(folder, kind), folder / kind.identity, kind, identity);
+    const std::string other = first_difference(there, identity);
     if (!other.empty())
         throw InputError(folder.string(),
                          fmt::format("holds another {}: {}; give another name, or remove it",
@@ -71,7 +73,7 @@ bool has_identity(const fs::path& folder, const SharedFolderKind& kind,
     return true;
 }
 
-void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
+void claim_folder(const fs::path& folder, const ShardFolderKind& kind,
                   const nlohmann::ordered_json& identity) {
     if (has_identity(folder, kind, identity)) return;
     std::error_code error;
@@ -82,15 +84,20 @@ void claim_folder(const fs::path& folder, const SharedFolderKind& kind,
         has_identity(folder, kind, identity));  // that of another run, if it was first
 }
 
-nlohmann::ordered_json read_identity(const fs::path& folder, const SharedFolderKind& kind,
-                                     const nlohmann::ordered_json& pattern) {
+std::string stored_identity(const fs::path& folder, const ShardFolderKind& kind) {
     refuse_links(folder);
     const fs::path file = folder / kind.identity;
     if (!fs::exists(file))
         throw InputError(folder.string(),
-                         fmt::format("has no {}: `stipple {} --part` did not write this folder",
-                                     kind.identity, kind.verb));
-    auto json = nlohmann::ordered_json::parse(identity_text(folder, kind), nullptr, false);
+                         fmt::format("has no {}: it is not the folder of {} {} in {}",
+                                     kind.identity, kind.article, kind.result, kind.parts));
+    return text_of(file);
+}
+
+nlohmann::ordered_json parsed_identity(const std::string& text, const fs::path& file,
+                                       const ShardFolderKind& kind,
+                                       const nlohmann::ordered_json& pattern) {
+    auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     bool whole = json.is_object();
     const auto same_kind = [](const auto& found, const auto& wanted) {
         if (wanted.is_number_integer()) return found.is_number_integer();
@@ -118,37 +125,11 @@ std::string first_difference(const nlohmann::ordered_json& there,
     return {};
 }
 
-std::string identity_text(const fs::path& folder, const SharedFolderKind& kind) {
-    return text_of(folder / kind.identity);
-}
-
 void remove_leftovers(const fs::path& file) {
     std::error_code error;
     for (const PartialOutput& partial : partial_outputs(folder_of(file)))
         if (partial.final_path.filename() == file.filename() && !partial.running())
             fs::remove(partial.path, error);
-}
-
-std::vector<std::int64_t> NumberedParts::missing(std::int64_t begin, std::int64_t end) const {
-    std::vector<std::int64_t> numbers;
-    for (std::int64_t number = begin; number < end; ++number)
-        if (!holds(number)) numbers.push_back(number);
-    return numbers;
-}
-
-void NumberedParts::require_all(const fs::path& folder, const SharedFolderKind& kind) const {
-    constexpr std::size_t kMaxNamed = 8;
-    const std::vector<std::int64_t> lacking = missing(0, count);
-    if (lacking.empty()) return;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(lacking.size(), kMaxNamed); ++i)
-        names += fmt::format("{}{}", i == 0 ? "" : ", ", file(lacking[i]).filename().string());
-    if (lacking.size() > kMaxNamed)
-        names += fmt::format(" and {} more", lacking.size() - kMaxNamed);
-    throw InputError(folder.string(),
-                     fmt::format("lacks {} of its {} {}: {}; run `stipple {} --part` again, which "
-                                 "keeps the others",
-                                 lacking.size(), count, kind.parts, names, kind.verb));
 }
 
 }  // namespace stipple
