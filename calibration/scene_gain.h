@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "calibration/chip_calibration.h"
+#include "core/progress.h"
 #include "decoder/decode_options.h"
 #include "decoder/pixel_response.h"
-#include "decoder/stage_observer.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 #include "stream/stream_reader.h"

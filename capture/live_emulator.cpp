@@ -37,7 +37,7 @@ LiveEmulator::LiveEmulator(LiveCamera& camera, FrameLight to_light, StreamRecord
     static_cast<void>(Emulator(recorder_.setup()).expose(light_));
 }
 
-LiveEmulation LiveEmulator::run(const ProgressCallback& progress) {
+LiveEmulation LiveEmulator::run(const Observer& progress) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     CapturedFrame frame;

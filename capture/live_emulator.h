@@ -65,7 +65,7 @@ struct LiveEmulation {
 class LiveEmulator {
   public:
     /// Asked before each wait for a frame, every 50 ms at least; false ends the emulation.
-    using ProgressCallback = std::function<bool(const LiveEmulation&)>;
+    using Observer = std::function<bool(const LiveEmulation&)>;
 
     /// `camera` and `recorder` must outlive it; `to_light` is made for the camera's layout, the
     /// recorder's setup for its light.
@@ -74,7 +74,7 @@ class LiveEmulator {
 
     /// Takes frames until a limit is reached, `progress` says no or the camera is lost. The stream
     /// is the caller's to finish. Called once.
-    [[nodiscard]] LiveEmulation run(const ProgressCallback& progress);
+    [[nodiscard]] LiveEmulation run(const Observer& progress);
 
   private:
     void end(std::optional<DeviceLost> lost);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {

@@ -31,20 +31,20 @@ namespace stipple {
 namespace {
 
 constexpr NamedDecodeMethod kMethods[] = {
-    {"naive", DecodeMethod::kNaive, false, "nearest samples of each pixel: fast and noisy",
+    {"naive", DecodeMethod::kNaive, true, false, "nearest samples of each pixel: fast and noisy",
      kMaxCoreSites, 14, 0.1, [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) -> std::optional<FluxVideo> {
          return nearest_samples(block.measurements);
      }},
-    {"fast", DecodeMethod::kFast, false, "motion-compensated total variation", kMaxCoreSites, 58,
-     2.1, [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },
+    {"fast", DecodeMethod::kFast, true, false, "motion-compensated total variation", kMaxCoreSites,
+     58, 2.1, [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },
      [](const BlockTask& block) {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_motion_tv(task.measurements, task.noise, task.options.fast,
                                      task.progress);
          });
      }},
-    {"best", DecodeMethod::kBest, false,
+    {"best", DecodeMethod::kBest, true, false,
      "collaborative filter of similar patches: slower, 2 to 3 dB better than fast", kMaxCoreSites,
      58, 11, [](Config& config, DecodeOptions& options) { read_options(config, options.best); },
      [](const BlockTask& block) {
@@ -53,7 +53,7 @@ constexpr NamedDecodeMethod kMethods[] = {
                                          task.progress);
          });
      }},
-    {"portz2013", DecodeMethod::kPortz2013, true,
+    {"portz2013", DecodeMethod::kPortz2013, false, true,
      "the method of the paper (Portz, Zhang, Jiang, ICCP 2013), in two stages", kPortz2013CoreSites,
      490, 800,
      [](Config& config, DecodeOptions& options) { read_options(config, options.portz2013); },
@@ -61,7 +61,7 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_portz2013(block.measurements, block.options.portz2013, block.observer,
                                  block.progress);
      }},
-    {"reddy2011", DecodeMethod::kReddy2011, true,
+    {"reddy2011", DecodeMethod::kReddy2011, false, true,
      "P2C2 (Reddy, Veeraraghavan, Chellappa, CVPR 2011): wavelets and optical flow", kMaxCoreSites,
      64, 16,
      [](Config& config, DecodeOptions& options) { read_options(config, options.reddy2011); },
@@ -69,13 +69,13 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_reddy2011(block.measurements, block.options.reddy2011, block.observer,
                                  block.progress);
      }},
-    {"hitomi2011", DecodeMethod::kHitomi2011, false,
+    {"hitomi2011", DecodeMethod::kHitomi2011, false, false,
      "patches of a learned dictionary (Hitomi et al., ICCV 2011); needs one", kMaxCoreSites, 64, 34,
      [](Config& config, DecodeOptions& options) { read_options(config, options.hitomi2011); },
      [](const BlockTask& block) {
          return decode_hitomi2011(block.measurements, block.options.hitomi2011, block.progress);
      }},
-    {"interpolated", DecodeMethod::kInterpolated, false,
+    {"interpolated", DecodeMethod::kInterpolated, false, false,
      "conventional cameras only: frames as delivered, interpolated along motion", kMaxCoreSites, 38,
      0.8, [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) {
@@ -84,7 +84,7 @@ constexpr NamedDecodeMethod kMethods[] = {
          });
      },
      require_conventional},
-    {"bennett2005", DecodeMethod::kBennett2005, false,
+    {"bennett2005", DecodeMethod::kBennett2005, false, false,
      "conventional cameras only: adaptive spatio-temporal accumulation (Bennett, McMillan 2005)",
      kMaxCoreSites, 60, 1.1,
      [](Config& config, DecodeOptions& options) { read_options(config, options.bennett2005); },
@@ -95,7 +95,7 @@ constexpr NamedDecodeMethod kMethods[] = {
              });
      },
      require_conventional},
-    {"zhang2009", DecodeMethod::kZhang2009, false,
+    {"zhang2009", DecodeMethod::kZhang2009, false, false,
      "conventional cameras only: denoising along optical flow (after Zhang et al. 2009)",
      kMaxCoreSites, 60, 1.1,
      [](Config& config, DecodeOptions& options) { read_options(config, options.zhang2009); },
@@ -106,7 +106,7 @@ constexpr NamedDecodeMethod kMethods[] = {
              });
      },
      require_conventional},
-    {"vbm4d", DecodeMethod::kVbm4d, false,
+    {"vbm4d", DecodeMethod::kVbm4d, false, false,
      "conventional cameras only: collaborative filter of volumes (after V-BM4D, 2012)",
      kMaxCoreSites, 60, 2.7,
      [](Config& config, DecodeOptions& options) { read_options(config, options.vbm4d); },
@@ -117,13 +117,13 @@ constexpr NamedDecodeMethod kMethods[] = {
                               });
      },
      require_conventional},
-    {"shahar2011", DecodeMethod::kShahar2011, false,
+    {"shahar2011", DecodeMethod::kShahar2011, false, false,
      "conventional cameras only: temporal super-resolution (after Shahar, Faktor, Irani 2011)",
      kMaxCoreSites, 60, 29,
      [](Config& config, DecodeOptions& options) { read_options(config, options.shahar2011); },
      [](const BlockTask& block) { return super_resolve_time(block, block.options.shahar2011); },
      require_conventional},
-    {"kang2003", DecodeMethod::kKang2003, false,
+    {"kang2003", DecodeMethod::kKang2003, false, false,
      "alternating exposure times only: HDR video, merged along motion (after Kang et al. 2003)",
      kMaxCoreSites, 44, 1.6, [](Config&, DecodeOptions&) {}, merge_exposure_times,
      require_alternating},

@@ -35,6 +35,7 @@ enum class DecodeMethod {
 struct NamedDecodeMethod {
     std::string_view name;
     DecodeMethod method;
+    bool joins_sensors;           ///< it decodes the streams of several sensors to one video
     bool has_stages;              ///< it calls the StageObserver of the block
     std::string_view text;        ///< description and cost, for users
     std::int64_t max_tile_sites;  ///< larger frames are decoded in tiles

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "decoder/decode_method.h"
-#include "decoder/stage_observer.h"
 #include "decoder/video_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"

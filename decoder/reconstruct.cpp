@@ -7,12 +7,15 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/gap_limit.h"
 #include "core/index.h"
 #include "core/memory_limit.h"
+#include "core/text.h"
 #include "decoder/block_partition.h"
 #include "decoder/block_task.h"
 #include "decoder/decode_cost.h"
@@ -305,9 +308,11 @@ void check_like_first(const RigStream& stream, const StreamReader& first) {
                          stream.view.phase_slots, *slots));
 }
 
-bool joins_sensors(DecodeMethod method) {
-    return method == DecodeMethod::kNaive || method == DecodeMethod::kFast ||
-           method == DecodeMethod::kBest;
+std::string methods_that_join_sensors() {
+    std::vector<std::string_view> names;
+    for (const NamedDecodeMethod& method : decode_methods())
+        if (method.joins_sensors) names.push_back(method.name);
+    return joined(names);
 }
 
 /// \throws InputError as `decode_rig`.
@@ -321,11 +326,11 @@ void check_rig(std::span<const RigStream> rig, const DecodeOptions& options) {
             method.check_schedule(first.reader.header().schedule, first.reader.name(), method.name);
         return;
     }
-    if (!joins_sensors(options.method))
-        throw InputError(first.reader.name(),
-                         fmt::format("is one of {} sensors, but method {} decodes one; take naive, "
-                                     "fast or best",
-                                     rig.size(), method.name));
+    if (!method.joins_sensors)
+        throw InputError(
+            first.reader.name(),
+            fmt::format("is one of {} sensors, but method {} decodes one; {} join them", rig.size(),
+                        method.name, methods_that_join_sensors()));
     for (const RigStream& stream : rig.subspan(1)) check_like_first(stream, first.reader);
 }
 

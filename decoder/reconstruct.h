@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/decode_method.h"
 #include "decoder/joint/joint_measurements.h"
 #include "decoder/stage_observer.h"

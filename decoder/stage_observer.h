@@ -9,10 +9,6 @@
 
 namespace stipple {
 
-/// Receives the completed work from time to time, in the thread of the caller: slots in `decode`, a
-/// fraction 0..1 elsewhere. Returns false to stop at once.
-using ProgressCallback = std::function<bool(double done)>;
-
 /// Callbacks of methods with stages, for one block; each may be empty.
 struct StageObserver {
     /// Receives the estimate at the end of a stage.

@@ -6,7 +6,7 @@
 namespace stipple {
 namespace {
 
-constexpr std::uint32_t fourcc(const char (&text)[5]) {
+constexpr std::uint32_t fourcc(const char* text) {
     std::uint32_t code = 0;
     for (int i = 3; i >= 0; --i)
         code = code << 8U | static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
@@ -31,105 +31,110 @@ constexpr std::array kMono{
     PixelFormat{"Mono10MIPI", 0, fourcc("Y10P"), 10, 10, Packing::kMipiPacked},
 };
 
-constexpr std::array kBayerRg{
-    PixelFormat{"BayerRG8", 0x01080009, fourcc("RGGB"), 8, 8, Packing::kBytes, ColourFilter::kRggb},
-    PixelFormat{"BayerRG10", 0x0110000D, fourcc("RG10"), 16, 10, Packing::kBytes,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG12", 0x01100011, fourcc("RG12"), 16, 12, Packing::kBytes,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG14", 0x0110010A, fourcc("RG14"), 16, 14, Packing::kBytes,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG16", 0x0110002F, fourcc("RG16"), 16, 16, Packing::kBytes,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG10p", 0x010A0058, 0, 10, 10, Packing::kLsbPacked, ColourFilter::kRggb},
-    PixelFormat{"BayerRG12p", 0x010C0059, 0, 12, 12, Packing::kLsbPacked, ColourFilter::kRggb},
-    PixelFormat{"BayerRG14p", 0x010E0106, 0, 14, 14, Packing::kLsbPacked, ColourFilter::kRggb},
-    PixelFormat{"BayerRG10Packed", 0x010C0027, 0, 12, 10, Packing::kGigEVisionPacked,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG12Packed", 0x010C002B, 0, 12, 12, Packing::kGigEVisionPacked,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG10MIPI", 0, fourcc("pRAA"), 10, 10, Packing::kMipiPacked,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG12MIPI", 0, fourcc("pRCC"), 12, 12, Packing::kMipiPacked,
-                ColourFilter::kRggb},
-    PixelFormat{"BayerRG14MIPI", 0, fourcc("pREE"), 14, 14, Packing::kMipiPacked,
-                ColourFilter::kRggb},
+/// Formats of one depth and packing, in the order of kBayerFilters.
+struct BayerRow {
+    std::string_view depth;             ///< the end of the name
+    std::array<std::uint32_t, 4> pfnc;  ///< 0: none
+    std::array<const char*, 4> fourcc;  ///< null: none
+    int stored_bits;
+    int significant_bits;
+    Packing packing;
 };
 
-constexpr std::array kBayerGr{
-    PixelFormat{"BayerGR8", 0x01080008, fourcc("GRBG"), 8, 8, Packing::kBytes, ColourFilter::kGrbg},
-    PixelFormat{"BayerGR10", 0x0110000C, fourcc("BA10"), 16, 10, Packing::kBytes,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR12", 0x01100010, fourcc("BA12"), 16, 12, Packing::kBytes,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR14", 0x01100109, fourcc("GR14"), 16, 14, Packing::kBytes,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR16", 0x0110002E, fourcc("GR16"), 16, 16, Packing::kBytes,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR10p", 0x010A0056, 0, 10, 10, Packing::kLsbPacked, ColourFilter::kGrbg},
-    PixelFormat{"BayerGR12p", 0x010C0057, 0, 12, 12, Packing::kLsbPacked, ColourFilter::kGrbg},
-    PixelFormat{"BayerGR14p", 0x010E0105, 0, 14, 14, Packing::kLsbPacked, ColourFilter::kGrbg},
-    PixelFormat{"BayerGR10Packed", 0x010C0026, 0, 12, 10, Packing::kGigEVisionPacked,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR12Packed", 0x010C002A, 0, 12, 12, Packing::kGigEVisionPacked,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR10MIPI", 0, fourcc("pgAA"), 10, 10, Packing::kMipiPacked,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR12MIPI", 0, fourcc("pgCC"), 12, 12, Packing::kMipiPacked,
-                ColourFilter::kGrbg},
-    PixelFormat{"BayerGR14MIPI", 0, fourcc("pgEE"), 14, 14, Packing::kMipiPacked,
-                ColourFilter::kGrbg},
+struct BayerFilter {
+    std::string_view name;
+    ColourFilter filter;
 };
 
-constexpr std::array kBayerGb{
-    PixelFormat{"BayerGB8", 0x0108000A, fourcc("GBRG"), 8, 8, Packing::kBytes, ColourFilter::kGbrg},
-    PixelFormat{"BayerGB10", 0x0110000E, fourcc("GB10"), 16, 10, Packing::kBytes,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB12", 0x01100012, fourcc("GB12"), 16, 12, Packing::kBytes,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB14", 0x0110010B, fourcc("GB14"), 16, 14, Packing::kBytes,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB16", 0x01100030, fourcc("GB16"), 16, 16, Packing::kBytes,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB10p", 0x010A0054, 0, 10, 10, Packing::kLsbPacked, ColourFilter::kGbrg},
-    PixelFormat{"BayerGB12p", 0x010C0055, 0, 12, 12, Packing::kLsbPacked, ColourFilter::kGbrg},
-    PixelFormat{"BayerGB14p", 0x010E0107, 0, 14, 14, Packing::kLsbPacked, ColourFilter::kGbrg},
-    PixelFormat{"BayerGB10Packed", 0x010C0028, 0, 12, 10, Packing::kGigEVisionPacked,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB12Packed", 0x010C002C, 0, 12, 12, Packing::kGigEVisionPacked,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB10MIPI", 0, fourcc("pGAA"), 10, 10, Packing::kMipiPacked,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB12MIPI", 0, fourcc("pGCC"), 12, 12, Packing::kMipiPacked,
-                ColourFilter::kGbrg},
-    PixelFormat{"BayerGB14MIPI", 0, fourcc("pGEE"), 14, 14, Packing::kMipiPacked,
-                ColourFilter::kGbrg},
-};
+constexpr std::array kBayerFilters{
+    BayerFilter{"BayerRG", ColourFilter::kRggb}, BayerFilter{"BayerGR", ColourFilter::kGrbg},
+    BayerFilter{"BayerGB", ColourFilter::kGbrg}, BayerFilter{"BayerBG", ColourFilter::kBggr}};
 
-constexpr std::array kBayerBg{
-    PixelFormat{"BayerBG8", 0x0108000B, fourcc("BA81"), 8, 8, Packing::kBytes, ColourFilter::kBggr},
-    PixelFormat{"BayerBG10", 0x0110000F, fourcc("BG10"), 16, 10, Packing::kBytes,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG12", 0x01100013, fourcc("BG12"), 16, 12, Packing::kBytes,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG14", 0x0110010C, fourcc("BG14"), 16, 14, Packing::kBytes,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG16", 0x01100031, fourcc("BYR2"), 16, 16, Packing::kBytes,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG10p", 0x010A0052, 0, 10, 10, Packing::kLsbPacked, ColourFilter::kBggr},
-    PixelFormat{"BayerBG12p", 0x010C0053, 0, 12, 12, Packing::kLsbPacked, ColourFilter::kBggr},
-    PixelFormat{"BayerBG14p", 0x010E0108, 0, 14, 14, Packing::kLsbPacked, ColourFilter::kBggr},
-    PixelFormat{"BayerBG10Packed", 0x010C0029, 0, 12, 10, Packing::kGigEVisionPacked,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG12Packed", 0x010C002D, 0, 12, 12, Packing::kGigEVisionPacked,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG10MIPI", 0, fourcc("pBAA"), 10, 10, Packing::kMipiPacked,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG12MIPI", 0, fourcc("pBCC"), 12, 12, Packing::kMipiPacked,
-                ColourFilter::kBggr},
-    PixelFormat{"BayerBG14MIPI", 0, fourcc("pBEE"), 14, 14, Packing::kMipiPacked,
-                ColourFilter::kBggr},
+constexpr std::array kBayerRows{
+    BayerRow{"8",
+             {0x01080009, 0x01080008, 0x0108000A, 0x0108000B},
+             {"RGGB", "GRBG", "GBRG", "BA81"},
+             8,
+             8,
+             Packing::kBytes},
+    BayerRow{"10",
+             {0x0110000D, 0x0110000C, 0x0110000E, 0x0110000F},
+             {"RG10", "BA10", "GB10", "BG10"},
+             16,
+             10,
+             Packing::kBytes},
+    BayerRow{"12",
+             {0x01100011, 0x01100010, 0x01100012, 0x01100013},
+             {"RG12", "BA12", "GB12", "BG12"},
+             16,
+             12,
+             Packing::kBytes},
+    BayerRow{"14",
+             {0x0110010A, 0x01100109, 0x0110010B, 0x0110010C},
+             {"RG14", "GR14", "GB14", "BG14"},
+             16,
+             14,
+             Packing::kBytes},
+    BayerRow{"16",
+             {0x0110002F, 0x0110002E, 0x01100030, 0x01100031},
+             {"RG16", "GR16", "GB16", "BYR2"},
+             16,
+             16,
+             Packing::kBytes},
+    BayerRow{
+        "10p", {0x010A0058, 0x010A0056, 0x010A0054, 0x010A0052}, {}, 10, 10, Packing::kLsbPacked},
+    BayerRow{
+        "12p", {0x010C0059, 0x010C0057, 0x010C0055, 0x010C0053}, {}, 12, 12, Packing::kLsbPacked},
+    BayerRow{
+        "14p", {0x010E0106, 0x010E0105, 0x010E0107, 0x010E0108}, {}, 14, 14, Packing::kLsbPacked},
+    BayerRow{"10Packed",
+             {0x010C0027, 0x010C0026, 0x010C0028, 0x010C0029},
+             {},
+             12,
+             10,
+             Packing::kGigEVisionPacked},
+    BayerRow{"12Packed",
+             {0x010C002B, 0x010C002A, 0x010C002C, 0x010C002D},
+             {},
+             12,
+             12,
+             Packing::kGigEVisionPacked},
+    BayerRow{"10MIPI", {}, {"pRAA", "pgAA", "pGAA", "pBAA"}, 10, 10, Packing::kMipiPacked},
+    BayerRow{"12MIPI", {}, {"pRCC", "pgCC", "pGCC", "pBCC"}, 12, 12, Packing::kMipiPacked},
+    BayerRow{"14MIPI", {}, {"pREE", "pgEE", "pGEE", "pBEE"}, 14, 14, Packing::kMipiPacked},
 };
+constexpr std::size_t kBayerFormats = kBayerFilters.size() * kBayerRows.size();
+
+/// "BayerRG10p" and the like.
+constexpr auto kBayerNames = [] {
+    std::array<std::array<char, 16>, kBayerFormats> names{};
+    auto* name = names.begin();
+    for (const BayerFilter& filter : kBayerFilters)
+        for (const BayerRow& row : kBayerRows) {
+            auto* const end = std::copy(filter.name.begin(), filter.name.end(), name->begin());
+            std::copy(row.depth.begin(), row.depth.end(), end);
+            ++name;
+        }
+    return names;
+}();
+
+constexpr auto kBayer = [] {
+    std::array<PixelFormat, kBayerFormats> formats;
+    for (std::size_t filter = 0; filter < kBayerFilters.size(); ++filter)
+        for (std::size_t i = 0; i < kBayerRows.size(); ++i) {
+            const BayerRow& row = kBayerRows[i];
+            const std::size_t at = filter * kBayerRows.size() + i;
+            const char* const code = row.fourcc[filter];
+            formats[at] = {kBayerNames[at].data(),
+                           row.pfnc[filter],
+                           code == nullptr ? 0 : fourcc(code),
+                           row.stored_bits,
+                           row.significant_bits,
+                           row.packing,
+                           kBayerFilters[filter].filter};
+        }
+    return formats;
+}();
 
 constexpr std::array kColour{
     PixelFormat{"RGB8", 0x02180014, fourcc("RGB3"), 24, 8, Packing::kBytes, ColourFilter::kNone, 3},
@@ -143,8 +148,7 @@ constexpr auto joined_tables(const std::array<PixelFormat, kSizes>&... tables) {
     return all;
 }
 
-constexpr std::array kFormats =
-    joined_tables(kMono, kBayerRg, kBayerGr, kBayerGb, kBayerBg, kColour);
+constexpr std::array kFormats = joined_tables(kMono, kBayer, kColour);
 
 template <typename Match>
 const PixelFormat* find_format(Match match) {

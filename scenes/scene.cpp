@@ -157,8 +157,7 @@ const SceneOptions& Scene::options() const {
     return impl_->options;
 }
 
-bool Scene::render(int slot, std::span<float> frame,
-                   const std::function<bool(double)>& progress) const {
+bool Scene::render(int slot, std::span<float> frame, const ProgressCallback& progress) const {
     const SceneOptions& options = impl_->options;
     const SamplePlan& plan = impl_->plan;
     const FrameShape shape = options.shape;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/geometry.h"
+#include "core/progress.h"
 
 namespace stipple {
 
@@ -62,7 +63,7 @@ class Scene {
     /// is incomplete. Returns whether it is complete. Precondition: 0 <= slot < options().slots.
     bool render(
         int slot, std::span<float> frame,
-        const std::function<bool(double)>& progress = [](double) { return true; }) const;
+        const ProgressCallback& progress = [](double) { return true; }) const;
 
   private:
     struct Impl;

@@ -9,6 +9,7 @@
 
 #include "core/geometry.h"
 #include "core/message.h"
+#include "core/progress.h"
 #include "decoder/decode_cost.h"
 #include "decoder/reconstruct.h"
 #include "session/decode_setup.h"

@@ -102,8 +102,7 @@ class PieceJoiner {
 
     /// Appends the slots up to `end` from a piece. Returns false if `progress` has stopped it.
     /// \throws InputError if the piece does not have them.
-    bool append(const fs::path& piece, std::int64_t end,
-                const std::function<bool(double slots)>& progress) {
+    bool append(const fs::path& piece, std::int64_t end, const ProgressCallback& progress) {
         const auto require = [&piece](bool good) {
             if (!good) throw InputError(piece.string(), "is damaged; remove it, and emulate again");
         };
@@ -244,7 +243,7 @@ std::optional<std::uint64_t> emulate_pieces(
 }
 
 std::optional<std::uint64_t> join_pieces(const StreamShards& folder, PendingOutput& output,
-                                         const std::function<bool(double slots)>& progress) {
+                                         const ProgressCallback& progress) {
     const NumberedFiles pieces = folder.pieces();
     PieceJoiner stream(output);
     for (std::int64_t number = 0; number < pieces.count; ++number)

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/message.h"
+#include "core/progress.h"
 #include "io/pending_output.h"
 #include "readout/sensor_file.h"
 #include "session/emulation_source.h"
@@ -76,8 +77,8 @@ inline constexpr std::int64_t kPieceSlots = 64;
 /// Makes one stream of all pieces, with the bytes of that of one run. `progress` receives slots.
 /// Returns the number of packets, or nothing if it has stopped the work. \throws InputError if a
 /// piece is missing or damaged, DeviceError.
-[[nodiscard]] std::optional<std::uint64_t> join_pieces(
-    const StreamShards& folder, PendingOutput& output,
-    const std::function<bool(double slots)>& progress);
+[[nodiscard]] std::optional<std::uint64_t> join_pieces(const StreamShards& folder,
+                                                       PendingOutput& output,
+                                                       const ProgressCallback& progress);
 
 }  // namespace stipple

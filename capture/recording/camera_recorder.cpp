@@ -74,7 +74,7 @@ struct CameraRecorder::Impl {
         return std::min(waiting.frames, reserved_frames(camera)) + 1;
     }
 
-    void run(const ProgressCallback& progress);
+    void run(const Observer& progress);
     void take(SessionEvent event);
     void take(CapturedFrame frame);
     void note_failure();
@@ -93,7 +93,7 @@ struct CameraRecorder::Impl {
     CameraRecording result;
 };
 
-void CameraRecorder::Impl::run(const ProgressCallback& progress) {
+void CameraRecorder::Impl::run(const Observer& progress) {
     const std::int64_t start_ns = monotonic_ns();
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     try {
@@ -182,7 +182,7 @@ const std::filesystem::path& CameraRecorder::file() const {
     return impl_->output.final_path();
 }
 
-CameraRecording CameraRecorder::record(const ProgressCallback& progress) {
+CameraRecording CameraRecorder::record(const Observer& progress) {
     impl_->run(progress);
     impl_->finish();
     return std::move(impl_->result);

@@ -44,7 +44,7 @@ class CameraRecorder {
   public:
     /// Asked before each wait for a frame, every 100 ms at least, with the frames that are taken so
     /// far; false ends the recording.
-    using ProgressCallback = std::function<bool(std::uint64_t frames, const SessionTotals& totals)>;
+    using Observer = std::function<bool(std::uint64_t frames, const SessionTotals& totals)>;
 
     /// Opens and starts the camera; `settings` are what the file says it was set to.
     /// \throws InputError, DeviceError as CaptureSession, PendingOutput and RecordingWriter.
@@ -61,7 +61,7 @@ class CameraRecorder {
     /// Records until a limit is reached, `progress` says no or the camera is lost, and puts the
     /// file in place, as far as it goes. Called once. \throws DeviceError, std::bad_alloc if it
     /// cannot be put in place.
-    [[nodiscard]] CameraRecording record(const ProgressCallback& progress);
+    [[nodiscard]] CameraRecording record(const Observer& progress);
 
   private:
     struct Impl;

@@ -61,7 +61,7 @@ struct CodedRecorder::Impl {
           writer(output.partial(), header.stream, output.final_path().string()),
           order(header.stream.shape.rows) {}
 
-    [[nodiscard]] bool run(const ProgressCallback& progress);
+    [[nodiscard]] bool run(const Observer& progress);
     void take(const CapturedFrame& frame);
     [[nodiscard]] bool is_too_far(std::int64_t slot) const;
     void drop_before(StreamPosition next);
@@ -79,7 +79,7 @@ struct CodedRecorder::Impl {
 };
 
 /// True if all slots are there, or the camera sends no more; false if it was stopped or lost.
-bool CodedRecorder::Impl::run(const ProgressCallback& progress) {
+bool CodedRecorder::Impl::run(const Observer& progress) {
     const auto start = Clock::now();
     auto last = start;
     while (!slots || result.slots < *slots) {
@@ -157,7 +157,7 @@ std::optional<std::int64_t> CodedRecorder::slots() const {
     return impl_->slots;
 }
 
-CodedRecording CodedRecorder::record(const ProgressCallback& progress) {
+CodedRecording CodedRecorder::record(const Observer& progress) {
     Impl& impl = *impl_;
     CodedRecording& result = impl.result;
     impl.camera->start();

@@ -27,7 +27,7 @@ struct CodedRecording {
 class CodedRecorder {
   public:
     /// Asked before each wait for a frame, every 100 ms at least; false ends the recording.
-    using ProgressCallback = std::function<bool(const CodedRecording&)>;
+    using Observer = std::function<bool(const CodedRecording&)>;
 
     /// \throws InputError if the camera sends no coded stream; InputError, DeviceError as
     /// PendingOutput and StreamWriter.
@@ -43,7 +43,7 @@ class CodedRecorder {
     /// Records until all slots are there, a limit is reached, `progress` says no, or the camera is
     /// silent for 3 s or gone (`lost`), and puts the file in place, as far as it goes. Called once.
     /// \throws DeviceError if the camera refuses to start, or if the file cannot be put in place.
-    [[nodiscard]] CodedRecording record(const ProgressCallback& progress);
+    [[nodiscard]] CodedRecording record(const Observer& progress);
 
   private:
     struct Impl;

@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/best/patch_matching.h"
 #include "decoder/fast/motion_tv.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

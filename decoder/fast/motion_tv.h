@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/fast/total_variation.h"
 #include "decoder/motion/motion.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

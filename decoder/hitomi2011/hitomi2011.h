@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/hitomi2011/patch_dictionary.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

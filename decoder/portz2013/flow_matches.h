@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "decoder/portz2013/patch_matches.h"
 
 namespace stipple {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/portz2013/patch_distance.h"
 #include "decoder/portz2013/portz2013.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/portz2013/patch_distance.h"
 #include "decoder/stage_observer.h"
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/rivals/block_paths.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "decoder/stage_observer.h"
+#include "core/progress.h"
 
 namespace stipple {
 

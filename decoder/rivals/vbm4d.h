@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
 #include "decoder/rivals/frame_decoding.h"
-#include "decoder/stage_observer.h"
 
 namespace stipple {
 

@@ -28,7 +28,7 @@ std::deque<ScriptedStep> scripted(const std::vector<CapturedFrame>& frames) {
 class CameraRecorderTest : public ::testing::Test {
   protected:
     CameraRecording record(std::deque<ScriptedStep> steps, CameraRecorderOptions options,
-                           const CameraRecorder::ProgressCallback& progress) {
+                           const CameraRecorder::Observer& progress) {
         options.session.reconnect = false;
         CameraRecorder recorder(plays({std::move(steps)}, test_session().camera), {{"Gain", "2"}},
                                 file_, std::move(options));
