@@ -24,6 +24,7 @@
 #include "capture/recording/footage_notes.h"
 #include "core/error.h"
 #include "io/frame_writer.h"
+#include "io/image_file.h"
 #include "io/output_names.h"
 #include "io/video_reader.h"
 #include "readout/coded_sensor.h"
@@ -159,8 +160,9 @@ void add_emulate(Command& app, Action& action) {
     command
         .add_option(
             "FOOTAGE", options->source.footage,
-            "folder or printf pattern of PNG, TIFF, EXR or DNG, video or camera file, .npy, or a "
-            "recording")
+            fmt::format(
+                "folder or printf pattern of {}, video or camera file, .npy, or a recording",
+                image_format_names()))
         .required()
         .input();
     command.add_option("-o,--output", options->output, "sample stream")

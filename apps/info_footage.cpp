@@ -171,9 +171,7 @@ bool is_footage(const std::string& source) {
     if (!std::filesystem::exists(status))
         return path.filename().string().find('%') != std::string::npos;
     if (std::filesystem::is_directory(status)) return true;
-    const std::string extension = lower_extension(path);
-    return extension == ".npy" || extension == ".cine" || is_fits_name(path) ||
-           is_photron_name(path) || image_format(path) != ImageFormat::kNone || is_video_name(path);
+    return is_footage_name(path);
 }
 
 void info_footage(const std::string& source, const std::optional<RawFormat>& raw, bool header_only,

@@ -45,14 +45,10 @@ DnImage read_dn_tiff(const std::filesystem::path& file) {
 }  // namespace
 
 DnImage read_dn_image(const std::filesystem::path& file) {
-    switch (image_format(file)) {
-        case ImageFormat::kPng:
-            return read_dn_png(file.string());
-        case ImageFormat::kTiff:
-            return read_dn_tiff(file);
-        default:
-            throw InputError(file.string(), "is not an image of digital numbers; give PNG or TIFF");
-    }
+    const std::string extension = lower_extension(file);
+    if (extension == ".png") return read_dn_png(file.string());
+    if (extension == ".tif" || extension == ".tiff") return read_dn_tiff(file);
+    throw InputError(file.string(), "is not an image of digital numbers; give PNG or TIFF");
 }
 
 void write_dn_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,

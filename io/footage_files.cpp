@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/parsed_number.h"
+#include "io/image_file.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -160,14 +161,6 @@ std::string conversion_of(const fs::path& file) {
     return fmt::format("; {0} is not read, convert it: ffmpeg -i %04d{0} %04d.png", extension);
 }
 
-ImageFormat image_format(const fs::path& file) {
-    const std::string extension = lower_extension(file);
-    if (extension == ".png") return ImageFormat::kPng;
-    if (extension == ".tif" || extension == ".tiff") return ImageFormat::kTiff;
-    if (extension == ".dng") return ImageFormat::kDng;
-    return extension == ".exr" ? ImageFormat::kExr : ImageFormat::kNone;
-}
-
 bool numerically_before(std::string_view a, std::string_view b) {
     const auto whole_a = a;
     const auto whole_b = b;
@@ -188,17 +181,16 @@ bool numerically_before(std::string_view a, std::string_view b) {
 ImageFiles images_in_folder(const fs::path& folder) {
     auto files = list_folder(folder);
     std::erase_if(files, [](const fs::path& file) {
-        return file.filename().string().starts_with('.') ||
-               image_format(file) == ImageFormat::kNone;
+        return file.filename().string().starts_with('.') || image_reader(file) == nullptr;
     });
     if (files.empty())
-        throw InputError(folder.string(),
-                         "holds no PNG, TIFF, EXR or DNG images" + remedy_in(folder));
+        throw InputError(folder.string(), fmt::format("holds no {} images{}", image_format_names(),
+                                                      remedy_in(folder)));
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         return numerically_before(a.filename().string(), b.filename().string());
     });
     for (const fs::path& file : files)
-        if (image_format(file) != image_format(files.front()))
+        if (image_reader(file) != image_reader(files.front()))
             throw InputError(
                 folder.string(),
                 fmt::format("mixes formats: \"{}\" and \"{}\"; keep one",
@@ -209,9 +201,10 @@ ImageFiles images_in_folder(const fs::path& folder) {
 
 ImageFiles images_of_pattern(const fs::path& pattern) {
     const Pattern names(pattern);
-    if (image_format(pattern) == ImageFormat::kNone)
-        throw InputError(pattern.string(), "a pattern stands for PNG, TIFF, EXR or DNG images" +
-                                               conversion_of(pattern));
+    if (image_reader(pattern) == nullptr)
+        throw InputError(pattern.string(),
+                         fmt::format("a pattern stands for {} images{}", image_format_names(),
+                                     conversion_of(pattern)));
     const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::map<std::int64_t, fs::path> found;
     std::vector<std::string> left_out;

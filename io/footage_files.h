@@ -7,11 +7,6 @@
 
 namespace stipple {
 
-enum class ImageFormat { kNone, kPng, kTiff, kExr, kDng };
-
-/// Format of an image by its extension, in upper or lower case.
-[[nodiscard]] ImageFormat image_format(const std::filesystem::path& file);
-
 /// What to do with a common kind of image that is not read, as the end of a message; else empty.
 [[nodiscard]] std::string conversion_of(const std::filesystem::path& file);
 

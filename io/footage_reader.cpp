@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -114,6 +115,31 @@ class ImageSequence {
 
 using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
 
+/// A format of files with frames.
+struct FrameFormat {
+    std::string_view name;
+    bool (*is_name)(const fs::path& file);  ///< by the extension
+    Source (*open)(const fs::path& file);
+};
+
+bool is_tiff_name(const fs::path& file) {
+    const ImageReader* const reader = image_reader(file);
+    return reader != nullptr && reader->name == "TIFF";
+}
+
+constexpr FrameFormat kFrameFormats[] = {
+    {"TIFF", is_tiff_name,  // each page is a frame
+     [](const fs::path& file) -> Source { return ImageSequence({}, TiffFile(file)); }},
+    {".npy", [](const fs::path& file) { return lower_extension(file) == ".npy"; },
+     [](const fs::path& file) -> Source { return NpyReader(file); }},
+    {".cine", [](const fs::path& file) { return lower_extension(file) == ".cine"; },
+     [](const fs::path& file) -> Source { return RawVideoReader(open_cine(file)); }},
+    {"Photron", is_photron_name,
+     [](const fs::path& file) -> Source { return RawVideoReader(open_photron(file)); }},
+    {"FITS", is_fits_name, [](const fs::path& file) -> Source { return FitsReader(file); }},
+    {"video", is_video_name, [](const fs::path& file) -> Source { return VideoReader(file); }},
+};
+
 /// Why a file cannot be footage, by its extension.
 Message not_footage(const fs::path& source) {
     const std::string extension = lower_extension(source);
@@ -123,8 +149,9 @@ Message not_footage(const fs::path& source) {
         return "is not a recording of a camera: it is empty, or does not begin as one";
     if (const std::string remedy = conversion_of(source); !remedy.empty())
         return "is not a recognised footage format" + remedy;
-    return "is not a recognised footage format; give a folder or pattern of PNG, TIFF, EXR or DNG "
-           "images, a video or camera file, or .npy; a file without a header needs " +
+    return "is not a recognised footage format; give a folder or pattern of " +
+           image_format_names() +
+           " images, a video or camera file, or .npy; a file without a header needs " +
            Parameter{"raw"};
 }
 
@@ -141,17 +168,27 @@ Source open_source(const fs::path& source, const FootageOptions& options) {
                                    ? "cannot be read: " + error.message()
                                    : "there is no such file or folder");
     }
-    if (lower_extension(source) == ".npy") return NpyReader(source);
-    if (lower_extension(source) == ".cine") return RawVideoReader(open_cine(source));
-    if (is_fits_name(source)) return FitsReader(source);
-    if (is_photron_name(source)) return RawVideoReader(open_photron(source));
-    if (image_format(source) == ImageFormat::kTiff) return ImageSequence({}, TiffFile(source));
-    if (image_format(source) != ImageFormat::kNone) return ImageSequence({{source}, {}});
-    if (is_video_name(source)) return VideoReader(source);
+    for (const FrameFormat& format : kFrameFormats)
+        if (format.is_name(source)) return format.open(source);
+    if (image_reader(source) != nullptr) return ImageSequence({{source}, {}});
     throw InputError(name, not_footage(source));
 }
 
 }  // namespace
+
+bool is_footage_name(const fs::path& file) {
+    return image_reader(file) != nullptr ||
+           std::ranges::any_of(kFrameFormats,
+                               [&](const FrameFormat& format) { return format.is_name(file); });
+}
+
+std::vector<std::string_view> footage_format_names() {
+    std::vector<std::string_view> names;
+    for (const ImageReader& reader : image_readers()) names.push_back(reader.name);
+    for (const FrameFormat& format : kFrameFormats)
+        if (std::ranges::find(names, format.name) == names.end()) names.push_back(format.name);
+    return names;
+}
 
 struct FootageReader::Impl {
     Source source;

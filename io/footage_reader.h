@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/colour_filter.h"
@@ -34,12 +35,19 @@ struct FootageOptions {
     FootagePart part = {};                 ///< of the frames, once they are light
 };
 
+/// Whether the extension of a file is one of those that are read.
+[[nodiscard]] bool is_footage_name(const std::filesystem::path& file);
+
+/// The formats of footage: images, then files with frames. A format has rows in the tables of
+/// docs/footage.md, and a fuzz target of its name.
+[[nodiscard]] std::vector<std::string_view> footage_format_names();
+
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.
-/// Sources: a folder or a printf pattern of PNG, TIFF, EXR or DNG files (in numeric order of
-/// names), a TIFF file of one or more pages, a video file, a .npy of shape (T,H,W), (T,H,W,3)
-/// or (H,W) with dtype u1, u2, f2, f4 or f8, or a file of frames without a header. ReadAhead
-/// (capture/recording/read_ahead.h) reads recordings of cameras too, and in the background.
+/// Sources: a folder or a printf pattern of images (in numeric order of names), a TIFF file of one
+/// or more pages, a video file, a .npy of shape (T,H,W), (T,H,W,3) or (H,W) with dtype u1, u2, f2,
+/// f4 or f8, or a file of frames without a header. ReadAhead (capture/recording/read_ahead.h) reads
+/// recordings of cameras too, and in the background.
 class FootageReader {
   public:
     /// Opens the source and reads its first frame's shape.

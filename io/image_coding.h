@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "io/footage_files.h"
 
 namespace stipple {
+
+enum class ImageFormat { kPng, kTiff, kExr };
 
 /// Numbers of an image.
 enum class SampleKind {
@@ -20,7 +21,7 @@ enum class SampleKind {
 
 /// How light becomes images: those of a folder, and the pages of a TIFF stack.
 struct ImageCoding {
-    ImageFormat format = ImageFormat::kExr;  ///< of a folder: kExr, kPng or kTiff
+    ImageFormat format = ImageFormat::kExr;  ///< of a folder
     std::optional<SampleKind> samples = {};  ///< none: kFloat, of PNG kWord
     double full_scale = 1;
     double slot_s = 0;    ///< seconds from frame to frame, for TIFF stacks; 0: unknown

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,7 +23,8 @@
 namespace stipple {
 namespace {
 
-void read_png(const std::string& where, Image& image) {
+void read_png(const std::filesystem::path& file, Image& image) {
+    const std::string where = file.string();
     const PngImage png = decode_png(read_file(where), where);
     const PngPixels& pixels = png.pixels;
     const int planes = pixels.channels;
@@ -32,6 +36,17 @@ void read_png(const std::string& where, Image& image) {
     else
         split_planes<std::uint8_t>(bytes, planes, planes, image.values, UnitScale());
 }
+
+constexpr std::array kReaders{
+    ImageReader{"PNG", {".png"}, read_png},
+    ImageReader{"TIFF",
+                {".tif", ".tiff"},
+                [](const std::filesystem::path& file, Image& image) {
+                    to_image(read_single_tiff(file), image);
+                }},
+    ImageReader{"EXR", {".exr"}, read_exr},
+    ImageReader{"DNG", {".dng"}, read_dng},
+};
 
 }  // namespace
 
@@ -62,21 +77,37 @@ void to_image(const TiffPixels& pixels, Image& image) {
     }
 }
 
+std::span<const ImageReader> image_readers() {
+    return kReaders;
+}
+
+const ImageReader* image_reader(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    if (extension.empty()) return nullptr;
+    for (const ImageReader& reader : kReaders)
+        if (std::ranges::find(reader.extensions, extension) != reader.extensions.end())
+            return &reader;
+    return nullptr;
+}
+
+std::string image_format_names() {
+    std::string names;
+    for (std::size_t i = 0; i < kReaders.size(); ++i)
+        names += fmt::format("{}{}",
+                             i == 0                    ? ""
+                             : i + 1 < kReaders.size() ? ", "
+                                                       : " or ",
+                             kReaders[i].name);
+    return names;
+}
+
 void read_image(const std::filesystem::path& file, Image& image) {
     refuse_special(file);
-    switch (image_format(file)) {
-        case ImageFormat::kPng:
-            return read_png(file.string(), image);
-        case ImageFormat::kTiff:
-            return to_image(read_single_tiff(file), image);
-        case ImageFormat::kExr:
-            return read_exr(file, image);
-        case ImageFormat::kDng:
-            return read_dng(file, image);
-        case ImageFormat::kNone:
-            break;
-    }
-    throw InputError(file.string(), "is not an image that can be read; give PNG, TIFF, EXR or DNG");
+    const ImageReader* const reader = image_reader(file);
+    if (reader == nullptr)
+        throw InputError(file.string(), fmt::format("is not an image that can be read; give {}",
+                                                    image_format_names()));
+    reader->read(file, image);
 }
 
 void write_png(const std::filesystem::path& file, const std::string& where, FrameShape shape,

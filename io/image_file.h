@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/geometry.h"
 #include "io/image.h"
@@ -10,9 +12,25 @@
 
 namespace stipple {
 
-/// Reads a .png, .tif, .tiff, .exr or .dng file (by extension) into `image`, a TIFF file of one
-/// page. \throws InputError naming the file, and the offset where known, if it is missing,
-/// unreadable, truncated, or neither mono nor RGB.
+/// A format of images that are read.
+struct ImageReader {
+    std::string_view name;                       ///< "PNG"
+    std::array<std::string_view, 2> extensions;  ///< in lower case, with the dot; empty: no second
+    void (*read)(const std::filesystem::path& file, Image& image);  ///< as read_image
+};
+
+/// All formats, in the order of docs/footage.md.
+[[nodiscard]] std::span<const ImageReader> image_readers();
+
+/// That of a file, by its extension in upper or lower case; null: there is none.
+[[nodiscard]] const ImageReader* image_reader(const std::filesystem::path& file);
+
+/// "PNG, TIFF, EXR or DNG".
+[[nodiscard]] std::string image_format_names();
+
+/// Reads an image, a TIFF file of one page. \throws InputError naming the file, and the offset
+/// where known, if it is missing, unreadable, truncated, of no format of `image_readers`, or
+/// neither mono nor RGB.
 void read_image(const std::filesystem::path& file, Image& image);
 
 /// A page of a TIFF file.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/text.h"
-#include "io/footage_files.h"
+#include "io/image_file.h"
 
 namespace stipple {
 namespace {
@@ -64,7 +64,7 @@ std::string surplus_problem(const std::vector<const CLI::App*>& commands, const 
     std::string problem = fmt::format("\"{}\" is more than {} takes", word, name_of(commands));
     std::error_code error;
     if (!std::filesystem::is_regular_file(word, error)) return problem;
-    return problem + (image_format(word) == ImageFormat::kNone
+    return problem + (image_reader(word) == nullptr
                           ? "; run it once for each file"
                           : "; for many images, name their folder or a pattern as frames/%04d.png");
 }
