@@ -1,5 +1,5 @@
-# cmake --install: the program, its configurations, and each module as a library with its headers for other
-# projects (docs/library.md): find_package(stipple COMPONENTS decoder), stipple::decoder; pkg-config stipple.
+# cmake --install: the program, its configurations, and the libraries for other projects (docs/library.md):
+# find_package(stipple) gives the shared stipple::stipple, COMPONENTS decoder the static stipple::decoder.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stipple)
@@ -35,11 +35,17 @@ foreach(module IN LISTS STIPPLE_MODULES)
     target_compile_features(stipple_${module} INTERFACE cxx_std_20)
     target_include_directories(stipple_${module} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     install(TARGETS stipple_${module} EXPORT stipple_${module} COMPONENT libraries
-            FILE_SET HEADERS DESTINATION ${header_dir} COMPONENT libraries
-            FILE_SET headers_without_source DESTINATION ${header_dir} COMPONENT libraries)
+            FILE_SET HEADERS DESTINATION ${header_dir}/detail COMPONENT libraries
+            FILE_SET headers_without_source DESTINATION ${header_dir}/detail COMPONENT libraries)
     install(EXPORT stipple_${module} NAMESPACE stipple:: FILE ${module}.cmake DESTINATION ${package_dir}
             COMPONENT libraries)
 endforeach()
+
+install(TARGETS stipple_shared EXPORT stipple_shared
+        LIBRARY COMPONENT shared NAMELINK_COMPONENT libraries
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT libraries)
+target_include_directories(stipple_shared INTERFACE $<INSTALL_INTERFACE:${header_dir}/detail>)
+install(EXPORT stipple_shared NAMESPACE stipple:: FILE shared.cmake DESTINATION ${package_dir} COMPONENT libraries)
 
 configure_package_config_file(cmake/stippleConfig.cmake.in ${CMAKE_BINARY_DIR}/stippleConfig.cmake
     INSTALL_DESTINATION ${package_dir})
@@ -50,13 +56,7 @@ install(FILES ${CMAKE_BINARY_DIR}/stippleConfig.cmake ${CMAKE_BINARY_DIR}/stippl
 install(FILES cmake/package_config_dir.cpp.in DESTINATION ${package_dir} RENAME package_config_dir.cpp
         COMPONENT libraries)
 
-# What stipple.pc.in names: libraries, users before used, and the way from its folder to the prefix.
-list(TRANSFORM STIPPLE_MODULES PREPEND "-lstipple_" OUTPUT_VARIABLE stipple_libraries)
-list(REVERSE stipple_libraries)
-list(JOIN stipple_libraries " " stipple_libraries)
-if(STIPPLE_ARAVIS)
-    set(stipple_aravis aravis-0.8)
-endif()
+# What stipple.pc.in names: the way from its folder to the prefix.
 string(REGEX REPLACE "[^/]+" ".." stipple_up "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 configure_file(cmake/stipple.pc.in stipple.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/stipple.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT libraries)

@@ -8,7 +8,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 0stipple1)
 set(CPACK_PACKAGE_CONTACT "Stipple authors <stipple@example.org>")  # DEBFULLNAME, DEBEMAIL take its place
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
-set(CPACK_COMPONENTS_ALL program libraries)
+set(CPACK_COMPONENTS_ALL program shared libraries)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_STRIP_FILES ON)
@@ -36,9 +36,18 @@ by EMVA 1288.
 
 This package contains the program with its sensors and schedules.")
 
+set(CPACK_DEBIAN_SHARED_PACKAGE_NAME libstipple${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_SHARED_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_SHARED_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_COMPONENT_SHARED_DEPENDS program)  # its sensors, schedules and libstipple_opencv.so
+set(CPACK_COMPONENT_SHARED_DESCRIPTION "coded-exposure image sensors in C++: shared library
+${stipple_about}
+
+This package contains the shared library.")
+
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libstipple-dev)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_LIBRARIES_DEPENDS program)  # its sensors and schedules
+set(CPACK_COMPONENT_LIBRARIES_DEPENDS shared)
 set(stipple_needs
     libeigen3-dev libfmt-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev libpng-dev libssl-dev
     libtbb-dev libtiff-dev libtinyxml2-dev libtomlplusplus-dev nlohmann-json3-dev zlib1g-dev)
@@ -46,10 +55,10 @@ if(STIPPLE_ARAVIS)
     list(APPEND stipple_needs libaravis-dev libusb-1.0-0-dev libxml2-dev)
 endif()
 list(JOIN stipple_needs ", " CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS)
-set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "coded-exposure image sensors in C++: static libraries
+set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "coded-exposure image sensors in C++: development files
 ${stipple_about}
 
-This package contains the static libraries and headers, their configuration
+This package contains the headers, the static libraries, their configuration
 for CMake and pkg-config, and examples.")
 
 # A module of another Python than Debian's has no package.

@@ -22,6 +22,8 @@ target_compile_options(stipple_precompiled PRIVATE ${stipple_counted})
 set(stipple_precompiled_headers
     <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <memory> <optional> <span> <string> <vector>)
 target_precompile_headers(stipple_precompiled PRIVATE ${stipple_precompiled_headers})
+set_target_properties(stipple_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_compile_options(stipple_precompiled PRIVATE -fno-semantic-interposition)
 
 # stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...] [OPTIONS flag ...])
 # One library per module, built from the folder of the same name. A header of whose name there is a
@@ -46,6 +48,10 @@ function(stipple_module name)
     set_target_properties(stipple_${name} PROPERTIES
         INTERFACE_HEADER_SETS_TO_VERIFY headers_without_source)
     target_link_libraries(stipple_${name} PUBLIC ${arg_PUBLIC} PRIVATE fmt::fmt ${arg_PRIVATE})
+    # For the shared library and the Python module. Nobody replaces a function of them at run time, so calls
+    # within them stay direct and may be inlined, as in a program.
+    set_target_properties(stipple_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(stipple_${name} PRIVATE -fno-semantic-interposition)
 endfunction()
 
 # stipple_verify_headers(FOLDER ... LIBS lib ...): where headers are compiled one at a time, those of

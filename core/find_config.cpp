@@ -23,6 +23,7 @@ std::vector<fs::path> config_folders() {
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
     for (const fs::path& own : executable_dirs()) {
         folders.push_back((own / "../share/stipple/config").lexically_normal());
+        folders.push_back((own / "../../share/stipple/config").lexically_normal());  // lib/MACHINE
         folders.push_back(own / "config");  // a build folder, the Python package
     }
     if (&stipple_package_config_dir != nullptr) folders.emplace_back(stipple_package_config_dir());

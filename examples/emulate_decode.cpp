@@ -1,9 +1,6 @@
 // Footage through an emulated sensor and back: emulate_decode LIGHT.npy OUT.npy
-#include <stipple/decoder/reconstruct.h>
-#include <stipple/io/footage_reader.h>
-#include <stipple/io/npy_writer.h>
-#include <stipple/readout/sensor_file.h>
-#include <stipple/readout/stream_recorder.h>
+#include <stipple/decode.h>
+#include <stipple/emulate.h>
 
 #include <iostream>
 #include <vector>
@@ -21,13 +18,13 @@ int main(int argc, char** argv) try {
     std::cout << recorder.samples() << " samples, compression " << recorder.compression_ratio()
               << "\n";
 
-    stipple::StreamReader stream("coded.stipple");
-    stipple::NpyWriter out(argv[2], argv[2], footage.shape());
-    stipple::decode(stream, stipple::DecodeMethod::kFast,
-                    [&](std::int64_t, std::span<const float> light) {
-                        out.write(light);
-                        return true;
-                    });
+    stipple::DecodeSession session("coded.stipple",
+                                   {.options = {.method = stipple::DecodeMethod::kFast}});
+    stipple::FrameWriter out(argv[2], session.shape(), {.force = true});
+    session.run([&](std::int64_t, std::span<const float> light) {
+        out.write(light);
+        return true;
+    });
     out.finish();
 } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";

@@ -1,8 +1,6 @@
 // A schedule of one's own on the scene `pan`: own_schedule OUT.stipple
-#include <stipple/readout/provenance.h>
-#include <stipple/readout/sensor_file.h>
-#include <stipple/readout/stream_recorder.h>
-#include <stipple/scenes/scene.h>
+#include <stipple/emulate.h>
+#include <stipple/scene.h>
 
 #include <iostream>
 #include <vector>

@@ -1,5 +1,5 @@
 // The samples of a stream, slot by slot: read_stream CLIP.stipple
-#include <stipple/stream/stream_reader.h>
+#include <stipple/stream.h>
 
 #include <iostream>
 

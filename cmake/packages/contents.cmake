@@ -19,7 +19,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     file(GLOB pages ${share}/man/man1/*.1)
     execute_process(COMMAND ${gzip} ${doc}/changelog ${doc}/changelog.Debian ${pages} COMMAND_ERROR_IS_FATAL ANY)
     file(GLOB_RECURSE archives ${share}/../lib/*.a)
-    file(GLOB_RECURSE binaries ${share}/../bin/* ${share}/../lib/*.so)
+    file(GLOB_RECURSE binaries ${share}/../bin/* ${share}/../lib/*.so ${share}/../lib/*.so.*.*.*)
+    list(FILTER binaries EXCLUDE REGEX "libstipple[.]so$")  # a link
     if(archives)
         execute_process(COMMAND ${strip} --strip-debug --enable-deterministic-archives ${archives}
                         COMMAND_ERROR_IS_FATAL ANY)

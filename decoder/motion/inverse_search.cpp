@@ -350,3 +350,4 @@ DenseFlow inverse_search(const FlowImage& from, const FlowImage& to, const Dense
 }
 
 }  // namespace stipple
+#endif  // HWY_ONCE

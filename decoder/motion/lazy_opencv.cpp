@@ -19,6 +19,7 @@ void* load(const char* function) {
     for (const fs::path& own : executable_dirs()) {
         folders.push_back(own);
         folders.push_back(own / STIPPLE_LIBRARY_FROM_PROGRAM);
+        folders.push_back(own / "stipple");  // beside libstipple.so
     }
     folders.emplace_back(STIPPLE_LIBRARY_DIR);
     std::string why;

@@ -1,4 +1,4 @@
-"""Gathers the pages of the site in one folder: those of the project as they are, and one for each C++ module."""
+"""Gathers the pages of the site in one folder: those of the project as they are, and one for each C++ header."""
 
 import re
 import shutil
@@ -7,21 +7,7 @@ from pathlib import Path
 
 LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#]+)((?:#[^)\s]*)?)\)")
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "docs/*.md", "docs/notes/*.md")
-HEADERS = {  # to begin with, of each module
-    "core": ("error.h", "exposure_schedule.h", "flux_video.h"),
-    "io": ("footage_reader.h", "image_file.h", "npy_reader.h", "npy_writer.h"),
-    "stream": ("stream_header.h", "sample_packet.h", "stream_reader.h", "stream_writer.h"),
-    "sensor_model": ("pixel_array.h",),
-    "readout": ("sensor_choice.h", "sensor_file.h", "emulator.h", "stream_recorder.h",
-                "schedules/schedule_catalogue.h"),
-    "decoder": ("reconstruct.h", "decode_method.h"),
-    "calibration": ("chip_estimate.h", "calibration_file.h"),
-    "capture": ("camera.h", "capture_session.h", "frame_record.h", "recording/recording_reader.h",
-                "recording/recording_writer.h"),
-    "metrics": ("video_quality.h",),
-    "scenes": ("scene.h",),
-    "report": ("run_report.h",),
-}
+INCLUDE = re.compile(r'^#include "(?!stipple/)([^"]+)"', re.M)
 
 
 def gather(root, target):
@@ -37,7 +23,7 @@ def gather(root, target):
     shutil.copy(root / "docs/site/stipple.css", target / "_static")
     shutil.copy(root / "docs/site/conf.py", target)
     shutil.copytree(root / "docs/figures", target / "docs/figures", dirs_exist_ok=True)
-    write_cpp_pages(target / "cpp")
+    write_cpp_pages(root, target / "cpp")
 
 
 def with_files(page, root, target):
@@ -68,19 +54,26 @@ def write_command_line(program, page):
     shutil.rmtree(folder)
 
 
-def write_cpp_pages(folder):
+def write_cpp_pages(root, folder):
+    """A page for each header of stipple/, with the interfaces that it includes."""
     folder.mkdir()
-    for module, headers in HEADERS.items():
-        lines = [module, "=" * len(module), ""]
-        for header in headers:
-            title = f"``<stipple/{module}/{header}>``"
-            lines += [title, "-" * len(title), "", f".. doxygenfile:: {module}/{header}", ""]
-        (folder / f"{module}.rst").write_text("\n".join(lines))
+    for header in (root / "stipple").glob("*.h"):
+        title = f"<stipple/{header.name}>"
+        text = header.read_text()
+        comment = [line[1:] for line in re.findall(r"^///( .*|)$", text, re.M)]
+        code = [line for line in comment if line.startswith("    ")]
+        words = " ".join(line for line in comment[:comment.index(code[0])] if line)
+        lines = [title, "=" * len(title), "", words.rstrip(":"), "", ".. code-block:: cpp", "", *code, ""]
+        for included in INCLUDE.findall(text):
+            lines += [included, "-" * len(included), "", f".. doxygenfile:: {included}", ""]
+        (folder / f"{header.stem}.rst").write_text("\n".join(lines))
 
 
 def doxygen_configuration(root, output):
     """For doxygen's standard input: XML of all headers."""
-    folders = " ".join(str(root / module) for module in HEADERS)
+    included = {name.split("/")[0] for header in (root / "stipple").glob("*.h")
+                for name in INCLUDE.findall(header.read_text())}
+    folders = " ".join(str(root / module) for module in sorted(included))
     return "\n".join((
         "PROJECT_NAME = Stipple", f"INPUT = {folders}", "FILE_PATTERNS = *.h", "RECURSIVE = YES",
         "EXCLUDE_PATTERNS = *-inl.h", f"OUTPUT_DIRECTORY = {output}", "INCLUDE_GRAPH = NO",

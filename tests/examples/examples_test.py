@@ -1,6 +1,7 @@
 """Stipple as a library: installed, moved to another folder, and used from outside the tree."""
 
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -87,16 +88,14 @@ class ExamplesTest(unittest.TestCase):
         places = [path.parent for path in self.prefix.rglob("stipple.pc")]
         environment = os.environ | {"PKG_CONFIG_PATH": str(places[0])}
         flags = shlex.split(self.run_command("pkg-config", "--cflags", "--libs", "stipple", env=environment))
-        self.run_command(os.environ["CXX"], EXAMPLES / "read_stream.cpp", "-o", "by_hand", *flags)
-        self.read_stream(self.folder / "by_hand", "by_hand.stipple")
-        # Such a program does not know the folder of the configurations, and says where it has looked.
+        libraries = os.environ | {"LD_LIBRARY_PATH": str(places[0].parent)}
+        # The library finds the configurations of its installation.
         self.run_command(os.environ["CXX"], EXAMPLES / "own_schedule.cpp", "-o", "own_by_hand", *flags)
+        self.run_command(self.folder / "own_by_hand", "by_hand.stipple", env=libraries)
+        self.run_command(os.environ["CXX"], EXAMPLES / "read_stream.cpp", "-o", "read_by_hand", *flags)
+        self.assertIn("slot 15: ", self.run_command(self.folder / "read_by_hand", "by_hand.stipple", env=libraries))
         configs = self.run_command("pkg-config", "--variable=configdir", "stipple", env=environment).strip()
-        program = self.folder / "own_by_hand"
-        self.run_command(program, "own.stipple", env=os.environ | {"STIPPLE_CONFIG_DIR": configs})
-        said = self.run_command(program, "own.stipple", code=1, env=os.environ | {"STIPPLE_CONFIG_DIR": "nowhere"})
-        self.assertRegex(said, rf'configuration: there is no sensors/ in nowhere, .*{self.folder}/config.*; '
-                               "set STIPPLE_CONFIG_DIR")
+        self.assertTrue((Path(configs) / "sensors/paper.toml").is_file())
 
     def project(self, name, *lines):
         """A folder with a project of these lines of CMake."""
@@ -106,12 +105,13 @@ class ExamplesTest(unittest.TestCase):
             ("cmake_minimum_required(VERSION 3.25)", f"project({name} LANGUAGES CXX)", *lines)))
         return folder
 
-    def test_without_components_all_are_there(self):
+    def test_components_are_static_libraries(self):
         """The last two link all others."""
-        source = self.project("whole", "find_package(stipple REQUIRED)", "add_executable(whole main.cpp)",
+        source = self.project("whole", "find_package(stipple REQUIRED COMPONENTS capture scenes report)",
+                              "add_executable(whole main.cpp)",
                               "target_link_libraries(whole PRIVATE stipple::scenes stipple::capture stipple::report)")
-        (source / "main.cpp").write_text("#include <stipple/capture/camera_listing.h>\n"
-                                         "#include <stipple/report/run_report.h>\n"
+        (source / "main.cpp").write_text("#include <stipple/capture.h>\n"
+                                         "#include <stipple/report.h>\n"
                                          "int main() {\n"
                                          "    static_cast<void>(stipple::list_cameras());\n"
                                          "    stipple::RunReport report({.title = \"By hand\"}, {4, 4, 1}, nullptr);\n"
@@ -121,6 +121,46 @@ class ExamplesTest(unittest.TestCase):
         self.configure(source, "whole_build")
         self.run_command(os.environ["CMAKE"], "--build", "whole_build")
         self.run_command(self.folder / "whole_build/whole")
+        libraries = self.run_command("ldd", self.folder / "whole_build/whole")
+        self.assertNotIn("libstipple", libraries)
+
+    def test_each_header_has_an_example_that_runs(self):
+        """They follow on one another: a scene, its stream, the decoded video, its quality and page."""
+        folder = self.folder / "headers"
+        folder.mkdir()
+        headers = ["error", "scene", "video", "schedule", "sensor", "emulate", "stream", "decode", "compare", "calibrate",
+                   "capture", "explore", "report"]
+        installed = self.prefix / "include/stipple"
+        self.assertEqual({path.stem for path in installed.glob("*.h")}, set(headers))
+        lines = ["find_package(stipple REQUIRED)"]
+        for header in headers:
+            example = re.findall(r"^///     (.*)$", (installed / f"{header}.h").read_text(), re.M)
+            self.assertGreater(len(example), 1, header)
+            (folder / f"{header}.cpp").write_text(
+                f"#include <stipple/{header}.h>\n#include <iostream>\n#include <fstream>\n"
+                + ("#include <stipple/stream.h>\n" if header == "error" else "")
+                + "int main() {\n" + "\n".join(example) + "\n}\n")
+            lines += [f"add_executable({header} {header}.cpp)",
+                      f"target_link_libraries({header} PRIVATE stipple::stipple)"]
+        source = self.project("doors", *lines)
+        for file in folder.iterdir():
+            file.rename(source / file.name)
+        self.configure(source, "doors_build")
+        self.run_command(os.environ["CMAKE"], "--build", "doors_build", "--parallel", "2")
+        said = {header: self.run_command(self.folder / "doors_build" / header) for header in headers}
+        self.assertIn("nosuch.stipple", said["error"])
+        np.testing.assert_array_equal(np.load(self.folder / "copy.npy"), np.load(self.folder / "scene.npy"))
+        self.assertEqual(np.load(self.folder / "decoded.npy").shape, (60, 48, 64))
+        self.assertGreater(float(said["compare"].split()[0]), 20)
+        self.assertIn("<title>A clip", (self.folder / "report.html").read_text())
+
+    def test_the_shared_library_exports_its_own_names_alone(self):
+        [library] = [path for path in self.prefix.rglob("libstipple.so") if path.is_symlink()]
+        names = [line.split(maxsplit=2)[2] for line in
+                 self.run_command("nm", "-D", "--defined-only", "-C", library).splitlines()]
+        strange = [name for name in names if "stipple::" not in name]
+        self.assertGreater(len(names), 1000)
+        self.assertEqual(strange, [])
 
     def test_an_unknown_component_is_named(self):
         source = self.project("wrong", "find_package(stipple REQUIRED COMPONENTS lens)")
