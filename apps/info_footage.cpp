@@ -20,6 +20,7 @@
 #include "io/camera_file.h"
 #include "io/fits_reader.h"
 #include "io/footage_files.h"
+#include "io/footage_formats.h"
 #include "io/footage_reader.h"
 #include "io/video_reader.h"
 #include "report/json_figures.h"

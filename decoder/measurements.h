@@ -24,7 +24,7 @@ struct Measurements {
     static constexpr std::uint8_t kLast = 4;       ///< last voxel of an exposure, where `sum` is
     static constexpr std::uint8_t kSaturated = 8;  ///< with kLast: the light is `sum` or more
     static constexpr std::uint8_t kSecond = 16;    ///< with kOpen: the exposure is of chain 2
-    static constexpr std::uint8_t kPresumed = 32;  ///< with kLast: pseudo_samples.h
+    static constexpr std::uint8_t kPseudo = 32;    ///< with kLast: pseudo_samples.h
     static constexpr std::uint8_t kZero = 64;      ///< with kLast: DN 0, censored_samples.h
 
     int slots = 0;

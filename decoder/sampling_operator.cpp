@@ -101,13 +101,13 @@ void spread(const Measurements& measurements, std::span<const float> sums, std::
 
 void refresh_variances(Measurements& measurements, const SampleNoise& noise,
                        std::span<const float> x) {
-    sample_but(Measurements::kPresumed, measurements, x, measurements.variance);
+    sample_but(Measurements::kPseudo, measurements, x, measurements.variance);
     const std::size_t sites = measurements.shape.sites();
     const bool own_noise = !measurements.dark_variance.empty();
     parallel_for(0, measurements.slots, [&](int slot) {
         const auto begin = static_cast<std::size_t>(slot) * sites;
         for (std::size_t i = begin; i < begin + sites; ++i)
-            if ((measurements.state[i] & Measurements::kPresumed) == 0)
+            if ((measurements.state[i] & Measurements::kPseudo) == 0)
                 measurements.variance[i] =
                     (measurements.state[i] & Measurements::kLast) == 0 ? 0
                     : own_noise ? measurements.variance_at(i, measurements.variance[i])

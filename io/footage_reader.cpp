@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,181 +15,15 @@
 #include "core/hdr_curves.h"
 #include "core/light.h"
 #include "core/memory_limit.h"
-#include "io/camera_file.h"
-#include "io/fits_reader.h"
 #include "io/footage_files.h"
+#include "io/footage_formats.h"
 #include "io/footage_warnings.h"
-#include "io/image_file.h"
-#include "io/npy_reader.h"
-#include "io/raw_video.h"
-#include "io/tiff_file.h"
-#include "io/video_reader.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
-namespace {
-
-/// Reads images one after the other.
-class ImageSequence {
-  public:
-    /// Of images, at least one, or of the pages of a file.
-    explicit ImageSequence(ImageFiles images, std::optional<TiffFile> tiff = {})
-        : images_(std::move(images)), tiff_(std::move(tiff)) {
-        load(0);
-        traits_ = image_.traits;
-        shape_ = image_.shape;
-    }
-
-    [[nodiscard]] FrameShape shape() const { return shape_; }
-    [[nodiscard]] const SourceInfo& traits() const { return traits_; }
-    [[nodiscard]] const std::string& warning() const { return images_.warning; }
-    [[nodiscard]] std::string kind() const {
-        if (tiff_) return "TIFF file";
-        std::string extension = lower_extension(images_.files.front()).substr(1);
-        std::ranges::transform(extension, extension.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        return extension + (images_.files.size() == 1 ? " image" : " images");
-    }
-    [[nodiscard]] int slots() const {
-        return tiff_ ? tiff_->pages() : static_cast<int>(images_.files.size());
-    }
-    [[nodiscard]] std::string where() const {
-        return tiff_ ? tiff_->where(next_ - 1)
-                     : images_.files[static_cast<std::size_t>(next_ - 1)].string();
-    }
-
-    bool read(std::span<float> frame) {
-        if (next_ == slots()) return false;
-        ++next_;
-        if (next_ > 1) load(next_ - 1);
-        if (image_.shape != shape_)
-            throw InputError(where(),
-                             fmt::format("is {} x {} x {} (width x height x planes), but "
-                                         "the first frame is {} x {} x {}",
-                                         image_.shape.cols, image_.shape.rows, image_.shape.planes,
-                                         shape_.cols, shape_.rows, shape_.planes));
-        if (image_.traits.filter != traits_.filter)
-            throw InputError(where(), "has another colour filter array than the first frame");
-        if (image_.traits.gamma_coded != traits_.gamma_coded ||
-            image_.traits.curve != traits_.curve)
-            throw InputError(where(), "declares another transfer function than the first frame");
-        if (const double us = image_.traits.exposure_us.value_or(0); us > 0) {
-            min_exposure_us_ = std::min(min_exposure_us_, us);
-            max_exposure_us_ = std::max(max_exposure_us_, us);
-        }
-        std::copy(image_.values.begin(), image_.values.end(), frame.begin());
-        return true;
-    }
-
-    /// That images were exposed unequally long, so far; else empty.
-    [[nodiscard]] std::string exposure_warning() const {
-        constexpr double kSameExposure = 0.01;
-        if (max_exposure_us_ * (1 - kSameExposure) <= min_exposure_us_) return {};
-        return fmt::format(
-            "its frames were exposed for {:.4g} to {:.4g} us, for which their light is not "
-            "corrected",
-            min_exposure_us_, max_exposure_us_);
-    }
-
-    void skip(int frames) { next_ += std::min(frames, slots() - next_); }
-
-  private:
-    void load(int slot) {
-        if (!tiff_) return read_image(images_.files[static_cast<std::size_t>(slot)], image_);
-        tiff_->read(slot, page_);
-        to_image(page_, image_);
-    }
-
-    ImageFiles images_;
-    std::optional<TiffFile> tiff_;
-    TiffPixels page_;
-    int next_ = 0;
-    double min_exposure_us_ = std::numeric_limits<double>::max();
-    double max_exposure_us_ = 0;
-    Image image_;
-    SourceInfo traits_;
-    FrameShape shape_;
-};
-
-using Source = std::variant<ImageSequence, NpyReader, VideoReader, RawVideoReader, FitsReader>;
-
-/// A format of files with frames.
-struct FrameFormat {
-    std::string_view name;
-    bool (*is_name)(const fs::path& file);  ///< by the extension
-    Source (*open)(const fs::path& file);
-};
-
-bool is_tiff_name(const fs::path& file) {
-    const ImageReader* const reader = image_reader(file);
-    return reader != nullptr && reader->name == "TIFF";
-}
-
-constexpr FrameFormat kFrameFormats[] = {
-    {"TIFF", is_tiff_name,  // each page is a frame
-     [](const fs::path& file) -> Source { return ImageSequence({}, TiffFile(file)); }},
-    {".npy", [](const fs::path& file) { return lower_extension(file) == ".npy"; },
-     [](const fs::path& file) -> Source { return NpyReader(file); }},
-    {".cine", [](const fs::path& file) { return lower_extension(file) == ".cine"; },
-     [](const fs::path& file) -> Source { return RawVideoReader(open_cine(file)); }},
-    {"Photron", is_photron_name,
-     [](const fs::path& file) -> Source { return RawVideoReader(open_photron(file)); }},
-    {"FITS", is_fits_name, [](const fs::path& file) -> Source { return FitsReader(file); }},
-    {"video", is_video_name, [](const fs::path& file) -> Source { return VideoReader(file); }},
-};
-
-/// Why a file cannot be footage, by its extension.
-Message not_footage(const fs::path& source) {
-    const std::string extension = lower_extension(source);
-    if (extension == ".stipple")
-        return "is a sample stream, not footage; \"stipple decode\" makes video of it";
-    if (extension == ".strec")
-        return "is not a recording of a camera: it is empty, or does not begin as one";
-    if (const std::string remedy = conversion_of(source); !remedy.empty())
-        return "is not a recognised footage format" + remedy;
-    return "is not a recognised footage format; give a folder or pattern of " +
-           image_format_names() +
-           " images, a video or camera file, or .npy; a file without a header needs " +
-           Parameter{"raw"};
-}
-
-Source open_source(const fs::path& source, const FootageOptions& options) {
-    if (options.raw) return RawVideoReader(open_raw_file(source, *options.raw));
-    const std::string name = source.string();
-    std::error_code error;
-    const auto status = fs::status(source, error);
-    if (fs::is_directory(status)) return ImageSequence(images_in_folder(source));
-    if (!fs::exists(status)) {
-        if (source.filename().string().find('%') != std::string::npos)
-            return ImageSequence(images_of_pattern(source));
-        throw InputError(name, error && status.type() == fs::file_type::none
-                                   ? "cannot be read: " + error.message()
-                                   : "there is no such file or folder");
-    }
-    for (const FrameFormat& format : kFrameFormats)
-        if (format.is_name(source)) return format.open(source);
-    if (image_reader(source) != nullptr) return ImageSequence({{source}, {}});
-    throw InputError(name, not_footage(source));
-}
-
-}  // namespace
-
-bool is_footage_name(const fs::path& file) {
-    return image_reader(file) != nullptr ||
-           std::ranges::any_of(kFrameFormats,
-                               [&](const FrameFormat& format) { return format.is_name(file); });
-}
-
-std::vector<std::string_view> footage_format_names() {
-    std::vector<std::string_view> names;
-    for (const ImageReader& reader : image_readers()) names.push_back(reader.name);
-    for (const FrameFormat& format : kFrameFormats)
-        if (std::ranges::find(names, format.name) == names.end()) names.push_back(format.name);
-    return names;
-}
 
 struct FootageReader::Impl {
-    Source source;
+    FrameSource source;
     FootageOptions options;
     std::string name;
     std::string extension;

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/colour_filter.h"
@@ -34,13 +33,6 @@ struct FootageOptions {
     bool at_their_times = false;           ///< the caller heeds times of frames: no warning of them
     FootagePart part = {};                 ///< of the frames, once they are light
 };
-
-/// Whether the extension of a file is one of those that are read.
-[[nodiscard]] bool is_footage_name(const std::filesystem::path& file);
-
-/// The formats of footage: images, then files with frames. A format has rows in the tables of
-/// docs/footage.md, and a fuzz target of its name.
-[[nodiscard]] std::vector<std::string_view> footage_format_names();
 
 /// Reads footage frame by frame, one frame a time slot, in linear light: 8/16-bit integers are
 /// divided by 255 / 65535, floating-point files are taken as they are.

@@ -129,7 +129,7 @@ struct CodedSensor::Impl {
                          std::uint64_t seed);
     [[nodiscard]] std::span<const float> light_of_slot(std::span<const float> frame);
     void find_overflow(std::span<const float> arriving, int row, Band& band);
-    void leave_lag(std::uint32_t plane, Band& band);
+    void store_lag(std::uint32_t plane, Band& band);
     void collect_band(std::span<const float> frame, int first_row, Band& band);
     void take_due(std::uint32_t plane, Band& band);
     void read_band(Band& band);
@@ -176,11 +176,12 @@ void CodedSensor::Impl::find_overflow(std::span<const float> arriving, int row, 
         const std::size_t first = plane * shape.pixels() + in_plane;
         for (std::size_t col = 0; col < cols; ++col) {
             const SiteParams& site = physical->pattern().plane(plane)[in_plane + col];
-            const float come = std::min(arriving[first + col], std::numeric_limits<float>::max());
+            const float incoming =
+                std::min(arriving[first + col], std::numeric_limits<float>::max());
             const float held = light[first + col + (band.open[col] == 2 ? shape.sites() : 0)];
-            const float beyond = held + come - physical->full_well_light(site);
+            const float excess = held + incoming - physical->full_well_light(site);
             const bool collects = band.open[col] != 0 && site.responsivity_e > 0;
-            overflow[first + col] = collects ? std::clamp(beyond, 0.0F, come) : 0;
+            overflow[first + col] = collects ? std::clamp(excess, 0.0F, incoming) : 0;
         }
     }
 }
@@ -199,14 +200,14 @@ std::span<const float> CodedSensor::Impl::light_of_slot(std::span<const float> f
 }
 
 /// Keeps a fraction of the charge of the due pixels for the next exposure of their stores.
-void CodedSensor::Impl::leave_lag(std::uint32_t plane, Band& band) {
+void CodedSensor::Impl::store_lag(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     for (std::size_t i = 0; i < band.pixels.size(); ++i) {
         const SiteParams& site = physical->pattern().plane(plane)[band.pixels[i]];
-        const float come = std::min(band.light[i], std::numeric_limits<float>::max());
-        const float left = lag * std::min(come, physical->full_well_light(site));
-        band.light[i] = come - left;
-        at_plane[band.pixels[i] + (stores == 2 ? band.stores[i] * shape.sites() : 0)] = left;
+        const float collected = std::min(band.light[i], std::numeric_limits<float>::max());
+        const float residual = lag * std::min(collected, physical->full_well_light(site));
+        band.light[i] = collected - residual;
+        at_plane[band.pixels[i] + (stores == 2 ? band.stores[i] * shape.sites() : 0)] = residual;
     }
 }
 
@@ -243,14 +244,15 @@ void CodedSensor::Impl::take_due(std::uint32_t plane, Band& band) {
     const auto at_plane = std::span(light).subspan(plane * shape.pixels());
     stores == 1 ? take(band.pixels, at_plane, band.light)
                 : take(band, shape.sites(), at_plane, band.light);
-    if (lag != 0) leave_lag(plane, band);
+    if (lag != 0) store_lag(plane, band);
 }
 
 /// Light to DN of the due pixels of one plane.
 void CodedSensor::Impl::read(std::uint32_t plane, Band& band) {
-    take_due(plane, band);
-    charge(plane, band);
-    adc.convert(band.electrons, band.plane_dn);
+    take_due(plane, band);                       // light since the exposure began, less the lag
+    charge(plane, band);                         // photons, electrons, full well, read noise
+    adc.convert(band.electrons, band.plane_dn);  // gain, black level, rounding, clipping
+
     const auto planes = static_cast<std::size_t>(shape.planes);
     for (std::size_t i = 0; i < band.pixels.size(); ++i) {
         band.dn[i * planes + plane] = band.plane_dn[i];
@@ -301,12 +303,17 @@ void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
     assert(frame.size() == impl_->shape.sites());
     auto& bands = impl_->bands;
     const auto band_of = [&](int i) -> Band& { return bands[static_cast<std::size_t>(i)]; };
+
+    // Crosstalk, blooming and skew change the light before it is collected.
     frame = impl_->light_of_slot(frame);
+
+    // Each band of rows: light into the open stores; due pixels to electrons, then to DN; reset.
     parallel_for(0, static_cast<int>(bands.size()), [&](int i) {
         impl_->collect_band(frame, i * kBandRows, band_of(i));
         impl_->read_band(band_of(i));
     });
 
+    // The samples in the order of rows, columns and planes.
     ReadoutStats& stats = impl_->stats;
     packet.slot = stats.slots++;
     packet.first_row = 0;

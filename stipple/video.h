@@ -9,7 +9,7 @@
 ///     while (footage.read(light)) copy.write(light);
 ///     copy.finish();
 ///
-/// 1.0 is the light that fills the sensor's unit, `photons_per_unit`; FluxVideo holds a whole video.
+/// 1.0 is `photons_per_unit` of the sensor. FluxVideo holds a whole video.
 #include "core/flux_video.h"
 #include "io/footage_reader.h"
 #include "io/frame_writer.h"

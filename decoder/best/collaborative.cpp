@@ -53,9 +53,13 @@ class CollaborativeSolver {
     /// Filters the estimate. All iterations but the last end with the data-consistency step.
     void iterate(int iteration) {
         const float sigma = sigma_of(iteration);
+
+        // z = 2 sqrt(x + offset), groups of similar patches of z, their filter for noise sigma.
         find_groups(iteration);
         filter_groups(noisy_, pilot_, groups_, sigma, filtered_);
         std::swap(filtered_, pilot_);
+
+        // z_k + beta (z_k - z_(k-1)), and back to light: x = z^2 / 4 - offset.
         const bool last = iteration + 1 == options_.iterations;
         if (!last) extrapolate();
         for_each_slot([&](int slot) {
@@ -64,6 +68,8 @@ class CollaborativeSolver {
         });
         refresh_variances(measurements_, noise_, x_.data());
         if (last) return;
+
+        // y <- y0 + decay (y - y0) + gain (y0 - Ax), then prox of the data term at x.
         for (Sensor& sensor : sensors_) {
             sensor.censored.expect(x_.data(), sensor.sampled);
             add_residuals(sensor);
@@ -300,9 +306,13 @@ std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const 
                                               const CollaborativeOptions& all_options,
                                               const ProgressCallback& progress) {
     const CollaborativeOptions options = options_for(measurements, all_options);
+
+    // x0: the result of `fast`.
     auto x = decode_motion_tv(measurements, noise, options.start,
                               [&](double fraction) { return progress(kStartShare * fraction); });
     if (!x || std::min(x->shape().rows, x->shape().cols) < kPatchSide) return x;
+
+    // Filter and data consistency in turn, for noise that decreases.
     CollaborativeSolver solver(measurements, noise, options, *x);
     bool stopped = false;
     for (int i = 0; i < options.iterations && !stopped; ++i) {

@@ -155,11 +155,17 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
                                           const ProgressCallback& progress) {
     const MotionTvOptions options = options_for(measurements, all_options);
     WorkCount work(options, progress);
+
+    // x0: each voxel has the light of the nearest samples of its pixel.
     FluxVideo x = nearest_samples(measurements);
-    const PseudoSamples presumed(measurements, x, noise);
+
+    // Voxels that no sample holds get a weak one, saturated samples the light expected above them.
+    const PseudoSamples pseudo_samples(measurements, x, noise);
     std::list<CensoredSamples> censored;
     for_each_sensor(measurements,
                     [&](Measurements& sensor) { censored.emplace_back(sensor, noise); });
+
+    // min over x >= 0 of  sum (y - Ax)^2 / (2 var y) + weight |grad x|,  by steps tau(x).
     TotalVariationSolver solver(measurements);
     const auto minimise = [&](std::span<const MotionField> motion, std::span<const float> step,
                               TotalVariationOptions tv) {
@@ -167,18 +173,26 @@ std::optional<FluxVideo> decode_motion_tv(Measurements& measurements, const Samp
         tv.keep_going = [&] { return work.add_iteration(); };
         solver.minimise(motion, step, tv, x);
     };
+
+    // Without motion: temporal differences stay in their pixel.
     minimise({}, primal_steps(x, options), options.static_tv);
+
     const FrameShape shape = x.shape();
     const bool can_move = std::min(shape.rows, shape.cols) >= kMinMotionSide;
     for (int round = 0; can_move && round < options.rounds && !work.stopped(); ++round) {
+        // var y = read noise^2 + shot noise of Ax, and E[y | y saturated, Ax].
         refresh_variances(measurements, noise, x.data());
         for (CensoredSamples& samples : censored) samples.expect(x.data());
+
+        // Links from each voxel to where its light is in the slots before and after.
         const bool last = round + 1 == options.rounds;
         auto motion = estimate_motion(x, motion_options(round, last));
         work.add_motion();
         const auto step = primal_steps(x, options);
         for (MotionField& field : motion)
             cut_links_to_larger_steps(field, shape, step, options.max_step_ratio);
+
+        // The same problem, with temporal differences along these links.
         auto along_motion = options.along_motion;
         if (last) along_motion.iterations = options.last_iterations;
         minimise(motion, step, along_motion);

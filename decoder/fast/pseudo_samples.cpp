@@ -141,7 +141,7 @@ class SitePresumption {
 
     void make_sample(std::size_t i, std::uint8_t chain) {
         m_.state[i] = Measurements::kOpen | Measurements::kFirst | Measurements::kLast |
-                      Measurements::kPresumed | chain;
+                      Measurements::kPseudo | chain;
         m_.sum[i] = nearest_[i];
         m_.variance[i] = noise_.variance(m_.sum[i]) + kUnsampledDoubt * changes_.squared[i];
     }
@@ -162,12 +162,12 @@ class SitePresumption {
         }
     }
 
-    struct Presumed {
+    struct PseudoSample {
         float light = 0;
         float variance = 0;  ///< of its changes
     };
-    [[nodiscard]] Presumed presumed(std::size_t site, const SiteExposure& e) const {
-        Presumed p;
+    [[nodiscard]] PseudoSample pseudo_sample(std::size_t site, const SiteExposure& e) const {
+        PseudoSample p;
         float change = 0;
         for (int slot = e.first_slot; slot <= e.last_slot; ++slot) {
             const std::size_t i = voxel(site, slot);
@@ -180,16 +180,16 @@ class SitePresumption {
     }
 
     void raise_bound(std::size_t site, const SiteExposure& e) {
-        const Presumed p = presumed(site, e);
+        const PseudoSample p = pseudo_sample(site, e);
         raise_sum(voxel(site, e.last_slot), p.light - 2 * std::sqrt(p.variance));
     }
 
     void make_known(std::size_t site, const SiteExposure& e) {
-        const Presumed p = presumed(site, e);
+        const PseudoSample p = pseudo_sample(site, e);
         const std::size_t i = voxel(site, e.last_slot);
         raise_sum(i, p.light);
         m_.state[i] = static_cast<std::uint8_t>((m_.state[i] & ~Measurements::kSaturated) |
-                                                Measurements::kPresumed);
+                                                Measurements::kPseudo);
         const float noise =
             m_.dark_variance.empty() ? noise_.variance(m_.sum[i]) : m_.variance_at(i, m_.sum[i]);
         m_.variance[i] = noise + p.variance;
@@ -254,10 +254,10 @@ PseudoSamples::~PseudoSamples() {
     for (const Bound& bound : bounds_) {
         m.sum[bound.voxel] = bound.sum;
         m.state[bound.voxel] = static_cast<std::uint8_t>(
-            (m.state[bound.voxel] | Measurements::kSaturated) & ~Measurements::kPresumed);
+            (m.state[bound.voxel] | Measurements::kSaturated) & ~Measurements::kPseudo);
     }
     for (std::size_t i = 0; i < m.voxels(); ++i)
-        if ((m.state[i] & Measurements::kPresumed) != 0) {
+        if ((m.state[i] & Measurements::kPseudo) != 0) {
             m.state[i] = 0;
             m.sum[i] = m.variance[i] = 0;
         }

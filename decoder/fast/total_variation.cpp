@@ -69,9 +69,16 @@ class TotalVariationSolver::Impl {
         });
     }
 
+    /// An iteration of Chambolle and Pock (J. Math. Imaging Vis. 40(1), 2011, algorithm 1), with a
+    /// step for each pixel. K: all differences; F: data term.
     void iterate() {
+        // p <- project(p + sigma K x_bar), and what of K^T p lies in the slot of the difference
         parallel_for(0, measurements_.slots, [&](int slot) { update_duals(slot); });
+
+        // the rest of K^T p: differences that end in a slot
         parallel_for(0, measurements_.slots, [&](int slot) { add_partner_gradients(slot); });
+
+        // x' <- prox_(tau F)(x - tau K^T p);  x_bar <- 2 x' - x
         parallel_for(0, static_cast<int>(runs_.size()),
                      [&](int i) { update_primal(runs_[index(i)]); });
     }
@@ -119,8 +126,12 @@ class TotalVariationSolver::Impl {
         const std::size_t first = frame(slot) + skipped;
         float* gradient = &gradient_[first];
         const float* now = &extrapolated_[first];
+
+        // in the frame: to the right and below
         update_spatial_dual(shape, dual_step(slot, group.weight * options_->spatial_weight), now,
                             {&dual_col_[first], &dual_row_[first]}, gradient);
+
+        // in time: to the same pixel of the next slot, or along each motion field
         const auto temporal =
             dual_step(slot, group.weight * options_->temporal_weight / static_cast<float>(links_));
         if (motion_.empty() && has(slot + 1))
@@ -149,10 +160,11 @@ class TotalVariationSolver::Impl {
                 add_partner_gradient(link(i, slot - motion_[i].step), gradient);
     }
 
-    /// x' = prox(x - step gradient); extrapolated = 2 x' - x
     void update_primal(const SiteRun& pixels) {
         const bool opponents = groups_.size() > 1;
         const std::size_t count = pixels.end - pixels.begin;
+
+        // x - tau K^T p
         for (int slot = 0; slot < measurements_.slots; ++slot) {
             if (opponents) from_opponents(count, triple(gradient_, slot, pixels.begin));
             for (int plane = 0; plane < shape_.planes; ++plane) {
@@ -161,9 +173,13 @@ class TotalVariationSolver::Impl {
                         &gradient_[i]);
             }
         }
+
+        // prox of the data term, a pixel over all slots at a time
         for (std::size_t plane = 0; plane < shape_.sites(); plane += shape_.pixels())
             prox_({plane + pixels.begin, plane + pixels.end}, step_,
                   {gradient_.get(), measurements_.voxels()});
+
+        // x_bar = 2 x' - x
         for (int slot = 0; slot < measurements_.slots; ++slot) {
             for (int plane = 0; plane < shape_.planes; ++plane) {
                 const std::size_t i = frame(slot) + index(plane) * shape_.pixels() + pixels.begin;

@@ -8,11 +8,14 @@ void ReadoutPipeline::begin_slot(std::int64_t cycle, std::int64_t full_row_clock
                                  int settle) noexcept {
     settle_ = settle;
     begin_ = cycle;
+    // Overhead rows pass through the pipeline as full rows do; the first row is selected beside the
+    // transfer of the last of them.
     first_transfer_ = cycle + timing_.overhead_clocks + timing_.overhead_rows * full_row_clocks;
     first_select_ = first_transfer_;
     if (timing_.overhead_rows > 0 && !is_sequential()) first_select_ -= full_row_clocks;
     link_free_ = cycle;
     any_row_ = false;
+
     // Stands for the rows before the first one; its end lets that one begin at once.
     const int none = -timing_.dark_rows - 1;
     const std::int64_t long_ago = cycle - timing_.blanking_clocks;
@@ -26,6 +29,7 @@ std::int64_t ReadoutPipeline::earliest_select(int row) const noexcept {
     if (!before.transferred) return kNever;
     const std::int64_t rest = timing_.blanking_clocks;
     if (is_sequential()) return std::max(first_select_, before.transfer_end + rest);
+    // The converters are free, and so is the latch that takes the row after them.
     return std::max({first_select_, newest_.convert_end + rest, before.transfer_end + rest});
 }
 
@@ -36,6 +40,7 @@ std::int64_t ReadoutPipeline::earliest_transfer(int row) const noexcept {
     if (!any_row_ || !it.converted || it.transferred) return kNever;
     if (is_newest && !older_.transferred) return kNever;
     if (is_sequential()) return it.convert_end;
+    // The link is free, and the row is in its latch.
     return std::max({first_transfer_, link_free_, it.convert_end + timing_.blanking_clocks});
 }
 
@@ -68,9 +73,10 @@ std::int64_t ReadoutPipeline::clocks(const ReadoutCommand& command) const noexce
 bool ReadoutPipeline::issue(const ReadoutCommand& command, std::int64_t cycle) noexcept {
     const std::int64_t earliest = earliest_cycle(command);
     if (earliest == kNever || cycle < earliest) return false;
+
     const std::int64_t end = cycle + clocks(command);
     switch (command.kind) {
-        case ReadoutCommand::Kind::kSelect:
+        case ReadoutCommand::Kind::kSelect:  // the row before moves on to the latch
             older_ = newest_;
             newest_ = {.row = command.row, .selected = true, .select_end = end};
             any_row_ = true;

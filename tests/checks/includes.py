@@ -48,7 +48,7 @@ def wrong_includes(tree, table):
             first = target.split("/")[0]
             if form == '"' and target not in tree.files:
                 yield f'{name}:{number}: "{target}" is no file here; write the path from the root'
-            elif form == "<" and target in tree.files:
+            elif form == "<" and target in tree.files and module != "examples":
                 yield f"{name}:{number}: <{target}> is ours; write it in quotes"
             elif module in table and first in MODULES and first not in table[module] | {module}:
                 yield f"{name}:{number}: {module} may not include {first} ({PAGE})"

@@ -16,9 +16,9 @@ import prose_figures
 import quoted_messages
 import sizes
 import words
-from tree import Tree
+from tree import MODULES, Tree
 
-ALL = "core, io, stream, sensor_model, metrics, scenes, calibration, capture, report, explore, apps, python"
+ALL = ", ".join(module for module in MODULES if module not in ("decoder", "readout"))
 TABLE = f"| decoder | stream, core |\n| readout | sensor_model, core |\n| {ALL} | everything |\n"
 ONCE = "#pragma once\n"
 PAPERS = "[DOI](https://doi.org/10.1000/1)\n"

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "io/footage_reader.h"
+#include "io/footage_formats.h"
 #include "tests/support/source_tree.h"
 
 namespace stipple {

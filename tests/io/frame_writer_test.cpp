@@ -121,6 +121,15 @@ TEST(FrameWriterTest, ReplacesAnExistingOutputOnlyWithForce) {
     EXPECT_EQ(folder.names(), (Names{"clip.mp4", "clip.npy", "clip.tif", "frames"}));
 }
 
+TEST(FrameWriterTest, HdrVideoIsForContainersThatDeclareIt) {
+    const TemporaryFolder folder;
+    FrameWriterOptions options;
+    options.video.curve = VideoCurve::kPq;
+    for (const char* name : {"clip.y4m", "clip.npy", "clip.tif", "frames"})
+        expect_parts(message_of<InputError>([&] { write_two(folder / name, options); }),
+                     {name, "holds no HDR video"});
+}
+
 TEST(FrameWriterTest, NeverReplacesAFolderWithOtherFiles) {
     const TemporaryFolder folder;
     write_text(folder / "diary.txt", "dear diary");
