@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/arguments/common_options.h"
 #include "apps/calibrate.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -176,10 +177,7 @@ void add_calibrate(Command& app, Action& action) {
     add_scene_arguments(command, options->scene);
     command.add_flag("--no-dark-current", options->no_dark_current,
                      "take the dark current for 0: one exposure time without light is enough");
-    command.add_option("-o,--output", options->output, "calibration, for \"stipple decode\"")
-        .type_name("FILE")
-        .required()
-        .output();
+    add_output(command, options->output, "calibration, for \"stipple decode\"");
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"

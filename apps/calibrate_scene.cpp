@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
 #include "apps/standard_error.h"

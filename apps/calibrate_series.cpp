@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/progress.h"
@@ -253,10 +253,7 @@ void add_series_arguments(Command& command, SeriesArguments& arguments) {
         .default_text("12 of a sensor with response_loss or inl_dn, else 0")
         .check(whole_check(0, 1000))
         .type_name("N");
-    command.add_option("--seed", arguments.sensor.seed, "with --sensor: seed of the noise")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+    add_seed(command, arguments.sensor.seed, "with --sensor: seed of the noise");
     command
         .add_option("--series", arguments.images,
                     "images of a camera: their descriptor (docs/characterize.md)")

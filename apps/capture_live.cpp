@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "apps/arguments/camera.h"
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
@@ -170,10 +170,7 @@ void add_capture_live(Command& capture, Action& action) {
     Command command = capture.add_command("live", "A camera through the sensor as it runs");
     const auto options = std::make_shared<LiveArguments>();
     add_camera_arguments(command, options->camera);
-    command.add_option("-o,--output", options->output, "sample stream")
-        .type_name("FILE")
-        .required()
-        .output(kStreamName);
+    add_output(command, options->output, "sample stream", kStreamName);
     add_capture_limits(command, options->limits);
     add_sensor_arguments(command, options->sensor);
     auto sections = sensor_sections(options->sensor);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "apps/arguments/camera.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
@@ -158,12 +159,9 @@ void add_capture_record(Command& capture, Action& action) {
     add_camera_arguments(command, options->camera);
     add_settings(command, {{"camera", &options->camera.settings}},
                  "set a feature or control of the camera, after those of --config");
-    command
-        .add_option("-o,--output", options->output,
-                    "recording, or a folder for a recording that is named after the time")
-        .type_name("FILE|DIR")
-        .required()
-        .output();
+    add_output(command, options->output,
+               "recording, or a folder for a recording that is named after the time", {},
+               "FILE|DIR");
     add_capture_limits(command, options->limits);
     add_incomplete_argument(command, options->session.incomplete);
     add_session_arguments(command, options->session);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
 #include "apps/report/leftovers.h"
@@ -98,10 +98,8 @@ void add_capture_replay(Command& capture, Action& action) {
     command.add_option("RECORDING", options->recording, "file of \"capture record\"")
         .required()
         .input();
-    command.add_option("-o,--output", options->output, "footage: .npy, or a folder of EXR files")
-        .type_name("OUT")
-        .required()
-        .output(kVideoName);
+    add_output(command, options->output, "footage: .npy, or a folder of EXR files", kVideoName,
+               "OUT");
     command.add_flag("--skip-gaps", options->skip_gaps,
                      "leave missing frames out instead of holding the previous frame");
     command.add_flag("--fill-gaps", options->fill_gaps,

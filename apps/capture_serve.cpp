@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/served_source.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
@@ -207,10 +207,7 @@ void add_characterize(Command& app, Action& action) {
     const auto sensor = add_sensor(command, options->sensor.sensor);
     const auto set = add_settings(command, {{"sensor", &options->sensor.settings}},
                                   "change a key of the sensor");
-    const auto seed = command.add_option("--seed", options->sensor.seed, "seed of the noise")
-                          .shows_default()
-                          .check(whole_check(0))
-                          .type_name("S");
+    const auto seed = add_seed(command, options->sensor.seed, "seed of the noise");
     const auto threads = add_threads(command, action.options);
     command
         .add_option("--evaluate", options->descriptor, "evaluate existing images: their descriptor")

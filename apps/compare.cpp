@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/difference_output.h"

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/settings.h"
 #include "apps/arguments/video_output.h"
 #include "apps/decode.h"
@@ -87,12 +87,9 @@ void add_decode(Command& app, Action& action) {
     command.add_option("STREAM", options->stream, "sample stream, or the folder of a rig")
         .required()
         .input();
-    command
-        .add_option("-o,--output", options->output,
-                    "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m)")
-        .type_name("OUT")
-        .required()
-        .output(kVideoName);
+    add_output(command, options->output,
+               "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m)",
+               kVideoName, "OUT");
     add_method(command, *options);
     command
         .add_option(

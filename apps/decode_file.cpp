@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
@@ -45,13 +46,14 @@ StreamReader open_stream(const DecodeArguments& arguments, ReadPolicy policy,
     }
 }
 
-DecodeSession open_session(const DecodeArguments& arguments, GrowingFile& growing) {
+DecodeSession open_session(const DecodeArguments& arguments, DecodeSetup setup,
+                           GrowingFile& growing) {
     const ReadPolicy policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant;
     const CalibrationChoice calibration = calibration_choice(arguments.calibration);
     if (is_rig_folder(arguments.stream))
         return {open_rig_folder(arguments.stream, policy, [] { throw_if_stopped(); }),
-                setup_of(arguments), calibration};
-    return {open_stream(arguments, policy, growing), setup_of(arguments), calibration};
+                std::move(setup), calibration};
+    return {open_stream(arguments, policy, growing), std::move(setup), calibration};
 }
 
 FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOptions& run,
@@ -120,6 +122,7 @@ class DecodeRun {
 
     const DecodeArguments& arguments_;
     const RunOptions& run_;
+    DecodeSetup setup_;  ///< until the session has it
     GrowingFile growing_;
     JsonFile json_;
     std::optional<ScheduleCheck> check_;
@@ -133,10 +136,11 @@ class DecodeRun {
 DecodeRun::DecodeRun(const DecodeArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       run_(run),
+      setup_(setup_of(arguments)),
       growing_(arguments.stream, arguments.timeout_s, [] { return stop_signal() != 0; }),
       json_(run),
       check_(check_schedule()),
-      session_(open_session(arguments, growing_)),
+      session_(open_session(arguments, std::move(setup_), growing_)),
       writer_(arguments.output, session_.shape(),
               writer_options(arguments, run, session_.streams().front().header())),
       stages_(arguments.stages, session_.shape(), run.force) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/interrupt.h"
@@ -25,10 +26,11 @@ namespace {
 constexpr auto kGoOn = "complete windows are kept, and the same command goes on";
 
 ShardedDecoding decoding_of(const DecodeArguments& arguments) {
+    DecodeSetup setup = setup_of(arguments);
     if (!std::filesystem::is_regular_file(arguments.stream))
         throw InputError(arguments.stream, "--part needs a file, which is read more than once");
     return {.stream = arguments.stream,
-            .setup = setup_of(arguments),
+            .setup = std::move(setup),
             .calibration = calibration_choice(arguments.calibration),
             .policy = arguments.strict ? ReadPolicy::kStrict : ReadPolicy::kTolerant,
             .warn = [](const Message& warning) { say_warning(warning); }};

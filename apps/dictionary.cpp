@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
@@ -148,10 +148,7 @@ void add_learning(Command& command, DictionaryArguments& arguments) {
         .shows_default()
         .check(whole_check(2, 10'000'000))
         .type_name("N");
-    command.add_option("--seed", arguments.learning.seed, "seed of the choice of patches")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+    add_seed(command, arguments.learning.seed, "seed of the choice of patches");
 }
 
 }  // namespace
@@ -162,10 +159,8 @@ void add_dictionary(Command& app, Action& action) {
     command.add_option("FOOTAGE", options->sources, "footage, linear light, not that to be decoded")
         .required()
         .input();
-    command.add_option("-o,--output", options->output, "dictionary, an array (atom, slot, pixel)")
-        .type_name("FILE")
-        .required()
-        .output(kDictionaryName);
+    add_output(command, options->output, "dictionary, an array (atom, slot, pixel)",
+               kDictionaryName);
     add_learning(command, *options);
     add_footage_arguments(command, options->footage);
     add_threads(command, action.options);

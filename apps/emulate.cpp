@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/attached_calibration.h"
 #include "apps/emulate.h"
@@ -165,10 +166,7 @@ void add_emulate(Command& app, Action& action) {
                 image_format_names()))
         .required()
         .input();
-    command.add_option("-o,--output", options->output, "sample stream")
-        .type_name("FILE")
-        .required()
-        .output(kStreamName);
+    add_output(command, options->output, "sample stream", kStreamName);
     add_sensor_arguments(command, options->sensor);
     add_rig(command, *options);
     add_footage_arguments(command, options->source.reading);

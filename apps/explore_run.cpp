@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/number_text.h"
@@ -98,10 +98,7 @@ std::string page_title(const ExploreRun& what) {
 }  // namespace
 
 void add_results(Command& command, std::string& results) {
-    command.add_option("-o,--output", results, "folder of results; those that it has are kept")
-        .type_name("RESULTS")
-        .required()
-        .output();
+    add_output(command, results, "folder of results; those that it has are kept", {}, "RESULTS");
 }
 
 void add_seeds(Command& command, int& seeds) {

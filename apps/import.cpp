@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/mat_volume.h"
 #include "apps/report/json_file.h"
 #include "apps/report/number_text.h"
@@ -141,10 +141,7 @@ void add_import(Command& app, Action& action) {
         .default_text("as many as there are masks")
         .check(whole_check(1, kMaxPeriodSlots))
         .type_name("N");
-    command.add_option("-o,--output", options->output, "sample stream")
-        .type_name("FILE")
-        .required()
-        .output(kStreamName);
+    add_output(command, options->output, "sample stream", kStreamName);
     add_units(command, *options);
     command
         .add_choice("--cfa", arrays.cfa,

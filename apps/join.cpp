@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/video_output.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
@@ -98,13 +99,10 @@ void add_join(Command& app, Action& action) {
             "folder that \"stipple decode --part\" or \"stipple emulate --part\" has filled")
         .required()
         .input();
-    command
-        .add_option("-o,--output", options->output,
-                    "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m); of "
-                    "pieces a .stipple")
-        .type_name("OUT")
-        .required()
-        .output({.may_be_pipe = true});
+    add_output(command, options->output,
+               "folder of images, .npy, .tif (linear), .mp4, .mkv, .y4m (video), - (.y4m); of "
+               "pieces a .stipple",
+               {.may_be_pipe = true}, "OUT");
     add_video_arguments(command, options->video, options->images);
     command.footer(
         "Example:\n"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/camera_file.h"

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
@@ -15,7 +16,7 @@ namespace {
 
 struct CompileOptions {
     ScheduleChoice schedule;
-    std::filesystem::path output;
+    std::string output;
 };
 
 void compile(const CompileOptions& options, const RunOptions& run) {
@@ -36,7 +37,7 @@ void compile(const CompileOptions& options, const RunOptions& run) {
     run.say(fmt::format(
         "{}: {} words of {} bits, {} bits in all: {} slots of a tile of {} x {}, "
         "{} per pixel",
-        options.output.string(), words, program.tile_cols * program.bits_per_pixel, program.bits(),
+        options.output, words, program.tile_cols * program.bits_per_pixel, program.bits(),
         program.period_slots, program.tile_cols, program.tile_rows, program.bits_per_pixel));
 }
 
@@ -48,10 +49,7 @@ void add_schedule_compile(Command& schedule, Action& action) {
     const auto options = std::make_shared<CompileOptions>();
     add_schedule_choice(command, options->schedule);
     add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
-    command.add_option("-o,--output", options->output, "memory image, .mem or .hex")
-        .required()
-        .type_name("FILE")
-        .output(kProgramName);
+    add_output(command, options->output, "memory image, .mem or .hex", kProgramName);
     command.footer(
         "Examples:\n"
         "  stipple schedule compile tiled -o tiled.mem\n"

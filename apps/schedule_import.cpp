@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -78,10 +78,7 @@ void add_schedule_import(Command& schedule, Action& action) {
         .type_name("FILE.npy")
         .required()
         .input();
-    command.add_option("-o,--output", options->output, "schedule file, .toml")
-        .type_name("FILE")
-        .required()
-        .output(kScheduleName);
+    add_output(command, options->output, "schedule file, .toml", kScheduleName);
     command.add_flag(
         "--lengths", options->lengths,
         "VOLUME holds lengths of 0 to 64 slots of successive exposures: (exposures, rows, "

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/subcommands.h"
@@ -35,10 +36,7 @@ void add_schedule_make(Command& schedule, Action& action) {
     const auto options = std::make_shared<MakeOptions>();
     add_schedule_choice(command, options->schedule);
     add_settings(command, {schedule_section(options->schedule)}, "change a key of the schedule");
-    command.add_option("-o,--output", options->output, "schedule file, .toml")
-        .type_name("FILE")
-        .required()
-        .output(kScheduleName);
+    add_output(command, options->output, "schedule file, .toml", kScheduleName);
     command.footer(
         "Examples:\n"
         "  stipple schedule make two_bucket -o mine.toml --set schedule.tile_rows=4 --set "

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/schedule.h"
 #include "apps/report/json_file.h"
 #include "apps/report/schedule_chart.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
 #include "apps/report/json_file.h"
@@ -68,12 +68,8 @@ void add_synth(Command& app, Action& action) {
     command.add_option("SCENE", options->scene, "scene, of \"stipple list scenes\"")
         .one_of(names_of(scenes()))
         .required();
-    command
-        .add_option("-o,--output", options->output,
-                    "folder (EXR), .npy, .tif, .mp4, .mkv, .y4m, - (.y4m)")
-        .type_name("OUT")
-        .required()
-        .output(kVideoName);
+    add_output(command, options->output, "folder (EXR), .npy, .tif, .mp4, .mkv, .y4m, - (.y4m)",
+               kVideoName, "OUT");
     add_scene_arguments(command, options->rendering);
     command.add_flag(
         "--luminance", [options] { options->rendering.shape.planes = 1; },

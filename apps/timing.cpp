@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
 #include "apps/report/emulation_text.h"
@@ -64,22 +64,13 @@ void add_timing(Command& app, Action& action) {
         .listed("sensors")
         .required()
         .input();
-    command
-        .add_option("--schedule", options->sensor.schedule,
-                    "exposure schedule, of \"stipple list schedules\"")
-        .shows_default()
-        .type_name("NAME|FILE")
-        .listed("schedules")
-        .input();
+    add_schedule(command, options->sensor.schedule);
     add_size(command, "--roi,--size", options->roi, {1, kMaxFrameSide},
              "window: the first W columns and H rows")
         .default_text("the whole array");
     add_settings(command, sensor_sections(options->sensor),
                  "change a key of the sensor or of the schedule");
-    command.add_option("--seed", options->sensor.seed, "seed of the schedule")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+    add_seed(command, options->sensor.seed, "seed of the schedule");
     add_waveform_arguments(command, options->waveform);
     command.footer(
         "Examples:\n"

@@ -24,10 +24,12 @@ foreach(module IN LISTS OpenCV_FIND_COMPONENTS)
     mark_as_advanced(OpenCV_${module}_LIBRARY OpenCV_${module}_HEADER)
     if(OpenCV_${module}_LIBRARY AND OpenCV_${module}_HEADER)
         set(OpenCV_${module}_FOUND TRUE)
-        add_library(opencv_${module} UNKNOWN IMPORTED)
-        set_target_properties(opencv_${module} PROPERTIES
-            IMPORTED_LOCATION ${OpenCV_${module}_LIBRARY}
-            INTERFACE_INCLUDE_DIRECTORIES ${OpenCV_INCLUDE_DIR})
+        if(NOT TARGET opencv_${module})
+            add_library(opencv_${module} UNKNOWN IMPORTED)
+            set_target_properties(opencv_${module} PROPERTIES
+                IMPORTED_LOCATION ${OpenCV_${module}_LIBRARY}
+                INTERFACE_INCLUDE_DIRECTORIES ${OpenCV_INCLUDE_DIR})
+        endif()
         list(APPEND OpenCV_LIBS opencv_${module})
     endif()
 endforeach()

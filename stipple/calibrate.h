@@ -3,7 +3,7 @@
 /// Calibration of the pixels of a chip from dark and flat-field series (docs/calibration.md), here
 /// of an emulated one:
 ///
-///     stipple::SensorParams sensor = stipple::set_up_params({.sensor = "lux1310"});
+///     stipple::SensorParams sensor = stipple::set_up_params({.sensor = "t6"});
 ///     const stipple::FrameShape shape{.rows = 48, .cols = 64, .planes = 1};
 ///     stipple::FieldSamples dark(shape), flat(shape);
 ///     std::optional<stipple::StreamHeader> header;

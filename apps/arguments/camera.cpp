@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/interrupt.h"
 #include "capture/camera_kind.h"
 #include "capture/open_camera.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "scenes/scene.h"
@@ -111,10 +111,7 @@ void add_scene_arguments(Command& command, SceneOptions& options) {
         .check(whole_check(1, SceneOptions::kMaxSlots))
         .type_name("N");
     add_size(command, "--size", options.shape, kSides, "width and height of the scene");
-    command.add_option("--seed", options.seed, "seed of textures and arrangement")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+    add_seed(command, options.seed, "seed of textures and arrangement");
 }
 
 }  // namespace stipple

@@ -1,6 +1,6 @@
 #include "apps/arguments/preview.h"
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "core/geometry.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"

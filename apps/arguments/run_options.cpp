@@ -1,7 +1,7 @@
 #include "apps/arguments/run_options.h"
 
-#include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
+#include "apps/arguments/common_options.h"
 #include "apps/standard_error.h"
 #include "apps/standard_output.h"
 #include "core/memory_limit.h"

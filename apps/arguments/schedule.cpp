@@ -1,6 +1,6 @@
 #include "apps/arguments/schedule.h"
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "core/geometry.h"
 #include "readout/sensor_file.h"
 
@@ -21,10 +21,7 @@ void add_schedule_choice(Command& command, ScheduleChoice& choice) {
     CommandOption size = add_size(command, "--size", choice.shape, {1, kMaxFrameSide},
                                   "width and height of the array");
     if (choice.shape.pixels() == 0) size.default_text("that of the sensor, or 640x480");
-    command.add_option("--seed", choice.seed, "seed of random codes")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+    add_seed(command, choice.seed, "seed of random codes");
 }
 
 NamedSchedule chosen_schedule(const ScheduleChoice& choice) {

@@ -1,6 +1,6 @@
 #include "apps/arguments/sensor.h"
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "core/error.h"
 #include "io/output_names.h"
 #include "readout/sensor_file.h"
@@ -15,19 +15,19 @@ CommandOption add_sensor(Command& command, std::string& sensor) {
         .input();
 }
 
-void add_sensor_arguments(Command& command, SensorChoice& sensor) {
-    add_sensor(command, sensor.sensor);
-    command
-        .add_option("--schedule", sensor.schedule,
-                    "exposure schedule, of \"stipple list schedules\"")
+CommandOption add_schedule(Command& command, std::string& schedule) {
+    return command
+        .add_option("--schedule", schedule, "exposure schedule, of \"stipple list schedules\"")
         .shows_default()
         .type_name("NAME|FILE")
         .listed("schedules")
         .input();
-    command.add_option("--seed", sensor.seed, "seed of noise and schedule")
-        .shows_default()
-        .check(whole_check(0))
-        .type_name("S");
+}
+
+void add_sensor_arguments(Command& command, SensorChoice& sensor) {
+    add_sensor(command, sensor.sensor);
+    add_schedule(command, sensor.schedule);
+    add_seed(command, sensor.seed, "seed of noise and schedule");
     add_overrun(command, sensor.overrun);
 }
 

@@ -15,6 +15,9 @@ namespace stipple {
 /// `--sensor`.
 CommandOption add_sensor(Command& command, std::string& sensor);
 
+/// `--schedule`.
+CommandOption add_schedule(Command& command, std::string& schedule);
+
 /// `--sensor`, `--schedule`, `--seed` and `--overrun`.
 void add_sensor_arguments(Command& command, SensorChoice& sensor);
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 #include "io/footage_files.h"
 #include "io/output_names.h"
 

@@ -12,8 +12,8 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
+#include "apps/arguments/common_options.h"
 #include "decoder/decode_options.h"
 #include "io/npy_writer.h"
 #include "scenes/scene.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/arguments/checks.h"
 #include "apps/arguments/command_line.h"
+#include "apps/arguments/common_options.h"
 #include "bench/sci/sci_trial.h"
 #include "core/config.h"
 #include "core/error.h"

@@ -39,7 +39,7 @@ struct MotionTvOptions {
 /// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, MotionTvOptions& options);
 
-/// Decodes one block. Presumed samples are added for voxels that no sample determines
+/// Decodes one block. Pseudo-samples are added for voxels that no sample determines
 /// (pseudo_samples.h). Static total variation follows, then rounds of variances, motion, and
 /// total variation along motion, each from the estimate of the previous round. The result may be
 /// slightly negative. Returns nothing if `progress` has stopped it.

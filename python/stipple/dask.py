@@ -66,7 +66,9 @@ class _Job(NamedTuple):
 
 def _calibration_of(calibration: Optional[Name]) -> Optional[str]:
     """As the workers find it; None: the file beside the stream."""
-    return calibration if calibration in (None, "none") else path.abspath(fsdecode(calibration))
+    if calibration is None:
+        return None
+    return "none" if calibration == "none" else path.abspath(fsdecode(calibration))
 
 
 def _job(client: Any, stream: Source, method: str, more: Mapping[str, Any]) -> _Job:

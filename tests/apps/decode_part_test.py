@@ -72,7 +72,7 @@ class DecodePartTest(ProgramTest):
         (windows / "window_000007.npy").write_bytes((windows / "window_000007.npy").read_bytes()[:-1])
         (windows / "window_000009.npy").write_bytes(b"")
         self.fails(INPUT, ["lacks 3 of its 10 windows: window_000002.npy, window_000007.npy, window_000009.npy",
-                           "decode --part"], "join", "windows", "-o", "joined.npy")
+                           "decode again"], "join", "windows", "-o", "joined.npy")
         self.assertEqual(self.decode_part("1/1")["windows_decoded"], 3)
         self.assertEqual(self.decode_part("1/1", "--force")["windows_decoded"], 10)
         self.expect_bytes_of_one_run()
@@ -136,7 +136,7 @@ class DecodePartTest(ProgramTest):
         for foreign in ("other/window_000001.npy", "windows/window_000002.npy", "plain.npy", "wide.npy"):
             (windows / "window_000001.npy").write_bytes((self.folder / foreign).read_bytes())
             with self.subTest(foreign):
-                parts = ["window_000001.npy", "is not this window", "remove it", "decode --part"]
+                parts = ["window_000001.npy", "is not this window", "remove it, and decode again"]
                 self.fails(INPUT, parts, "join", "windows", "-o", "joined.npy")
                 self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "windows", "--part", "1/1", *NAIVE)
         self.decode_part("1/1", "--force")

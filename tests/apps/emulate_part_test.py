@@ -93,7 +93,7 @@ class EmulatePartTest(ProgramTest):
         (pieces / "piece_000007.stipple").write_bytes((pieces / "piece_000007.stipple").read_bytes()[:-1])
         (pieces / "piece_000009.stipple").write_bytes(b"")
         self.fails(INPUT, ["lacks 3 of its 10 pieces: piece_000002.stipple, piece_000007.stipple, "
-                           "piece_000009.stipple", "emulate --part"], "join", "pieces", "-o", "joined.stipple")
+                           "piece_000009.stipple", "emulate again"], "join", "pieces", "-o", "joined.stipple")
         self.assertEqual(self.emulate_part("1/1")["pieces_emulated"], 3)
         self.assertEqual(self.emulate_part("1/2", "--force")["pieces_emulated"], 5)
         self.expect_bytes_of_one_run()

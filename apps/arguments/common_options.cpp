@@ -1,4 +1,4 @@
-#include "apps/arguments/checks.h"
+#include "apps/arguments/common_options.h"
 
 #include <fmt/format.h>
 
@@ -81,6 +81,21 @@ CommandOption add_size(Command& command, const std::string& name, FrameShape& sh
     CommandOption option = command.add_parsed(name, take, text).type_name("WxH");
     return shape.pixels() == 0 ? option
                                : option.default_text(fmt::format("{}x{}", shape.cols, shape.rows));
+}
+
+CommandOption add_output(Command& command, std::string& output, const std::string& text,
+                         const OutputName& name, const std::string& type_name) {
+    return command.add_option("-o,--output", output, text)
+        .type_name(type_name)
+        .required()
+        .output(name);
+}
+
+CommandOption add_seed(Command& command, std::uint64_t& seed, const std::string& text) {
+    return command.add_option("--seed", seed, text)
+        .shows_default()
+        .check(whole_check(0))
+        .type_name("S");
 }
 
 }  // namespace stipple

@@ -48,4 +48,11 @@ template <typename Things>
     return names;
 }
 
+/// `-o,--output`, which is required.
+CommandOption add_output(Command& command, std::string& output, const std::string& text,
+                         const OutputName& name = {}, const std::string& type_name = "FILE");
+
+/// `--seed S`.
+CommandOption add_seed(Command& command, std::uint64_t& seed, const std::string& text);
+
 }  // namespace stipple
