@@ -39,6 +39,7 @@ This package contains the program with its sensors and schedules.")
 set(CPACK_DEBIAN_SHARED_PACKAGE_NAME libstipple${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_SHARED_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_SHARED_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/cmake/packages/triggers)
 set(CPACK_COMPONENT_SHARED_DEPENDS program)  # its sensors, schedules and libstipple_opencv.so
 set(CPACK_COMPONENT_SHARED_DESCRIPTION "coded-exposure image sensors in C++: shared library
 ${stipple_about}
