@@ -36,6 +36,7 @@ ShardedEmulation emulation_of(const EmulateArguments& arguments) {
     const SensorSetup& setup = input.setup();
     return {.source = arguments.source,
             .setup = setup,
+            .lead_in = lead_in_slots(setup),  // before the footage is read for its origin
             .header = stream_header_of(
                 setup, provenance_of(setup, arguments.source.origin([] { throw_if_stopped(); }))),
             .warn = [](const Message& warning) { say_warning(warning); }};
@@ -56,7 +57,6 @@ class PartRun {
     const EmulateArguments& arguments_;
     const RunOptions& run_;
     ShardedEmulation emulation_;
-    std::int64_t lead_in_;
     JsonFile json_;
     StreamShards folder_;
     NumberRange pieces_;
@@ -70,7 +70,6 @@ PartRun::PartRun(const EmulateArguments& arguments, const RunOptions& run)
     : arguments_(arguments),
       run_(run),
       emulation_(emulation_of(arguments)),
-      lead_in_(lead_in_slots(emulation_.setup)),
       json_(run),
       folder_(arguments.output, emulation_.header,
               [&] { return count_slots(emulation_, [] { throw_if_stopped(); }); }),
@@ -115,7 +114,7 @@ void PartRun::tell() {
                  {"parts", arguments_.part.count},
                  {"pieces", pieces},
                  {"pieces_emulated", emulated},
-                 {"lead_in_slots", lead_in_},
+                 {"lead_in_slots", emulation_.lead_in},
                  {"slots", slots_},
                  {"samples", samples_},
                  {"slots_per_second", slots_per_second}});

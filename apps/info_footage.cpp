@@ -17,12 +17,8 @@
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "io/camera_file.h"
-#include "io/fits_reader.h"
-#include "io/footage_files.h"
 #include "io/footage_formats.h"
 #include "io/footage_reader.h"
-#include "io/video_reader.h"
 #include "report/json_figures.h"
 
 namespace stipple {

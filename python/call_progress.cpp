@@ -12,6 +12,10 @@ constexpr std::chrono::milliseconds kPause{100};
 
 }  // namespace
 
+void check_signals() {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
 CallProgress::CallProgress(py::object tell, std::optional<std::int64_t> slots, Early early)
     : tell_(std::move(tell)),
       slots_(slots),
@@ -26,7 +30,7 @@ bool CallProgress::reach(double slots) noexcept {
     next_ = now + kPause;
     const py::gil_scoped_acquire gil;
     try {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        check_signals();
         say();
     } catch (...) {
         raised_ = std::current_exception();
@@ -36,7 +40,7 @@ bool CallProgress::reach(double slots) noexcept {
 
 void CallProgress::finish() {
     if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    check_signals();
     say();
 }
 

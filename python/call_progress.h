@@ -9,6 +9,9 @@
 
 namespace stipple::python {
 
+/// Raises what Ctrl-C raises, if it was pressed. With the GIL.
+void check_signals();
+
 /// Tells Python how far a long call has come, some ten times a second, and lets Ctrl-C end it.
 class CallProgress {
   public:

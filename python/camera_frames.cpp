@@ -8,6 +8,7 @@
 #include "capture/live_camera.h"
 #include "core/error.h"
 #include "python/bindings.h"
+#include "python/call_progress.h"
 #include "python/camera.h"
 #include "python/footage.h"
 
@@ -37,7 +38,7 @@ class CameraFrames {
                 const py::gil_scoped_release released;
                 came = camera_->next(*frame, kSignalInterval);
             }
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            check_signals();
             warnings_.pass_on();
             if (came) return frame;
             if (const auto end = camera_->end()) {

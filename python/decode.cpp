@@ -136,7 +136,7 @@ std::string decoding_identity(const std::filesystem::path& stream, const DecodeT
                                    .calibration = task.calibration
                                                       ? calibration_choice(*task.calibration)
                                                       : CalibrationChoice()};
-    return identity_text(identity_of(decoding, [] {}));
+    return identity_text(identity_of(decoding, check_signals));
 }
 
 }  // namespace

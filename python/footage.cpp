@@ -166,10 +166,7 @@ ResampledFootage Footage::resampled(double slot_us) {
 
 FootageOrigin Footage::origin() const {
     FootageOrigin origin{.name = "NumPy array", .reading = reading_.options};
-    if (!path_.empty())
-        origin = origin_of(path_, reading_.options, [] {
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        });
+    if (!path_.empty()) origin = origin_of(path_, reading_.options, check_signals);
     if (reading_.resampling) origin.resample = name_in(kResamplings, *reading_.resampling);
     return origin;
 }

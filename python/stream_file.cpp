@@ -146,7 +146,7 @@ py::array StreamFile::samples(std::int64_t slot) {
         advance();
     }
     while (has_packet_ && packet_.slot < slot) {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        check_signals();
         advance();
     }
     std::vector<SampleRow> rows;

@@ -72,7 +72,8 @@ DecodeReport DecodeSession::run(const FrameSink& sink, const ProgressCallback& p
             stopped = stopped || !progress(slots);
             return !stopped;
         });
-    if (report.slots == 0 && !stopped)
+    // What ends the wait for a growing stream may be what stops the decoding.
+    if (report.slots == 0 && !stopped && progress(0))
         throw InputError(streams().front().name(), "holds no slot to decode");
     return report;
 }

@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "readout/emulator.h"
-#include "readout/lead_in.h"
 #include "session/shard_folder.h"
 #include "stream/buffered_reader.h"
 #include "stream/header_codec.h"
@@ -218,7 +217,7 @@ std::optional<std::uint64_t> emulate_pieces(
     const EmulationSource& source = emulation.source;
     const std::int64_t begin = folder.begin_slot(pieces.begin);
     const std::int64_t end = folder.end_slot(pieces.end - 1);
-    const std::int64_t first = std::max<std::int64_t>(begin - lead_in_slots(emulation.setup), 0);
+    const std::int64_t first = std::max<std::int64_t>(begin - emulation.lead_in, 0);
 
     ReadAhead footage = source.open(emulation.warn);
     ResampledFootage slots = source.slots_of(footage, emulation.setup.params.slot_us);

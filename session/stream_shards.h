@@ -19,7 +19,8 @@ namespace stipple {
 struct ShardedEmulation {
     EmulationSource source;  ///< of files, which are read more than once
     SensorSetup setup;
-    StreamHeader header;  ///< of the whole stream
+    std::int64_t lead_in;  ///< slots, of lead_in_slots(setup)
+    StreamHeader header;   ///< of the whole stream
     std::function<void(const Message&)> warn = [](const Message&) {};
 };
 
@@ -66,7 +67,7 @@ inline constexpr std::int64_t kPieceSlots = 64;
 /// Whether a folder holds pieces.
 [[nodiscard]] bool is_stream_shards(const std::filesystem::path& folder);
 
-/// Emulates the pieces of a range, each after lead_in_slots(setup) slots whose samples are
+/// Emulates the pieces of a range, each after the slots of the lead-in, whose samples are
 /// discarded. `progress` is called with the slots that are done before each slot, those of the
 /// lead-in included. Returns the number of samples, or nothing if it has stopped the work.
 /// \throws InputError if the footage has fewer slots than the folder tells, DeviceError.

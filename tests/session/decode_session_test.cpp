@@ -117,6 +117,9 @@ TEST_F(DecodeSessionTest, AStreamWithoutASlotIsRefused) {
         record(random_video(8, kShape, 1), tiled_schedule(8, 8, kPaperExposureSlots, 1));
     write_text(file_, bytes_of(recorded.header, {}).bytes);
     EXPECT_THROW(frames_of(DecodeSession(file_, naive())), InputError);
+    DecodeSession stopped(file_, naive());  // as a signal stops the wait for a growing stream
+    const auto no_frame = [](std::int64_t, std::span<const float>) { return true; };
+    EXPECT_EQ(stopped.run(no_frame, [](double) { return false; }).slots, 0);
 }
 
 }  // namespace
