@@ -10,9 +10,9 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/calibrate.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
-#include "apps/report/number_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
+#include "apps/output/number_text.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "calibration/chip_estimate.h"

@@ -6,7 +6,7 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/interrupt.h"
-#include "apps/report/progress.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "calibration/scene_gain.h"
 #include "core/error.h"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/subcommands.h"
 #include "capture/camera_kind.h"
 #include "core/error.h"

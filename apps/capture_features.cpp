@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/column_width.h"
-#include "apps/report/json_file.h"
+#include "apps/output/column_width.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/camera_feature.h"
 #include "core/text.h"
-#include "report/json_figures.h"
+#include "study/report/json_figures.h"
 #include "stream/plain_text.h"
 
 namespace stipple {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/camera_listing.h"
 

@@ -12,11 +12,11 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
-#include "apps/report/session_report.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
+#include "apps/output/session_report.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/capture_end.h"
@@ -24,7 +24,7 @@
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"
 #include "io/output_names.h"
-#include "report/json_figures.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

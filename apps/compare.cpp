@@ -12,10 +12,10 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/report/difference_output.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
+#include "apps/output/difference_output.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "capture/recording/footage_notes.h"
@@ -26,8 +26,8 @@
 #include "io/output_names.h"
 #include "io/pending_output.h"
 #include "io/text_file.h"
-#include "metrics/video_quality.h"
-#include "report/quality_metrics.h"
+#include "study/metrics/video_quality.h"
+#include "study/report/quality_metrics.h"
 
 namespace stipple {
 namespace {

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "apps/interrupt.h"
-#include "apps/report/emulation_text.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
-#include "apps/report/stage_outputs.h"
+#include "apps/output/emulation_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
+#include "apps/output/stage_outputs.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/parallel.h"

@@ -10,7 +10,7 @@
 #include "apps/interrupt.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "report/json_figures.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

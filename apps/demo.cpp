@@ -7,15 +7,15 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/demo_trials.h"
-#include "apps/report/json_file.h"
-#include "apps/report/own_command.h"
+#include "apps/output/json_file.h"
+#include "apps/output/own_command.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "explore/trial.h"
+#include "study/explore/trial.h"
 #include "io/disk_sync.h"
 #include "io/pending_output.h"
 #include "io/text_file.h"
-#include "report/run_report.h"
+#include "study/report/run_report.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

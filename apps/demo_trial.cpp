@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "apps/interrupt.h"
-#include "apps/report/progress.h"
+#include "apps/output/progress.h"
 #include "apps/stream_output.h"
-#include "explore/trial.h"
+#include "study/explore/trial.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {

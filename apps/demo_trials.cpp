@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "apps/report/side_by_side.h"
+#include "apps/output/side_by_side.h"
 #include "io/frame_writer.h"
 
 namespace stipple {

@@ -9,9 +9,9 @@
 #include "apps/arguments/run_options.h"
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
-#include "metrics/video_quality.h"
-#include "report/run_report.h"
-#include "scenes/scene.h"
+#include "study/metrics/video_quality.h"
+#include "study/report/run_report.h"
+#include "study/scenes/scene.h"
 
 namespace stipple {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "readout/emulator.h"

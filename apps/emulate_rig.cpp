@@ -9,11 +9,11 @@
 
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/report/emulation_text.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
+#include "apps/output/emulation_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"
@@ -26,7 +26,7 @@
 #include "readout/rig_figures.h"
 #include "readout/rig_recorder.h"
 #include "readout/sensor_file.h"
-#include "report/json_figures.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "apps/explore_run.h"
 #include "apps/explore_table.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 

@@ -13,13 +13,13 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/report/number_text.h"
-#include "apps/report/own_command.h"
-#include "apps/report/progress.h"
+#include "apps/output/number_text.h"
+#include "apps/output/own_command.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "explore/results.h"
-#include "report/run_report.h"
+#include "study/explore/results.h"
+#include "study/report/run_report.h"
 
 namespace stipple {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/arguments/run_options.h"
-#include "explore/exploration.h"
+#include "study/explore/exploration.h"
 
 namespace stipple {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/column_width.h"
-#include "apps/report/number_text.h"
+#include "apps/output/column_width.h"
+#include "apps/output/number_text.h"
 #include "core/text.h"
-#include "explore/exploration.h"
+#include "study/explore/exploration.h"
 
 namespace stipple {
 namespace {

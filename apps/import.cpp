@@ -4,8 +4,8 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/mat_volume.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"

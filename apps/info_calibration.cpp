@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "calibration/calibration_file.h"
 #include "stream/plain_text.h"
 

@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "io/footage_formats.h"
 #include "io/footage_reader.h"
-#include "report/json_figures.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
 #include "capture/frame_rate.h"
 #include "capture/gap_filler.h"
 #include "capture/recording/recording_reader.h"

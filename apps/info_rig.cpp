@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/text.h"

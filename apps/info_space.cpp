@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "apps/report/column_width.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
+#include "apps/output/column_width.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "core/config.h"
 #include "core/input_file.h"
 #include "core/text.h"
-#include "explore/space.h"
-#include "report/json_figures.h"
+#include "study/explore/space.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

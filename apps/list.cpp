@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "apps/key_list.h"
-#include "apps/report/column_width.h"
-#include "apps/report/json_file.h"
+#include "apps/output/column_width.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"
 #include "core/text.h"
 #include "decoder/reconstruct.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 
 namespace stipple {
 namespace {

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/report/manual.h"
+#include "apps/output/manual.h"
 #include "apps/standard_output.h"
 #include "apps/subcommands.h"
 #include "core/version.h"

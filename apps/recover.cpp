@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recovery.h"
 #include "core/error.h"

@@ -11,11 +11,11 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/report/camera_file.h"
-#include "apps/report/json_file.h"
-#include "apps/report/number_text.h"
-#include "apps/report/own_command.h"
-#include "apps/report/progress.h"
+#include "apps/output/camera_file.h"
+#include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
+#include "apps/output/own_command.h"
+#include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
@@ -26,8 +26,8 @@
 #include "decoder/reconstruct.h"
 #include "io/output_names.h"
 #include "io/text_file.h"
-#include "report/run_report.h"
-#include "report/stream_text.h"
+#include "study/report/run_report.h"
+#include "study/report/stream_text.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

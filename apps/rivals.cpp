@@ -9,10 +9,10 @@
 
 #include "apps/explore_run.h"
 #include "apps/explore_table.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
-#include "explore/results.h"
+#include "study/explore/results.h"
 
 namespace stipple {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "apps/arguments/schedule.h"
 #include "apps/arguments/sensor.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "readout/schedule_feasibility.h"

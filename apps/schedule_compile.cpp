@@ -5,7 +5,7 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/schedule.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "io/output_names.h"
 #include "io/text_file.h"

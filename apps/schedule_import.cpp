@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/common_options.h"
-#include "apps/report/json_file.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "io/output_names.h"
 #include "io/text_file.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
-#include "report/schedule_text.h"
+#include "study/report/schedule_text.h"
 #include "stream/plain_text.h"
 #include "stream/stream_header.h"
 

@@ -5,11 +5,11 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/schedule.h"
-#include "apps/report/json_file.h"
-#include "apps/report/schedule_chart.h"
+#include "apps/output/json_file.h"
+#include "apps/output/schedule_chart.h"
 #include "apps/subcommands.h"
 #include "io/output_names.h"
-#include "report/schedule_text.h"
+#include "study/report/schedule_text.h"
 
 namespace stipple {
 namespace {

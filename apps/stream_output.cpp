@@ -1,6 +1,6 @@
 #include "apps/stream_output.h"
 
-#include "apps/report/leftovers.h"
+#include "apps/output/leftovers.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {

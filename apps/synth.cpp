@@ -7,15 +7,15 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/report/json_file.h"
-#include "apps/report/leftovers.h"
-#include "apps/report/number_text.h"
-#include "apps/report/progress.h"
+#include "apps/output/json_file.h"
+#include "apps/output/leftovers.h"
+#include "apps/output/number_text.h"
+#include "apps/output/progress.h"
 #include "apps/subcommands.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
 #include "io/video_reader.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 
 namespace stipple {
 namespace {

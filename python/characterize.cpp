@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "io/dn_image.h"
-#include "metrics/emva1288/series_evaluation.h"
+#include "study/metrics/emva1288/series_evaluation.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"

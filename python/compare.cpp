@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "metrics/video_quality.h"
+#include "study/metrics/video_quality.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/footage.h"

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "explore/exploration.h"
-#include "explore/results.h"
+#include "study/explore/exploration.h"
+#include "study/explore/results.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"

@@ -12,4 +12,4 @@
 ///                                                       [] { return true; }));
 ///     for (const std::uint64_t point : trials.best_first())
 ///         std::cout << point << "\n";
-#include "explore/exploration.h"
+#include "study/explore/exploration.h"

@@ -11,5 +11,5 @@
 ///         file.write(light);
 ///     }
 ///     file.finish();
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 #include "stipple/video.h"

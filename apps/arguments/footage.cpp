@@ -5,7 +5,7 @@
 #include "apps/arguments/common_options.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 
 namespace stipple {
 

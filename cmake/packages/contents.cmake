@@ -30,10 +30,10 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     endif()
 endforeach()
 
-file(GLOB examples ${source}/examples/*.cpp)
-file(COPY ${source}/examples/CMakeLists.txt ${examples}
+file(GLOB examples ${source}/docs/examples/*.cpp)
+file(COPY ${source}/docs/examples/CMakeLists.txt ${examples}
      DESTINATION ${CPACK_TEMPORARY_DIRECTORY}/libraries/usr/share/doc/libstipple-dev/examples)
 if("python" IN_LIST CPACK_COMPONENTS_ALL)
-    file(COPY ${source}/examples/notebooks
+    file(COPY ${source}/docs/examples/notebooks
          DESTINATION ${CPACK_TEMPORARY_DIRECTORY}/python/usr/share/doc/python3-stipple/examples)
 endif()

@@ -1,4 +1,4 @@
-"""bench/docs/camera_map.py: its scene, its lens and its verdict."""
+"""tests/bench/docs/camera_map.py: its scene, its lens and its verdict."""
 
 import importlib.machinery
 import importlib.util
@@ -9,7 +9,7 @@ import numpy as np
 
 from program import project_path
 
-LOADER = importlib.machinery.SourceFileLoader("camera_map", str(project_path("bench/docs/camera_map.py")))
+LOADER = importlib.machinery.SourceFileLoader("camera_map", str(project_path("tests/bench/docs/camera_map.py")))
 camera_map = importlib.util.module_from_spec(importlib.util.spec_from_loader("camera_map", LOADER))
 LOADER.exec_module(camera_map)
 

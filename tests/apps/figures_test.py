@@ -1,4 +1,4 @@
-"""bench/docs/figures.py: the images of docs/concept.md come from the program."""
+"""tests/bench/docs/figures.py: the images of docs/concept.md come from the program."""
 
 import contextlib
 import importlib.machinery
@@ -13,7 +13,7 @@ import numpy as np
 
 from program import PROGRAM, ProgramTest, project_path
 
-LOADER = importlib.machinery.SourceFileLoader("figures", str(project_path("bench/docs/figures.py")))
+LOADER = importlib.machinery.SourceFileLoader("figures", str(project_path("tests/bench/docs/figures.py")))
 figures = importlib.util.module_from_spec(importlib.util.spec_from_loader("figures", LOADER))
 LOADER.exec_module(figures)
 
@@ -37,7 +37,7 @@ class FiguresTest(ProgramTest):
         figures.timing(self.program, self.folder)
         drawn = (self.folder / "timing.svg").read_text()
         self.assertEqual(drawn, (project_path("docs/figures") / "timing.svg").read_text(),
-                         "run bench/docs/figures.py timing, and look whether docs/concept.md still says what it shows")
+                         "run tests/bench/docs/figures.py timing, and look whether docs/concept.md still says what it shows")
 
     def test_samples_of_a_slot_are_the_light_of_their_exposures(self):
         # No noise, 8 bits for light 0 to 8 of all slots together: a sample is off by at most half a DN.

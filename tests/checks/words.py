@@ -19,8 +19,8 @@ BANNED = (  # pattern, why; in the sources and the build of the modules
 )
 # A message of a library names a Parameter, which each interface words its own way (core/message.h).
 OPTION = re.compile(r'"(?:[^"\\]|\\.)*?(?<![\w-])--[a-z][\w-]*')
-COMMANDS = {"readout/provenance.cpp", "explore/point_commands.cpp",  # commands to run again
-            "report/chart.cpp", "capture/v4l2/v4l2_listing.cpp"}  # of other programs
+COMMANDS = {"readout/provenance.cpp", "study/explore/point_commands.cpp",  # commands to run again
+            "study/report/chart.cpp", "capture/v4l2/v4l2_listing.cpp"}  # of other programs
 VAGUE_FILE = re.compile(rf"(?:^|[/_]){VAGUE}\.\w+$", re.I)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "docs/examples"
 
 
 class ExamplesTest(unittest.TestCase):
@@ -107,9 +107,9 @@ class ExamplesTest(unittest.TestCase):
 
     def test_components_are_static_libraries(self):
         """The last two link all others."""
-        source = self.project("whole", "find_package(stipple REQUIRED COMPONENTS capture scenes report)",
+        source = self.project("whole", "find_package(stipple REQUIRED COMPONENTS capture study)",
                               "add_executable(whole main.cpp)",
-                              "target_link_libraries(whole PRIVATE stipple::scenes stipple::capture stipple::report)")
+                              "target_link_libraries(whole PRIVATE stipple::capture stipple::study)")
         (source / "main.cpp").write_text("#include <stipple/capture.h>\n"
                                          "#include <stipple/report.h>\n"
                                          "int main() {\n"

@@ -1,4 +1,4 @@
-"""The readers in examples/readers, written from the pages of the formats alone, read every test file as expected, and
+"""The readers in docs/examples/readers, written from the pages of the formats alone, read every test file as expected, and
 notice each broken byte. STIPPLE_UPDATE_GOLDEN=1 writes the hashes of changed test files into the manifest."""
 
 import hashlib
@@ -16,7 +16,7 @@ import numpy as np
 PROJECT = Path(__file__).resolve().parents[2]
 GOLDEN = PROJECT / "tests/golden"
 MANIFEST = GOLDEN / "manifest.json"
-sys.path.insert(0, str(PROJECT / "examples/readers"))
+sys.path.insert(0, str(PROJECT / "docs/examples/readers"))
 
 from check_readers import difference, faults, read  # noqa: E402
 
@@ -69,7 +69,7 @@ class ReadersTest(unittest.TestCase):
     def test_each_reader_stands_alone_and_prints(self):
         """The samples of the page's example with their places; a frame a line, then the damage."""
         def printed(name, file):
-            command = [sys.executable, "-I", "-B", PROJECT / "examples/readers" / name, GOLDEN / file]
+            command = [sys.executable, "-I", "-B", PROJECT / "docs/examples/readers" / name, GOLDEN / file]
             return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
         self.assertEqual(printed("read_stream.py", "stream/example.stipple"), [
@@ -81,7 +81,7 @@ class ReadersTest(unittest.TestCase):
 
     def test_each_reader_is_one_short_file(self):
         for name in ("read_stream.py", "read_recording.py"):
-            lines = (PROJECT / "examples/readers" / name).read_text().splitlines()
+            lines = (PROJECT / "docs/examples/readers" / name).read_text().splitlines()
             self.assertLessEqual(len(lines), 150)
             self.assertLessEqual(max(map(len, lines)), 100)
 

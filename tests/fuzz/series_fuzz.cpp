@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "metrics/emva1288/series.h"
+#include "study/metrics/emva1288/series.h"
 
 /// Input: a descriptor. What is accepted keeps its limits, and reads the same when written out.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

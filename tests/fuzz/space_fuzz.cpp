@@ -2,8 +2,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "explore/point_commands.h"
-#include "explore/space.h"
+#include "study/explore/point_commands.h"
+#include "study/explore/space.h"
 #include "tests/fuzz/require.h"
 
 namespace stipple {

@@ -16,7 +16,7 @@ MISSING = [package for module, package in NEEDED.items() if importlib.util.find_
 
 
 class NotebooksTest(unittest.TestCase):
-    notebooks = sorted(project_path("examples/notebooks").glob("*.ipynb"))
+    notebooks = sorted(project_path("docs/examples/notebooks").glob("*.ipynb"))
 
     def test_they_are_stored_without_results(self):
         """So that a change of a figure is no change of the file. Jupyter: Cell > All Output > Clear."""

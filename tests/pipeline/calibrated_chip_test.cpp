@@ -2,7 +2,7 @@
 
 #include "calibration/scene_gain.h"
 #include "decoder/decode_options.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 #include "stream/stream_reader.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/expect_quality.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/expect_quality.h"
 #include "tests/support/source_tree.h"

@@ -1,5 +1,5 @@
 // The video-SCI benchmark on stand-ins: masks, an ideal sensor, 8 frames a measurement.
-#include "bench/sci/sci_trial.h"
+#include "tests/bench/sci/sci_trial.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "decoder/decode_options.h"
-#include "tests/explore/dictionary_bytes.h"
+#include "tests/study/explore/dictionary_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {

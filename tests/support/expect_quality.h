@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-#include "metrics/video_quality.h"
+#include "study/metrics/video_quality.h"
 
 namespace stipple {
 

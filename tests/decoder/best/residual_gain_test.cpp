@@ -10,7 +10,7 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "readout/schedules/tiled_schedule.h"
-#include "scenes/scene.h"
+#include "study/scenes/scene.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 

@@ -1,0 +1,13 @@
+#include "study/report/quality_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "study/report/quality_metrics.h"
+
+namespace stipple {
+
+nlohmann::ordered_json quality_json(const VideoQuality& quality) {
+    return metrics_json(chosen_metrics({}), quality);
+}
+
+}  // namespace stipple

@@ -1,0 +1,143 @@
+#include "study/report/stream_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+
+#include "core/error.h"
+#include "core/exposure_schedule.h"
+#include "decoder/pixel_response.h"
+#include "study/report/plane_code.h"
+#include "study/report/schedule_lanes.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The least DN that is saturated; full scale always is.
+int saturated_dn(const PixelResponse& response, int bit_depth) {
+    int low = 0;
+    int high = (1 << bit_depth) - 1;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        const bool saturated = response.saturated(static_cast<std::uint16_t>(middle));
+        (saturated ? high : low) = saturated ? middle : middle + 1;
+    }
+    return low;
+}
+
+}  // namespace
+
+ordered_json response_json(const PixelResponse& response, int bit_depth, int light_slots) {
+    const int saturated = saturated_dn(response, bit_depth);
+    const auto light = [&](int dn) {
+        return static_cast<double>(response.light(static_cast<std::uint16_t>(dn), light_slots));
+    };
+    const int last = std::max(saturated - 1, 0);
+    const double slope = last > 0 ? (light(last) - light(0)) / last : 0;
+    const SampleNoise& noise = response.noise();
+    return {
+        {"zero", light(0)},
+        {"per_dn", slope},
+        {"saturated_dn", saturated},
+        {"bound", light(saturated)},
+        {"dark_variance", static_cast<double>(noise.variance(0)) +
+                              light_slots * static_cast<double>(response.dark_variance_per_slot())},
+        {"variance_per_light", static_cast<double>(noise.per_light())}};
+}
+
+StreamSamples::StreamSamples(const StreamHeader& header, const PixelArea& area)
+    : header_(header),
+      area_(area),
+      kinds_(static_cast<std::size_t>(area.rows) * static_cast<std::size_t>(area.cols)) {
+    constexpr std::size_t kMaxPixels = 4096;
+    if (header.calibration.tile.pixels.size() > kMaxPixels)
+        throw InputError("calibration tile",
+                         fmt::format("{} pixels that differ; a report shows at most {}",
+                                     header.calibration.tile.pixels.size(), kMaxPixels));
+}
+
+std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, int span_slots) {
+    const ExposureSchedule& schedule = header_.schedule;
+    const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
+    const std::size_t i =
+        exposure_starting_at(schedule, tile_row, tile_col, last_slot - span_slots + 1);
+    const std::uint64_t open_slots = schedule.exposures(tile_row, tile_col)[i].open_slots;
+    const auto next = static_cast<std::uint16_t>(open_slots_.size());
+    const auto [kind, is_new] = kind_of_.try_emplace(open_slots, next);
+    if (is_new) open_slots_.push_back(open_slots);
+    if (open_slots_.size() == std::numeric_limits<std::uint16_t>::max())
+        throw InputError(
+            "exposure schedule",
+            "has too many kinds of exposures for a report; show a part with " + Parameter{"crop"});
+    return kind->second;
+}
+
+void StreamSamples::add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn) {
+    const bool shown = row >= area_.first_row && row < area_.first_row + area_.rows;
+    for_each_readout(
+        header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int span_slots) {
+            if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
+                const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
+                kinds_[static_cast<std::size_t>(pixel)] =
+                    static_cast<std::uint16_t>(1 + kind_at(packet.slot, row, col, span_slots));
+                dn_.insert(dn_.end(), dn, dn + header_.shape.planes);
+            }
+            dn += header_.shape.planes;
+        });
+}
+
+void StreamSamples::add(const SamplePacket& packet) {
+    if (packet.slot != slot_) finish();
+    slot_ = packet.slot;
+    if (packet.dn.empty()) return;
+    const std::uint16_t* dn = packet.dn.data();
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        add_row(packet, row, dn);
+}
+
+void StreamSamples::finish() {
+    if (dn_.empty()) return;
+    planes_.push_back({fmt::format("k-{}", slot_), packed_plane(kinds_)});
+    planes_.push_back({fmt::format("d-{}", slot_),
+                       packed_plane(dn_, static_cast<std::size_t>(header_.shape.planes))});
+    for (const PackedPlane& plane : std::span(planes_).last(2))
+        bytes_ += plane.text.size() + kPlaneTagBytes;
+    std::ranges::fill(kinds_, std::uint16_t{0});
+    dn_.clear();
+}
+
+ordered_json StreamSamples::json() const {
+    const CalibrationTile& tile = header_.calibration.tile;
+    const int rows = tile.pixels.empty() ? 1 : tile.rows;
+    const int cols = tile.pixels.empty() ? 1 : tile.cols;
+    ordered_json exposures = ordered_json::array(), responses = ordered_json::array();
+    for (const std::uint64_t open_slots : open_slots_)
+        exposures.push_back({{"span_slots", std::bit_width(open_slots)},
+                             {"light_slots", std::popcount(open_slots)},
+                             {"open", open_runs_json(open_slots)}});
+    std::set<int> lengths;
+    for (const std::uint64_t open_slots : open_slots_) lengths.insert(std::popcount(open_slots));
+    const PixelResponses all(header_.calibration);
+    for (int row = 0; row < rows; ++row)
+        for (int col = 0; col < cols; ++col) {
+            auto of_pixel = ordered_json::object();
+            for (const int length : lengths)
+                of_pixel[std::to_string(length)] =
+                    response_json(all.at(row, col), header_.calibration.bit_depth, length);
+            responses.push_back(of_pixel);
+        }
+    return {{"exposures", exposures},
+            {"response_rows", rows},
+            {"response_cols", cols},
+            {"responses", responses}};
+}
+
+}  // namespace stipple

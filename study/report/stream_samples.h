@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <unordered_map>
+#include <vector>
+
+#include "decoder/pixel_response.h"
+#include "study/report/packed_plane.h"
+#include "study/report/report_window.h"
+#include "stream/sample_packet.h"
+#include "stream/stream_header.h"
+
+namespace stipple {
+
+/// What the readout of each slot of a stream costs.
+class StreamLoads {
+  public:
+    /// `header` must outlive this.
+    explicit StreamLoads(const StreamHeader& header) : header_(header) {}
+
+    /// Memory grows with the slot of the packet.
+    void add(const SamplePacket& packet);
+    /// 1 + the last slot.
+    [[nodiscard]] std::int64_t slots() const { return static_cast<std::int64_t>(flags_.size()); }
+
+    /// By slot `samples` (in the stream), `due` (by the schedule), `payload_bits`, `overrun` and
+    /// `dropped`; `full_bits`, the bits of a slot in which every pixel is read. If the provenance
+    /// tells the clocks of the sensor also `clocks` (`readout_json`), else null.
+    [[nodiscard]] nlohmann::ordered_json json() const;
+
+  private:
+    const StreamHeader& header_;
+    std::vector<std::uint64_t> samples_;
+    std::vector<std::uint8_t> flags_;
+};
+
+/// The clocks of the readout of slots [0, slots): `clock_hz`, `slot_clocks` (the time there is) and
+/// by slot `readout`, `convert`, `link`, `link_bits`, `limit`. Null if the provenance does not tell
+/// the timing of the sensor.
+[[nodiscard]] nlohmann::ordered_json readout_json(const StreamHeader& header, std::int64_t slots);
+
+/// The samples of a stream in the shown area, and what the page needs to turn each into light with
+/// its standard deviation: the response of each pixel (decoder/pixel_response.h).
+class StreamSamples {
+  public:
+    /// `header` must outlive this. \throws InputError for a calibration tile of more than 4096
+    /// pixels.
+    StreamSamples(const StreamHeader& header, const PixelArea& area);
+
+    /// Packets come as a StreamReader reads them: by slot, then by row. \throws InputError if there
+    /// are more kinds of exposures than a plane can tell apart.
+    void add(const SamplePacket& packet);
+    /// To be called after the last packet.
+    void finish();
+
+    /// `exposures`: the kinds of exposures, each `span_slots`, `light_slots` and `open`, the runs
+    /// of open slots as [first, slots]; `response_rows`, `response_cols` and `responses`: for each
+    /// pixel of the calibration tile `response_json` by light slots.
+    [[nodiscard]] nlohmann::ordered_json json() const;
+    /// For each slot with samples "k-SLOT": for each pixel 0, or 1 + the kind of the exposure that
+    /// is read at the end of the slot; and "d-SLOT": the DN of these pixels, pixel by pixel and
+    /// plane by plane.
+    [[nodiscard]] const std::vector<PackedPlane>& planes() const { return planes_; }
+    /// Of the planes in the page.
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  private:
+    void add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn);
+    [[nodiscard]] std::uint16_t kind_at(std::int64_t last_slot, int row, int col, int span_slots);
+
+    const StreamHeader& header_;
+    PixelArea area_;
+    std::vector<std::uint64_t> open_slots_;  ///< by kind
+    std::unordered_map<std::uint64_t, std::uint16_t> kind_of_;
+    std::int64_t slot_ = 0;  ///< of the samples that are not yet packed
+    std::vector<std::uint16_t> kinds_;
+    std::vector<std::uint16_t> dn_;
+    std::vector<PackedPlane> planes_;
+    std::size_t bytes_ = 0;
+};
+
+/// The coefficients of light and noise of a pixel whose exposure was open for `light_slots`:
+/// `light` = `zero` + `per_dn` DN below `saturated_dn`, from there on `bound`, a lower bound, all
+/// of the whole exposure in units of FluxVideo; its variance is `dark_variance` +
+/// `variance_per_light` max(light, 0).
+[[nodiscard]] nlohmann::ordered_json response_json(const PixelResponse& response, int bit_depth,
+                                                   int light_slots);
+
+}  // namespace stipple
