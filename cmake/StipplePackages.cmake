@@ -3,7 +3,7 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME stipple)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-# Older than the 0.1.0-1 that Debian itself may have one day.
+# Older than the 0.2.0-1 that Debian itself may have one day.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 0stipple1)
 set(CPACK_PACKAGE_CONTACT "Stipple authors <stipple@example.org>")  # DEBFULLNAME, DEBEMAIL take its place
 set(CPACK_DEB_COMPONENT_INSTALL ON)

@@ -2,6 +2,7 @@
 
 # Same bits everywhere: no contraction to FMA, no reassociation (docs/style.md, "Numbers").
 add_compile_options(-ffp-contract=off)
+add_compile_options(-ffile-prefix-map=${CMAKE_SOURCE_DIR}=.)  # the same binaries from any folder
 # libFuzzer is guided by the branches that the modules take, so they count them.
 set(stipple_counted $<$<BOOL:${STIPPLE_FUZZ}>:-fsanitize=fuzzer-no-link>)
 
