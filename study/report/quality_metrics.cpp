@@ -122,7 +122,7 @@ std::string table_chart(const FrameTable& table, std::string_view extension) {
     for (std::size_t i = 0; i < table.frames.size(); ++i) {
         commands += fmt::format("{}", table.first_frame + static_cast<std::int64_t>(i));
         for (const QualityMetric& metric : table.metrics)
-            commands += " " + chart_number(metric.value(table.frames[i]));
+            commands += fmt::format(" {}", chart_number(metric.value(table.frames[i])));
         commands += '\n';
     }
     commands +=
