@@ -20,20 +20,26 @@ file(TOUCH ${CMAKE_BINARY_DIR}/precompiled.cpp)
 add_library(stipple_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
 target_link_libraries(stipple_precompiled PRIVATE fmt::fmt)
 target_compile_options(stipple_precompiled PRIVATE ${stipple_counted})
-target_precompile_headers(stipple_precompiled PRIVATE
+set(stipple_precompiled_headers
     <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <memory> <optional> <span> <string> <vector>)
+target_precompile_headers(stipple_precompiled PRIVATE ${stipple_precompiled_headers})
 set_target_properties(stipple_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_compile_options(stipple_precompiled PRIVATE -fno-semantic-interposition)
 
-# stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...])
+# stipple_module(NAME SOURCES a.cpp ... HEADERS a.h ... [PUBLIC lib ...] [PRIVATE lib ...] [OPTIONS flag ...])
 # One library per module, built from the folder of the same name. A header of whose name there is a
 # source is proved to compile alone by that source, which includes it first (tests/checks/headers.py),
 # where nothing is precompiled; CMAKE_VERIFY_INTERFACE_HEADER_SETS compiles each of the others alone.
 function(stipple_module name)
-    cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
     add_library(stipple_${name} STATIC ${arg_SOURCES})
     target_compile_options(stipple_${name} PRIVATE ${stipple_counted})
-    target_precompile_headers(stipple_${name} REUSE_FROM stipple_precompiled)
+    if(arg_OPTIONS)  # other options need a precompiled header of their own
+        target_compile_options(stipple_${name} PRIVATE ${arg_OPTIONS})
+        target_precompile_headers(stipple_${name} PRIVATE ${stipple_precompiled_headers})
+    else()
+        target_precompile_headers(stipple_${name} REUSE_FROM stipple_precompiled)
+    endif()
     list(TRANSFORM arg_SOURCES REPLACE "[.]cpp$" ".h" OUTPUT_VARIABLE proved)
     set(alone ${arg_HEADERS})
     list(REMOVE_ITEM alone ${proved})
