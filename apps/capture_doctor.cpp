@@ -10,15 +10,19 @@
 #include "apps/subcommands.h"
 #include "capture/camera_kind.h"
 #include "core/error.h"
+#include "core/named_value.h"
 
 namespace stipple {
 namespace {
 
 using Level = DoctorFinding::Level;
-constexpr std::array<const char*, 4> kLevels{"fact", "good", "warning", "problem"};
+constexpr auto kLevels = std::to_array<NamedValue<Level>>({{"fact", Level::kFact},
+                                                           {"good", Level::kGood},
+                                                           {"warning", Level::kWarning},
+                                                           {"problem", Level::kProblem}});
 
-const char* name_of(Level level) {
-    return kLevels[static_cast<std::size_t>(level)];
+std::string_view name_of(Level level) {
+    return name_in(kLevels, level);
 }
 
 /// The kind of the camera to look at; null if there is none.

@@ -19,6 +19,7 @@
 #include "apps/output/stage_outputs.h"
 #include "apps/standard_error.h"
 #include "core/error.h"
+#include "core/named_value.h"
 #include "core/parallel.h"
 #include "io/frame_writer.h"
 #include "io/growing_file.h"
@@ -69,8 +70,11 @@ FrameWriterOptions writer_options(const DecodeArguments& arguments, const RunOpt
 /// What made the frames end.
 enum class DecodeEnd : std::uint8_t { kStream, kUntil, kTimeout, kSignal };
 
-/// By DecodeEnd: values of the JSON key `ended_by`.
-constexpr std::array<std::string_view, 4> kEndNames{"stream", "until", "timeout", "signal"};
+/// Values of the JSON key `ended_by`.
+constexpr auto kDecodeEnds = std::to_array<NamedValue<DecodeEnd>>({{"stream", DecodeEnd::kStream},
+                                                                   {"until", DecodeEnd::kUntil},
+                                                                   {"timeout", DecodeEnd::kTimeout},
+                                                                   {"signal", DecodeEnd::kSignal}});
 
 /// NaN without a sample.
 double saturated_fraction(const DecodeReport& report) {
@@ -212,7 +216,7 @@ nlohmann::ordered_json DecodeRun::figures() const {
     nlohmann::ordered_json json{{"method", arguments_.method},
                                 {"seconds", report_.seconds},
                                 {"slots", report_.slots},
-                                {"ended_by", kEndNames[static_cast<std::size_t>(end_)]},
+                                {"ended_by", name_in(kDecodeEnds, end_)},
                                 {"saturated_fraction", saturated_fraction(report_)},
                                 {"zero_fraction", zero_fraction(report_)},
                                 {"voxels", report_.voxels},

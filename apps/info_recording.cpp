@@ -72,8 +72,7 @@ std::string plain(const std::string& text) {
 
 std::string_view cause_of(const Gap& gap) {
     // Damage of the file leaves no record of a cause.
-    return gap.cause == GapCause::kNone ? "damage"
-                                        : kGapCauseNames[static_cast<std::size_t>(gap.cause)];
+    return gap.cause == GapCause::kNone ? "damage" : name_in(kGapCauses, gap.cause);
 }
 
 ordered_json info_json(const RecordingReader& reader, const FrameSummary& frames) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/named_value.h"
 #include "io/pixel_format.h"
 
 namespace stipple {
@@ -42,8 +43,16 @@ enum class GapCause : std::uint8_t {
     kReconnect = 5,     ///< the camera was lost; its ids do not tell the number of frames
     kLayout = 6,        ///< the camera sent what cannot be used: no image, or of another format
 };
-inline constexpr std::array<std::string_view, 7> kGapCauseNames{
-    "none", "device", "transport", "host_underrun", "queue_drop", "reconnect", "layout"};
+inline constexpr auto kGapCauses =
+    std::to_array<NamedValue<GapCause>>({{"none", GapCause::kNone},
+                                         {"device", GapCause::kDevice},
+                                         {"transport", GapCause::kTransport},
+                                         {"host_underrun", GapCause::kHostUnderrun},
+                                         {"queue_drop", GapCause::kQueueDrop},
+                                         {"reconnect", GapCause::kReconnect},
+                                         {"layout", GapCause::kLayout}});
+/// Missing frames by their cause.
+using LostFrames = std::array<std::uint64_t, kGapCauses.size()>;
 
 /// Which clock gave a device stamp.
 enum class StampSource : std::uint8_t {

@@ -12,7 +12,7 @@ namespace stipple {
 
 /// Frames that are missing before the next one, by cause.
 struct FrameGap {
-    std::array<std::uint64_t, kGapCauseNames.size()> lost{};
+    LostFrames lost{};
 
     void add(GapCause cause, std::uint64_t frames) {
         lost[static_cast<std::size_t>(cause)] += frames;
@@ -53,9 +53,7 @@ class LossCounter {
     /// The frames missing since the last call.
     [[nodiscard]] FrameGap take_gap() { return std::exchange(gap_, {}); }
     /// By GapCause, of the whole session.
-    [[nodiscard]] const std::array<std::uint64_t, kGapCauseNames.size()>& lost() const {
-        return lost_;
-    }
+    [[nodiscard]] const LostFrames& lost() const { return lost_; }
     /// Sum over the epochs that have ended, and of `camera` if it is not null.
     [[nodiscard]] TransportCounts transport(const Camera* camera) const;
 
@@ -63,7 +61,7 @@ class LossCounter {
     void read(const Camera& camera, Clock::time_point now);
 
     FrameGap gap_;
-    std::array<std::uint64_t, kGapCauseNames.size()> lost_{};
+    LostFrames lost_{};
     TransportCounts earlier_epochs_;
     TransportCounts counted_;  ///< of this epoch, at `counted_at_`
     Clock::time_point counted_at_;

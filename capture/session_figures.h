@@ -12,8 +12,8 @@ namespace stipple {
 /// The key `lost`: missing frames by their cause.
 template <typename Add>
 void visit_lost_figures(const SessionTotals& totals, const Add& add) {
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
-        add(kGapCauseNames[i].data(), totals.lost[i]);
+    for (std::size_t i = 1; i < kGapCauses.size(); ++i)
+        add(kGapCauses[i].name.data(), totals.lost[i]);
 }
 
 /// The key `transport`.

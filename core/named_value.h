@@ -26,6 +26,18 @@ template <typename Value, std::size_t kCount>
     return {};
 }
 
+/// The names of a table of all values of an enumeration, in their order: what ConfigKey::choices
+/// takes.
+template <const auto& kTable>
+inline constexpr auto kNamesOf = [] {
+    std::array<std::string_view, kTable.size()> names;
+    for (std::size_t i = 0; i < kTable.size(); ++i) {
+        if (static_cast<std::size_t>(kTable[i].value) != i) throw "the table lacks a value";
+        names[i] = kTable[i].name;
+    }
+    return names;
+}();
+
 /// The value of that name. \throws InputError at `where`, with all names, if there is none.
 template <typename Value, std::size_t kCount>
 [[nodiscard]] Value value_in(const std::array<NamedValue<Value>, kCount>& table,

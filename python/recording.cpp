@@ -118,9 +118,7 @@ void bind_frame(py::module_& module) {
     };
     add_of(
         "cause",
-        [](const FrameRecord& record) {
-            return std::string(kGapCauseNames.at(static_cast<std::size_t>(record.cause)));
-        },
+        [](const FrameRecord& record) { return std::string(name_in(kGapCauses, record.cause)); },
         "Why frames are missing before it: \"none\", \"device\", \"transport\" ...");
     add_of(
         "status",

@@ -4,17 +4,21 @@
 #include <string_view>
 
 #include "core/key_reader.h"
+#include "core/named_value.h"
 
 namespace stipple {
 namespace {
 
-constexpr std::array<std::string_view, 2> kKindNames{"skip_channel", "group"};
+constexpr auto kKinds = std::to_array<NamedValue<ColumnAddressing::Kind>>(
+    {{"skip_channel", ColumnAddressing::Kind::kSkipChannel},
+     {"group", ColumnAddressing::Kind::kGroup}});
 constexpr KeyRange kSide{1, ColumnAddressing::kMaxSide};
 
 }  // namespace
 
 void read_addressing(const KeyReader& read, ColumnAddressing& addressing) {
-    read({"addressing", {}, "", "column by column, or whole groups", kKindNames}, addressing.kind);
+    read({"addressing", {}, "", "column by column, or whole groups", kNamesOf<kKinds>},
+         addressing.kind);
     read({"channels", {1, ColumnAddressing::kMaxChannels}, "", "outputs that work in parallel"},
          addressing.channels);
     read({"group_cols", kSide, "pixels", "columns of a group"}, addressing.group_cols);

@@ -9,12 +9,14 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/key_reader.h"
+#include "core/named_value.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {
 
-constexpr std::array<std::string_view, 2> kApertures{"shared", "own"};
+constexpr auto kApertures = std::to_array<NamedValue<RigAperture>>(
+    {{"shared", RigAperture::kShared}, {"own", RigAperture::kOwn}});
 constexpr KeyRange kShare{1e-6, 1};
 constexpr KeyRange kPixels{-kMaxFrameSide, kMaxFrameSide};
 constexpr KeyRange kEntry{-1e9, 1e9};
@@ -185,7 +187,11 @@ Rig read_rig(Config& config, const std::string& sensor) {
     Rig rig;
     const KeyReader read(config);
     read({"name", {}, "", "of the rig, for messages"}, rig.name);
-    read({"aperture", {}, "", "shared: a beam splitter; own: cameras side by side", kApertures},
+    read({"aperture",
+          {},
+          "",
+          "shared: a beam splitter; own: cameras side by side",
+          kNamesOf<kApertures>},
          rig.aperture);
     const auto names = read_names(config);
     for (std::size_t i = 0; i < names.size(); ++i)

@@ -12,7 +12,8 @@ namespace stipple {
 // provenance of a stream use these lists: they call `visit(key, member)` for each key. Members of a
 // const object are const.
 
-inline constexpr std::array<std::string_view, 2> kSensorModeNames{"paper", "physical"};
+inline constexpr auto kSensorModes = std::to_array<NamedValue<SensorMode>>(
+    {{"paper", SensorMode::kPaper}, {"physical", SensorMode::kPhysical}});
 
 /// Max number of values of `row_noise_e`, and max rows and columns of the tile of the maps.
 inline constexpr int kMaxTaps = 64;
@@ -34,12 +35,12 @@ void visit_sensor_keys(Params& params, const Visit& visit) {
           params.shot_noise);
     visit({"bit_depth", {1, 16}, "bits", "d: bit depth; the highest DN is 2^d - 1"},
           params.bit_depth);
-    visit({"rounding", {}, "", "rounding of the converter", kRoundingNames}, params.rounding);
+    visit({"rounding", {}, "", "rounding of the converter", kNamesOf<kRoundings>}, params.rounding);
     visit({"slot_us", {1e-3, 1e9}, "us", "length of a time slot, one frame of the footage"},
           params.slot_us);
     visit({"charge_stores", {1, 2}, "", "charge stores of a pixel: exposures under way at once"},
           params.charge_stores);
-    visit({"mode", {}, "", "terms of Eq. 1, or those of EMVA 1288 as well", kSensorModeNames},
+    visit({"mode", {}, "", "terms of Eq. 1, or those of EMVA 1288 as well", kNamesOf<kSensorModes>},
           params.mode);
 }
 
@@ -118,7 +119,7 @@ void visit_physical_keys(Terms& terms, const Visit& visit) {
     visit_shared_light_keys(terms, visit);
     visit({"device_id", {0, 4294967295}, "", "which chip: seed of the fixed pattern"},
           terms.device_id);
-    visit({"cfa", {}, "", "colour filter array", kColourFilterNames}, terms.cfa);
+    visit({"cfa", {}, "", "colour filter array", kNamesOf<kColourFilters>}, terms.cfa);
     visit({"map_rows", {1, kMaxMapSide}, "pixels", "rows of the tile of the two maps"},
           terms.map_rows);
     visit({"map_cols", {1, kMaxMapSide}, "pixels", "columns of the tile of the two maps"},

@@ -19,9 +19,9 @@ nlohmann::ordered_json lost_json(const SessionTotals& totals) {
 
 std::string lost_text(const SessionTotals& totals) {
     std::string text;
-    for (std::size_t i = 1; i < kGapCauseNames.size(); ++i)
+    for (std::size_t i = 1; i < kGapCauses.size(); ++i)
         if (const auto frames = totals.lost[i]; frames > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", frames, kGapCauseNames[i]);
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", frames, kGapCauses[i].name);
     return text.empty() ? "none" : text;
 }
 

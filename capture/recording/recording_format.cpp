@@ -151,7 +151,7 @@ const PixelFormat* format_of(const StoredFormat& format) {
 }
 
 bool has_known_codes(const FrameRecord& record) {
-    return static_cast<std::size_t>(record.cause) < kGapCauseNames.size() &&
+    return static_cast<std::size_t>(record.cause) < kGapCauses.size() &&
            record.status <= FrameStatus::kDeviceError &&
            record.stamp_source <= StampSource::kUnnamedClock;
 }

@@ -84,7 +84,7 @@ struct SessionRecord {
 /// Content of the end block.
 struct RecordingEnd {
     std::string reason = "stopped";  ///< "stopped", "disk full", "camera lost", ...
-    std::array<std::uint64_t, kGapCauseNames.size()> lost = {};  ///< missing frames by GapCause
+    LostFrames lost = {};            ///< missing frames by GapCause
     TransportCounts transport = {};
     std::uint64_t frames = 0;      ///< in the file
     std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete

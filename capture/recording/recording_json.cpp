@@ -14,7 +14,7 @@ using Texts = std::map<std::string, std::string>;
 
 /// By GapCause: the names in a recording (docs/recording_format.md). Reports say `queue_drop` where
 /// version 1 of the format says `own_drop`.
-constexpr std::array<std::string_view, kGapCauseNames.size()> kStoredCauses{
+constexpr std::array<std::string_view, kGapCauses.size()> kStoredCauses{
     "none", "device", "transport", "host_underrun", "own_drop", "reconnect", "layout"};
 
 std::string dumped(const Json& json) {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/key_reader.h"
 #include "core/memory_limit.h"
+#include "core/named_value.h"
 #include "readout/column_addressing.h"
 #include "readout/schedules/cell_schedule.h"
 #include "readout/schedules/code_schedule.h"
@@ -205,14 +206,18 @@ NamedSchedule read_code(Config& config, const BuildContext& /*made*/) {
     return result;
 }
 
+constexpr auto kArrangements =
+    std::to_array<NamedValue<TileArrangement>>({{"auto", TileArrangement::kAuto},
+                                                {"lattice", TileArrangement::kLattice},
+                                                {"scatter", TileArrangement::kScatter},
+                                                {"random", TileArrangement::kRandom}});
+
 NamedSchedule read_hardware_tiled(Config& config, const BuildContext& made) {
-    static constexpr std::array<std::string_view, 4> kArrangements{"auto", "lattice", "scatter",
-                                                                   "random"};
     const KeyReader read(config);
     HardwareTile tile{.addressing = made.addressing, .array_cols = made.shape.cols};
     read_addressing(read, tile.addressing);
     read_tile_size(config, {0, kMaxHardwareSide}, tile.tile_rows, tile.tile_cols);
-    read({"arrangement", {}, "", "arrangement of the codes in the tile", kArrangements},
+    read({"arrangement", {}, "", "arrangement of the codes in the tile", kNamesOf<kArrangements>},
          tile.arrangement);
     const std::vector<int> lengths = read_exposure_slots(config);
     return {"hardware_tiled", {}, at_key(config, "kind", [&] {

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/index.h"
+#include "core/named_value.h"
 
 namespace stipple {
 namespace {
@@ -88,8 +89,12 @@ void add_deadline(ScanDeadline added, std::vector<ScanDeadline>& deadlines) {
 }  // namespace
 
 std::string_view name_of(ReadoutLimit limit) {
-    constexpr std::array<std::string_view, 4> kNames{"adc", "link", "row_overhead", "code_load"};
-    return kNames.at(static_cast<std::size_t>(limit));
+    constexpr auto kLimits =
+        std::to_array<NamedValue<ReadoutLimit>>({{"adc", ReadoutLimit::kAdc},
+                                                 {"link", ReadoutLimit::kLink},
+                                                 {"row_overhead", ReadoutLimit::kRowOverhead},
+                                                 {"code_load", ReadoutLimit::kCodeLoad}});
+    return name_in(kLimits, limit);
 }
 
 ReadoutCounts& ReadoutCounts::operator+=(const ReadoutCounts& more) {

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/key_reader.h"
+#include "core/named_value.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
@@ -17,7 +18,10 @@ constexpr KeyRange kArray{1, kMaxFrameSide};  ///< rows or columns
 constexpr KeyRange kRows{0, kMaxFrameSide};
 constexpr KeyRange kLanes{0, ColumnAddressing::kMaxChannels};
 constexpr KeyRange kEnergy{0, 1e12};
-constexpr std::array<std::string_view, 3> kRowTimingNames{"overlapped", "sequential", "full_width"};
+constexpr auto kRowTimings =
+    std::to_array<NamedValue<RowTiming>>({{"overlapped", RowTiming::kOverlapped},
+                                          {"sequential", RowTiming::kSequential},
+                                          {"full_width", RowTiming::kFullWidth}});
 
 void read_transfer(const KeyReader& read, ReadoutTiming& timing) {
     read({"clocks_per_column", kClocks, "clocks", "transfer time of a column of a channel"},
@@ -73,8 +77,9 @@ std::optional<ReadoutTiming> read_timing(Config& config, int bits_per_sample) {
     const KeyReader read(config, std::string(kSection));
     ReadoutTiming timing;
     read({"clock_hz", kHz, "Hz", "clock of the readout"}, timing.clock_hz);
-    read({"row_timing", {}, "", "how conversion and transfer share the time", kRowTimingNames},
-         timing.row_timing);
+    read(
+        {"row_timing", {}, "", "how conversion and transfer share the time", kNamesOf<kRowTimings>},
+        timing.row_timing);
     read({"rows", kArray, "pixels", "rows of the array"}, timing.rows);
     read({"cols", kArray, "pixels", "columns of the array"}, timing.cols);
     read({"exposes_while_reading", {}, "", "whether pixels expose while the chip reads"},

@@ -66,7 +66,7 @@ TEST(RecordingTest, TheEndHoldsTotalsLossesAndClock) {
     ASSERT_TRUE(reader.end());
     const RecordingEnd& end = *reader.end();
     EXPECT_EQ(end.reason, "camera lost");
-    EXPECT_EQ(end.lost, (std::array<std::uint64_t, kGapCauseNames.size()>{0, 1, 2, 3, 4, 12, 13}));
+    EXPECT_EQ(end.lost, (LostFrames{0, 1, 2, 3, 4, 12, 13}));
     EXPECT_EQ(end.transport.underruns, 5U);
     EXPECT_EQ(end.transport.packets_resent, 6U);
     EXPECT_EQ(end.frames, 11U);
