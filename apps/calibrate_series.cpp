@@ -18,12 +18,12 @@
 #include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
-#include "io/dn_image.h"
-#include "study/metrics/emva1288/series_evaluation.h"
+#include "io/image_file.h"
 #include "readout/provenance.h"
 #include "readout/sensor_file.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
+#include "study/metrics/emva1288/series_evaluation.h"
 
 namespace stipple {
 namespace {

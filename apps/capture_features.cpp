@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/output/column_width.h"
 #include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/subcommands.h"
-#include "capture/camera_feature.h"
+#include "capture/camera_listing.h"
 #include "core/text.h"
-#include "study/report/json_figures.h"
 #include "stream/plain_text.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -26,15 +26,15 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/input_file.h"
-#include "io/dn_image.h"
+#include "io/image_file.h"
 #include "io/pending_output.h"
 #include "io/text_file.h"
-#include "study/metrics/emva1288/series_evaluation.h"
 #include "readout/flat_field.h"
 #include "readout/sensor_file.h"
+#include "sensor_model/sensor_config.h"
+#include "study/metrics/emva1288/series_evaluation.h"
 #include "study/report/chart.h"
 #include "study/report/run_report.h"
-#include "sensor_model/configured_figures.h"
 
 namespace stipple {
 namespace {

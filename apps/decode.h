@@ -9,8 +9,7 @@
 #include "apps/arguments/run_options.h"
 #include "apps/part_of_work.h"
 #include "decoder/schedule_check/schedule_check.h"
-#include "io/image_coding.h"
-#include "io/video_coding.h"
+#include "io/frame_coding.h"
 #include "session/decode_session.h"
 #include "stream/stream_reader.h"
 

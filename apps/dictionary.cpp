@@ -17,7 +17,7 @@
 #include "core/exposure_schedule.h"
 #include "core/memory_limit.h"
 #include "decoder/hitomi2011/ksvd.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "io/pending_output.h"
 
 namespace stipple {

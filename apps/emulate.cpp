@@ -12,7 +12,6 @@
 #include "apps/arguments/footage.h"
 #include "apps/attached_calibration.h"
 #include "apps/emulate.h"
-#include "apps/emulation_input.h"
 #include "apps/interrupt.h"
 #include "apps/output/emulation_text.h"
 #include "apps/output/json_file.h"

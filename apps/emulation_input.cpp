@@ -1,4 +1,4 @@
-#include "apps/emulation_input.h"
+#include "apps/emulate.h"
 
 #include "apps/standard_error.h"
 #include "capture/recording/footage_notes.h"

@@ -1,4 +1,4 @@
-#include "apps/explore_table.h"
+#include "apps/explore_run.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/output/column_width.h"
 #include "apps/output/number_text.h"
 #include "core/text.h"
 #include "study/explore/exploration.h"

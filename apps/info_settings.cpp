@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/key_list.h"
-#include "apps/output/column_width.h"
 #include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/standard_error.h"
 #include "core/config.h"
 #include "core/error.h"
@@ -21,9 +21,9 @@
 #include "io/footage_files.h"
 #include "readout/schedule_feasibility.h"
 #include "readout/sensor_file.h"
+#include "sensor_model/sensor_keys.h"
 #include "study/report/schedule_text.h"
 #include "study/scenes/scene.h"
-#include "sensor_model/sensor_keys.h"
 
 namespace stipple {
 namespace {

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "apps/output/column_width.h"
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
 #include "core/config.h"

@@ -15,7 +15,7 @@
 #include "apps/output/progress.h"
 #include "apps/subcommands.h"
 #include "io/frame_writer.h"
-#include "io/npy_reader.h"
+#include "io/npy_file.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"
 #include "session/stream_shards.h"

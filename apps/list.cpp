@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/key_list.h"
-#include "apps/output/column_width.h"
 #include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 namespace stipple {
 

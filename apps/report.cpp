@@ -11,7 +11,7 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/output/camera_file.h"
+#include "apps/output/camera_report.h"
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
 #include "apps/output/own_command.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "apps/explore_run.h"
-#include "apps/explore_table.h"
 #include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"

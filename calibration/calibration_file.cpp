@@ -15,7 +15,6 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
-#include "stream/byte_cursor.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"

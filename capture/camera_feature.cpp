@@ -1,4 +1,4 @@
-#include "capture/camera_feature.h"
+#include "capture/camera_listing.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>

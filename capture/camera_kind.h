@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "capture/camera.h"
-#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 #include "capture/doctor/doctor_finding.h"
 

@@ -11,7 +11,6 @@
 #include "capture/camera_timing.h"
 #include "capture/frame_ids.h"
 #include "capture/loss_counter.h"
-#include "capture/repeat_filter.h"
 
 namespace stipple {
 namespace {

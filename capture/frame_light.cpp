@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cstddef>
 
-#include "capture/frame_unpack.h"
 #include "core/error.h"
 #include "io/pixel_unpack.h"
 

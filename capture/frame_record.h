@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -89,5 +90,8 @@ struct CapturedFrame {
     std::vector<std::uint8_t> payload;  ///< bytes of the image alone, no chunks; holes are zero
     std::vector<std::pair<std::size_t, std::size_t>> holes;  ///< [begin, end) of payload, if known
 };
+
+/// XXH3, 64 bit, seed 0: the hash of a frame's payload, and of a camera's XML description.
+[[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
 
 }  // namespace stipple

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "capture/capture_session.h"
 #include "capture/live_emulator.h"
-#include "capture/session_figures.h"
 #include "core/nested_figures.h"
 #include "readout/sensor_file.h"
 

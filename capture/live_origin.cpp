@@ -1,4 +1,4 @@
-#include "capture/live_origin.h"
+#include "capture/live_camera.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "capture/repeat_filter.h"
+#include "capture/frame_ids.h"
 
 namespace stipple {
 namespace {

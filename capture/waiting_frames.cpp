@@ -1,4 +1,4 @@
-#include "capture/waiting_frames.h"
+#include "capture/frame_queue.h"
 
 #include <fmt/format.h>
 

@@ -11,6 +11,9 @@
 #include "decoder/best/collaborative.h"
 #include "decoder/block_partition.h"
 #include "decoder/block_task.h"
+#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/conventional_schedule.h"
+#include "decoder/conventional/frame_decoding.h"
 #include "decoder/decode_options.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/hitomi2011/hitomi2011.h"
@@ -19,13 +22,6 @@
 #include "decoder/portz2013/portz2013.h"
 #include "decoder/prior_decoding.h"
 #include "decoder/reddy2011/reddy2011.h"
-#include "decoder/rivals/bennett2005.h"
-#include "decoder/rivals/conventional_schedule.h"
-#include "decoder/rivals/frame_decoding.h"
-#include "decoder/rivals/kang2003.h"
-#include "decoder/rivals/shahar2011.h"
-#include "decoder/rivals/vbm4d.h"
-#include "decoder/rivals/zhang2009.h"
 
 namespace stipple {
 namespace {

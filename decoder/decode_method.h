@@ -22,7 +22,7 @@ enum class DecodeMethod {
     // Of other coded cameras.
     kReddy2011,   ///< wavelets and brightness constancy
     kHitomi2011,  ///< patches of a learned dictionary
-    // Of conventional cameras; see rivals/.
+    // Of conventional cameras; see conventional/.
     kInterpolated,  ///< frames as delivered
     kBennett2005,   ///< adaptive spatio-temporal accumulation
     kZhang2009,     ///< principal components of patches along optical flow

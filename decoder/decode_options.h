@@ -4,15 +4,12 @@
 
 #include "core/config.h"
 #include "decoder/best/collaborative.h"
+#include "decoder/conventional/conventional_methods.h"
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/hitomi2011/hitomi2011.h"
 #include "decoder/portz2013/portz2013.h"
 #include "decoder/reddy2011/reddy2011.h"
-#include "decoder/rivals/bennett2005.h"
-#include "decoder/rivals/shahar2011.h"
-#include "decoder/rivals/vbm4d.h"
-#include "decoder/rivals/zhang2009.h"
 #include "decoder/stage_observer.h"
 
 namespace stipple {

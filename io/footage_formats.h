@@ -16,7 +16,7 @@
 #include "io/footage_files.h"
 #include "io/footage_reader.h"
 #include "io/image.h"
-#include "io/npy_reader.h"
+#include "io/npy_file.h"
 #include "io/raw_video.h"
 #include "io/tiff_file.h"
 #include "io/video_reader.h"

@@ -15,7 +15,7 @@
 #include "core/light.h"
 #include "io/exr_file.h"
 #include "io/footage_files.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"
 #include "io/png_file.h"

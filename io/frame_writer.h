@@ -6,8 +6,7 @@
 #include <span>
 
 #include "core/geometry.h"
-#include "io/image_coding.h"
-#include "io/video_coding.h"
+#include "io/frame_coding.h"
 
 namespace stipple {
 

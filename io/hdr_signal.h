@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "io/video_coding.h"
+#include "io/frame_coding.h"
 
 namespace stipple {
 

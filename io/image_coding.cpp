@@ -1,4 +1,4 @@
-#include "io/image_coding.h"
+#include "io/frame_coding.h"
 
 #include <cassert>
 #include <cstring>

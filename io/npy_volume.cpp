@@ -1,4 +1,4 @@
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 #include <fmt/format.h>
 #include <half.h>
@@ -13,7 +13,6 @@
 #include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
-#include "io/npy_header.h"
 
 namespace stipple {
 namespace {

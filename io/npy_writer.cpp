@@ -1,11 +1,9 @@
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 
 #include <bit>
 #include <cstddef>
 #include <string>
 #include <utility>
-
-#include "io/npy_header.h"
 
 namespace stipple {
 

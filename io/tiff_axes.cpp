@@ -1,5 +1,5 @@
 // Keys and their meaning: ImageJ, OME-XML, tifffile (docs/references.md).
-#include "io/tiff_axes.h"
+#include "io/tiff_file.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "io/tiff_axes.h"
 #include "io/tiff_handle.h"
 
 namespace stipple {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/geometry.h"
-#include "io/image_coding.h"
+#include "io/frame_coding.h"
 
 namespace stipple {
 

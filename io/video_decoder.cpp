@@ -13,7 +13,6 @@
 
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "io/frame_times.h"
 #include "io/lazy_ffmpeg.h"
 
 extern "C" {

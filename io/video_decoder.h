@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +46,32 @@ class VideoDecoder {
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
+};
+
+/// When the frames of a video are shown, by their time stamps in ticks.
+class FrameTimes {
+  public:
+    /// Times are in periods of the rate `hz`. Without a rate frame j is at j.
+    explicit FrameTimes(double tick_s = 1, std::optional<double> hz = {});
+
+    /// The next frame, with its time stamp if it has one.
+    void add(std::optional<std::int64_t> tick);
+
+    /// Of the last frame, from the first one on: its number, unless its time stamp differs from
+    /// that by more than rounding.
+    [[nodiscard]] double time() const { return time_; }
+    /// "0.03 to 0.1 s apart"; empty if the frames are equally far apart but for rounding.
+    [[nodiscard]] std::string unequal() const;
+
+  private:
+    double tick_s_;
+    double ticks_a_period_;  ///< 0: unknown
+    std::int64_t frames_ = 0;
+    std::optional<double> origin_;  ///< tick of the first frame
+    std::int64_t last_tick_ = 0;
+    std::int64_t min_ticks_ = std::numeric_limits<std::int64_t>::max();  ///< between frames
+    std::int64_t max_ticks_ = 0;
+    double time_ = -1;
 };
 
 }  // namespace stipple

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "core/geometry.h"
+#include "io/frame_coding.h"
 #include "io/lazy_ffmpeg.h"
-#include "io/video_coding.h"
 
 struct AVStream;  // of FFmpeg's libavformat
 namespace stipple {

@@ -4,7 +4,6 @@
 #include <tuple>
 #include <vector>
 
-#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 #include "python/bindings.h"
 

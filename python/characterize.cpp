@@ -11,15 +11,15 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
-#include "io/dn_image.h"
-#include "study/metrics/emva1288/series_evaluation.h"
+#include "io/image_file.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/footage.h"
 #include "python/sensor.h"
 #include "readout/flat_field.h"
-#include "sensor_model/configured_figures.h"
+#include "sensor_model/sensor_config.h"
+#include "study/metrics/emva1288/series_evaluation.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/colour_filter.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 #include "stream/stream_header.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "sensor_model/configured_figures.h"
+#include "sensor_model/sensor_config.h"
 
 #include <cmath>
 

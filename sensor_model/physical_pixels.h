@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "sensor_model/charges.h"
 #include "sensor_model/fixed_pattern.h"
+#include "sensor_model/pixel_array.h"
 #include "sensor_model/sample_words.h"
 #include "sensor_model/sensor_params.h"
 

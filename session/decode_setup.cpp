@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 namespace stipple {
 

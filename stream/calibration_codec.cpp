@@ -1,9 +1,9 @@
-#include "stream/header_sections.h"
+#include "stream/header_codec.h"
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "stream/byte_cursor.h"
+#include "stream/little_endian.h"
 
 namespace stipple {
 namespace {

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/geometry.h"
 #include "stream/crc32c.h"
-#include "stream/header_sections.h"
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"
 

@@ -1,4 +1,4 @@
-#include "stream/packet_check.h"
+#include "stream/packet_order.h"
 
 #include <fmt/format.h>
 

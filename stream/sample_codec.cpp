@@ -2,8 +2,8 @@
 
 #include "stream/bit_packing.h"
 #include "stream/crc32c.h"
-#include "stream/packet_check.h"
 #include "stream/packet_codec.h"
+#include "stream/packet_order.h"
 
 namespace stipple {
 

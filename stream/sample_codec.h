@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stream/framing.h"
+#include "stream/packet_codec.h"
 #include "stream/packet_order.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"

@@ -1,4 +1,4 @@
-#include "stream/header_sections.h"
+#include "stream/header_codec.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "stream/byte_cursor.h"
 #include "stream/crc32c.h"
+#include "stream/little_endian.h"
 
 namespace stipple {
 namespace {

@@ -2,8 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
+
+#include "stream/buffered_reader.h"
+#include "stream/packet_codec.h"
 
 namespace stipple {
 
@@ -35,5 +40,32 @@ class SlotIndex {
 void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> payload);
 /// Precondition: a multiple of kIndexEntryBytes.
 [[nodiscard]] std::vector<IndexEntry> load_index(std::span<const std::uint8_t> payload);
+
+/// What the end of a whole stream tells.
+struct TrailingIndex {
+    std::int64_t slots = 0;                 ///< in the stream
+    std::optional<std::uint32_t> checksum;  ///< of all packets; none in version 1
+    std::vector<IndexEntry> entries;
+};
+
+/// The index that the end marker of a file points to. Nothing if there is no index, if it is
+/// damaged, or if it is not where the marker says (then bytes of the file are missing, and no
+/// offset is correct).
+[[nodiscard]] std::optional<TrailingIndex> read_trailing_index(const BufferedReader& file,
+                                                               const Framing& framing);
+
+/// Its number of slots.
+[[nodiscard]] std::optional<std::int64_t> slots_by_index(const BufferedReader& file,
+                                                         const Framing& framing);
+
+/// Its last entry that is not after `slot`, if the first packet of that slot begins there.
+[[nodiscard]] std::optional<IndexEntry> entry_before(const BufferedReader& file,
+                                                     const Framing& framing, std::int64_t slot);
+
+/// Message on the first entry of an index that does not point to the first packet of its slot.
+/// Nothing if all do, or if `file` is a pipe.
+[[nodiscard]] std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
+                                                     const BufferedReader& file,
+                                                     const Framing& framing);
 
 }  // namespace stipple

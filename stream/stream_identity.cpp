@@ -7,7 +7,7 @@
 #include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
 #include "stream/header_codec.h"
-#include "stream/trailing_index.h"
+#include "stream/slot_index.h"
 
 namespace stipple {
 

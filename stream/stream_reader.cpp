@@ -13,10 +13,9 @@
 #include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
 #include "stream/header_codec.h"
-#include "stream/packet_check.h"
 #include "stream/packet_codec.h"
 #include "stream/packet_order.h"
-#include "stream/trailing_index.h"
+#include "stream/slot_index.h"
 
 namespace stipple {
 namespace {

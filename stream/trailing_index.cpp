@@ -1,12 +1,12 @@
-#include "stream/trailing_index.h"
+#include "stream/slot_index.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "stream/crc32c.h"
-#include "stream/packet_check.h"
 #include "stream/packet_codec.h"
+#include "stream/packet_order.h"
 
 namespace stipple {
 

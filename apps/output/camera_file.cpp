@@ -1,4 +1,4 @@
-#include "apps/output/camera_file.h"
+#include "apps/output/camera_report.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "study/explore/trial.h"
-#include "study/report/quality_json.h"
+#include "study/report/quality_metrics.h"
 
 namespace stipple {
 

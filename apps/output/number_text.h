@@ -1,9 +1,12 @@
 #pragma once
 
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -25,6 +28,16 @@ namespace stipple {
     if (seconds < 90) return fmt::format("{:.0f} s", seconds);
     return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60)
                           : fmt::format("{} h", rounded(seconds / 3600, 2));
+}
+
+/// The width of a column of a table: of the longest text(row), but not above `max`. Texts that are
+/// longer shift the rest of their line.
+template <typename Rows, typename Text>
+[[nodiscard]] std::size_t column_width(const Rows& rows, Text text,
+                                       std::size_t max = std::numeric_limits<std::size_t>::max()) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, std::invoke(text, row).size());
+    return std::min(width, max);
 }
 
 }  // namespace stipple

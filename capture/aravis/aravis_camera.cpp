@@ -7,7 +7,7 @@
 #include "capture/aravis/aravis_stream.h"
 #include "capture/aravis/glib_error.h"
 #include "capture/aravis/limited_time.h"
-#include "capture/payload_hash.h"
+#include "capture/frame_record.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/parsed_number.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "capture/camera.h"
-#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 
 namespace stipple {

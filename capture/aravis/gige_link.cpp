@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "capture/aravis/glib_error.h"
-#include "capture/doctor/network_facts.h"
+#include "capture/doctor/network_doctor.h"
 #include "capture/serve/big_endian.h"
 
 namespace stipple {

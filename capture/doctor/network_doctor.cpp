@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "capture/doctor/network_facts.h"
 #include "capture/network.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "capture/doctor/network_facts.h"
+#include "capture/doctor/network_doctor.h"
 
 #include <sys/socket.h>
 #include <unistd.h>

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "capture/camera_timing.h"
+#include "capture/frame_queue.h"
 #include "capture/frame_rate.h"
 #include "capture/host_clock.h"
 #include "capture/recording/recording_queue.h"
 #include "capture/recording/recording_writer.h"
-#include "capture/waiting_frames.h"
 #include "core/version.h"
 #include "io/pending_output.h"
 

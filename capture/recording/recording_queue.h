@@ -10,7 +10,6 @@
 
 #include "capture/frame_queue.h"
 #include "capture/recording/recording_writer.h"
-#include "capture/waiting_frames.h"
 
 namespace stipple {
 

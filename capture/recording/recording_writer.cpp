@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "capture/payload_hash.h"
+#include "capture/frame_record.h"
 #include "core/error.h"
 #include "stream/crc32c.h"
 

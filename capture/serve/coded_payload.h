@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "capture/serve/frame_source.h"
-#include "stream/framing.h"
+#include "stream/packet_codec.h"
 #include "stream/packet_order.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "capture/camera_feature.h"
 #include "capture/camera_listing.h"
 #include "capture/doctor/doctor_finding.h"
 

@@ -40,4 +40,12 @@ using ColourGroupFrames = std::array<GroupFrames, 3>;
 /// colours: an edge between two colours then appears in one plane only. One weight for all planes.
 void filter_group(const ColourGroupFrames& planes, float sigma) noexcept;
 
+/// A 3 x 3 matrix by rows.
+using ColourMatrix = std::array<std::array<float, 3>, 3>;
+
+/// Principal axes of colours with this covariance: its eigenvectors, orthonormal, one per column,
+/// by increasing variance. The same bits everywhere, because it uses square roots and the four
+/// operations only. Precondition: symmetric, finite.
+[[nodiscard]] ColourMatrix principal_colour_axes(const ColourMatrix& covariance) noexcept;
+
 }  // namespace stipple

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/exposure_schedule.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 namespace stipple {
 

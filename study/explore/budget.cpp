@@ -1,4 +1,4 @@
-#include "study/explore/budget.h"
+#include "study/explore/ranking.h"
 
 #include <algorithm>
 #include <cmath>

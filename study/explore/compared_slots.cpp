@@ -1,13 +1,13 @@
-#include "study/explore/compared_slots.h"
+#include "study/explore/trial.h"
 
 #include <algorithm>
 #include <set>
 #include <vector>
 
 #include "core/error.h"
+#include "readout/sensor_file.h"
 #include "study/explore/point_view.h"
 #include "study/metrics/video_quality.h"
-#include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/parsed_number.h"
-#include "study/explore/compared_slots.h"
 #include "study/explore/ranking.h"
+#include "study/explore/trial.h"
 
 namespace stipple {
 namespace {

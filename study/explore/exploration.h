@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "study/explore/budget.h"
 #include "study/explore/ranking.h"
 #include "study/explore/space.h"
 #include "study/explore/trial.h"

@@ -1,4 +1,4 @@
-#include "study/explore/point_commands.h"
+#include "study/explore/results.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 
 #include "core/parsed_number.h"
 #include "core/text.h"
+#include "readout/provenance.h"
 #include "study/explore/point_view.h"
 #include "study/explore/trial.h"
-#include "readout/provenance.h"
 
 namespace stipple {
 namespace {

@@ -15,8 +15,7 @@
 
 #include "core/version.h"
 #include "study/explore/exploration.h"
-#include "study/explore/point_commands.h"
-#include "study/report/exploration_page.h"
+#include "study/report/report_page.h"
 
 namespace stipple {
 namespace {

@@ -17,16 +17,15 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
-#include "study/explore/point_view.h"
-#include "study/explore/trial_picture.h"
 #include "io/footage_reader.h"
 #include "readout/rig_figures.h"
 #include "readout/rig_recorder.h"
 #include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_rate.h"
-#include "study/scenes/scene.h"
 #include "session/decode_setup.h"
 #include "stream/stream_reader.h"
+#include "study/explore/point_view.h"
+#include "study/scenes/scene.h"
 
 namespace stipple {
 namespace {

@@ -6,19 +6,22 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/exposure_schedule.h"
 #include "core/flux_video.h"
+#include "core/geometry.h"
 #include "decoder/decode_options.h"
-#include "study/explore/point_view.h"
-#include "study/explore/space.h"
 #include "io/png_file.h"
-#include "study/metrics/video_quality.h"
 #include "readout/footage_origin.h"
 #include "readout/rig.h"
 #include "readout/sensor_file.h"
+#include "study/explore/point_view.h"
+#include "study/explore/space.h"
+#include "study/metrics/video_quality.h"
 
 namespace stipple {
 
@@ -147,5 +150,53 @@ struct TrialOutcome {
 [[nodiscard]] TrialOutcome run_trial(
     const Trial& trial, const TrialLight& light, const std::filesystem::path& stream,
     const KeepGoing& keep_going, const std::function<void(double)>& progress = [](double) {});
+
+/// A frame of n times as many rows and columns, order (plane, row, col), by a sinc with the window
+/// of Lanczos, of 6 x 6 pixels. Beyond the borders light is that of the nearest pixel; negative
+/// light becomes 0. A linear interpolation of signals in light, without a model of scenes or noise.
+[[nodiscard]] std::vector<float> enlarged_frame(std::span<const float> frame, FrameShape shape,
+                                                int n);
+
+/// A slot of a trial in four tiles side by side: truth, naive, decoded, error.
+class TrialPicture {
+  public:
+    static constexpr int kTiles = 4;
+    static constexpr int kMaxRows = 120;  ///< of a tile; of larger frames the middle is shown
+    static constexpr int kMaxCols = 160;
+
+    enum Tile : std::uint8_t { kTruth, kNaive, kDecoded, kError };
+
+    /// Black.
+    explicit TrialPicture(FrameShape frame);
+
+    /// A tile of light by the tone curve of io/tone_map.h. `frame` has the shape of the frame.
+    void put(Tile tile, std::span<const float> frame);
+    /// The tile of `decoded` - `truth`, mean of the colours, as grey: 128 is none, 255 is
+    /// kErrorRange or more too bright, 0 so much too dark.
+    void put_error(std::span<const float> decoded, std::span<const float> truth);
+
+    static constexpr float kErrorRange = 0.25F;  ///< light
+
+    [[nodiscard]] const PngPixels& pixels() const { return pixels_; }
+
+  private:
+    [[nodiscard]] std::span<std::uint8_t> tile_row(Tile tile, int row);
+
+    FrameShape frame_;
+    PngPixels pixels_;
+};
+
+/// The slots, of `slots` from the first one on, that no exposure touches which an end of the clip
+/// cuts: a running sensor would have those too. The sensor is reset at the beginning of slot
+/// `phase_slots`. Nothing left: begin >= end.
+[[nodiscard]] ComparedSlots whole_slots(const ExposureSchedule& schedule, std::int64_t phase_slots,
+                                        int slots);
+
+/// The slots of a clip that all points of a space compare: `space.compared`, else those that are
+/// whole for all sensors of all points, without the usual margin; the margin alone if fewer than a
+/// quarter of the slots were left. Points that cannot be set up have no say, systems that
+/// Space::replace has left out do. \throws TrialStopped.
+[[nodiscard]] ComparedSlots compared_slots(const Space& space, const TrialLight& light, int slots,
+                                           const KeepGoing& keep_going);
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "study/metrics/pu21.h"
+#include "study/metrics/perceptual.h"
 
 #include <algorithm>
 #include <cmath>

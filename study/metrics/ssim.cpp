@@ -1,4 +1,4 @@
-#include "study/metrics/ssim.h"
+#include "study/metrics/perceptual.h"
 
 #include <array>
 #include <cmath>

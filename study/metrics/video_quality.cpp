@@ -12,8 +12,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "core/parallel.h"
-#include "study/metrics/pu21.h"
-#include "study/metrics/ssim.h"
+#include "study/metrics/perceptual.h"
 
 namespace stipple {
 namespace {

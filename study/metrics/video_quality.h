@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "study/metrics/csf_error.h"
+#include "study/metrics/perceptual.h"
 
 namespace stipple {
 
@@ -33,12 +33,12 @@ struct VideoQuality {
     double psnr_gamma_db = 0;  ///< after clamping to 0..1 and the power 1/2.2
     double psnr_frame_mean_db = 0;  ///< mean of per-frame linear PSNR
     double pu21_psnr_db = 0;        ///< PU21 of each plane, its peak that of `peak`
-    double ssim = 0;  ///< after clamping and 1/2.2; mean over frames and planes; see ssim.h
+    double ssim = 0;  ///< after clamping and 1/2.2; mean over frames and planes; see perceptual.h
     /// SSIM of the PU21 values of luminance (Rec. 709), for a range of 256, as its authors take it;
     /// mean over frames.
     std::optional<double> pu21_ssim = {};
     /// As `pu21_psnr_db` but of luminance, with its error weighted by the contrast sensitivity of
-    /// the eye (csf_error.h).
+    /// the eye (CsfError).
     std::optional<double> pu21_csf_psnr_db = {};
 };
 

@@ -1,7 +1,6 @@
-#include "study/report/exploration_page.h"
+#include "study/report/report_page.h"
 
 #include "study/report/page_parts.h"
-#include "study/report/report_page.h"
 
 namespace stipple {
 

@@ -1,4 +1,4 @@
-#include "study/report/plane_code.h"
+#include "study/report/report_page.h"
 
 #include <openssl/evp.h>
 #include <zlib.h>

@@ -1,8 +1,6 @@
-#include "study/report/quality_json.h"
+#include "study/report/quality_metrics.h"
 
 #include <nlohmann/json.hpp>
-
-#include "study/report/quality_metrics.h"
 
 namespace stipple {
 

@@ -54,4 +54,7 @@ struct FrameTable {
 /// draw_chart.
 [[nodiscard]] std::string table_chart(const FrameTable& table, std::string_view extension);
 
+/// The figures of a comparison under the names of docs/outputs.md.
+[[nodiscard]] nlohmann::ordered_json quality_json(const VideoQuality& quality);
+
 }  // namespace stipple

@@ -1,14 +1,24 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "study/report/packed_plane.h"
-
 namespace stipple {
+
+/// The most bytes of the page that a plane takes beside its text.
+inline constexpr std::size_t kPlaneTagBytes = 64;
+
+/// A block of data in the page: base64 (packed_plane) under a name.
+struct PackedPlane {
+    std::string id;
+    std::string text;
+};
 
 /// `data` as the content of a script element: no "<", ">" or "&" of a file's text can end the
 /// element or begin another one. Bytes that are not UTF-8 become U+FFFD.
@@ -31,5 +41,26 @@ using PagePart = std::pair<std::string_view, std::string>;
 /// charts, `data` as JSON and the planes.
 [[nodiscard]] std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
                                       const std::vector<PackedPlane>& planes);
+
+/// The page of `stipple explore`: one HTML file that needs nothing else, with its style, its
+/// program and the library of charts. `data`: JSON as page/exploration/data.js reads it.
+[[nodiscard]] std::string exploration_page(const std::string& title, const std::string& data);
+
+/// Code 1 stands for this light; less is code 0, no light.
+inline constexpr double kDarkestCodedLight = 1.0 / 16384;
+/// Neighbouring codes differ by 2^(1/128), 0.54 %.
+inline constexpr int kCodesPerStop = 128;
+
+/// Light on a logarithmic scale: 1 + round(128 log2(light / kDarkestCodedLight)), 0 for less light
+/// and for NaN. The light of a code is within 0.27 % of what was coded.
+[[nodiscard]] std::uint16_t light_code(float light) noexcept;
+/// The light of a code.
+[[nodiscard]] double light_of_code(std::uint16_t code) noexcept;
+
+/// `values` as text for the page: the difference of each value from that `step` before it (modulo
+/// 2^16, the first ones from 0) with its sign in the lowest bit (2 d, or -2 d - 1 below 0), all low
+/// bytes and then all high bytes, deflated (zlib), in base64. page/planes.js reads it. `step` > 1:
+/// values of so many colours take turns.
+[[nodiscard]] std::string packed_plane(std::span<const std::uint16_t> values, std::size_t step = 1);
 
 }  // namespace stipple

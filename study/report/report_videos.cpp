@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "study/report/json_figures.h"
-#include "study/report/plane_code.h"
-#include "study/report/quality_json.h"
+#include "study/report/quality_metrics.h"
+#include "study/report/report_page.h"
 
 namespace stipple {
 namespace {

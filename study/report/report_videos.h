@@ -10,7 +10,7 @@
 
 #include "core/flux_video.h"
 #include "study/metrics/video_quality.h"
-#include "study/report/packed_plane.h"
+#include "study/report/report_page.h"
 #include "study/report/report_window.h"
 #include "study/report/run_report.h"
 

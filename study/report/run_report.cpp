@@ -15,15 +15,14 @@
 #include "decoder/pixel_response.h"
 #include "io/tone_map.h"
 #include "readout/provenance.h"
-#include "study/report/json_figures.h"
-#include "study/report/plane_code.h"
-#include "study/report/report_page.h"
-#include "study/report/report_videos.h"
-#include "study/report/schedule_lanes.h"
-#include "study/report/stream_samples.h"
-#include "study/report/stream_text.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
+#include "study/report/json_figures.h"
+#include "study/report/report_page.h"
+#include "study/report/report_videos.h"
+#include "study/report/schedule_text.h"
+#include "study/report/stream_samples.h"
+#include "study/report/stream_text.h"
 
 namespace stipple {
 namespace {

@@ -1,10 +1,8 @@
-#include "study/report/schedule_lanes.h"
+#include "study/report/schedule_text.h"
 
 #include <bit>
 #include <cstddef>
 #include <nlohmann/json.hpp>
-
-#include "study/report/schedule_text.h"
 
 namespace stipple {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -32,5 +33,14 @@ struct ArrayPixel {
 /// for ten or more. The period before counts too.
 [[nodiscard]] std::string diagram_text(const ExposureSchedule& schedule,
                                        const std::vector<ArrayPixel>& pixels, int slots);
+
+/// The timing diagram of a recording that begins with slot 0: `count` pixels, spread over the tile
+/// (sample_pixels), each with `row`, `col` and `exposures`: those that begin in [0, slots), as
+/// [first slot, charge store, span, [[first open, open slots], ...]].
+[[nodiscard]] nlohmann::ordered_json lanes_json(const ExposureSchedule& schedule, FrameShape array,
+                                                int count, std::int64_t slots);
+
+/// The runs of set bits of `Exposure::open_slots` as [first, length].
+[[nodiscard]] nlohmann::ordered_json open_runs_json(std::uint64_t open_slots);
 
 }  // namespace stipple

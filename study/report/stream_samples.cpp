@@ -13,8 +13,8 @@
 #include "core/error.h"
 #include "core/exposure_schedule.h"
 #include "decoder/pixel_response.h"
-#include "study/report/plane_code.h"
-#include "study/report/schedule_lanes.h"
+#include "study/report/report_page.h"
+#include "study/report/schedule_text.h"
 
 namespace stipple {
 namespace {

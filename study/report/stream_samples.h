@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "decoder/pixel_response.h"
-#include "study/report/packed_plane.h"
-#include "study/report/report_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
+#include "study/report/report_page.h"
+#include "study/report/report_window.h"
 
 namespace stipple {
 

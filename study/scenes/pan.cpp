@@ -1,4 +1,4 @@
-#include "study/scenes/pan.h"
+#include "study/scenes/embedded_scenes.h"
 
 namespace stipple {
 

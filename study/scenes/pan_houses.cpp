@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "study/scenes/pan.h"
+#include "study/scenes/embedded_scenes.h"
 #include "study/scenes/surfaces.h"
 
 namespace stipple {

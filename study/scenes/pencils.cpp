@@ -1,4 +1,4 @@
-#include "study/scenes/pencils.h"
+#include "study/scenes/embedded_scenes.h"
 
 #include <algorithm>
 #include <bit>

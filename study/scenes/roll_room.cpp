@@ -1,4 +1,4 @@
-#include "study/scenes/roll.h"
+#include "study/scenes/embedded_scenes.h"
 #include "study/scenes/surfaces.h"
 
 namespace stipple {

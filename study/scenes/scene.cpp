@@ -14,11 +14,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
-#include "study/scenes/dice.h"
-#include "study/scenes/pan.h"
-#include "study/scenes/pencils.h"
-#include "study/scenes/roll.h"
-#include "study/scenes/still.h"
+#include "study/scenes/embedded_scenes.h"
 
 namespace stipple {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "study/scenes/still.h"
+#include "study/scenes/embedded_scenes.h"
 #include "study/scenes/surfaces.h"
 
 namespace stipple {

@@ -209,7 +209,7 @@ TEST(FastTest, WeightsMayBeZero) {
         }
 }
 
-/// Those of conventional cameras are tested in rivals/frame_decoding_test.cpp.
+/// Those of conventional cameras are tested in conventional/frame_decoding_test.cpp.
 std::vector<NamedDecodeMethod> methods_of_coded_streams() {
     std::vector<NamedDecodeMethod> methods;
     std::ranges::copy_if(decode_methods(), std::back_inserter(methods),

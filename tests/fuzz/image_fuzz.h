@@ -3,7 +3,6 @@
 #include <cstdlib>
 
 #include "core/error.h"
-#include "io/dn_image.h"
 #include "io/footage_reader.h"
 #include "io/image_file.h"
 #include "tests/support/memory_file.h"

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/error.h"
-#include "io/npy_header.h"
+#include "io/npy_file.h"
 
 namespace stipple {
 namespace {

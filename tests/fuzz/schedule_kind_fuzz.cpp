@@ -5,7 +5,7 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "readout/schedules/schedule_catalogue.h"
-#include "stream/header_sections.h"
+#include "stream/header_codec.h"
 #include "tests/support/memory_file.h"
 
 /// Input: a schedule file of any kind. What is accepted can be put into a stream, and a decoder

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "study/explore/point_commands.h"
+#include "study/explore/results.h"
 #include "study/explore/space.h"
 #include "tests/fuzz/require.h"
 

@@ -9,7 +9,6 @@
 #include "stream/bit_packing.h"
 #include "stream/crc32c.h"
 #include "stream/header_codec.h"
-#include "stream/header_sections.h"
 #include "stream/little_endian.h"
 #include "stream/packet_codec.h"
 #include "stream/slot_index.h"

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/error.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 #include "readout/schedules/volume_schedule.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "io/dn_image.h"
+#include "io/image_file.h"
 
 #include <gtest/gtest.h>
 

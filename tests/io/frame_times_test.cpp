@@ -1,4 +1,4 @@
-#include "io/frame_times.h"
+#include "io/video_decoder.h"
 
 #include <gtest/gtest.h>
 

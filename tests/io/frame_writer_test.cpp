@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/npy_header.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "tests/io/test_images.h"
 #include "tests/support/temporary_folder.h"
 

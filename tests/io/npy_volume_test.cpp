@@ -1,4 +1,4 @@
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 #include <gtest/gtest.h>
 

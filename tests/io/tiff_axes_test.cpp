@@ -1,4 +1,4 @@
-#include "io/tiff_axes.h"
+#include "io/tiff_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "core/error.h"
-#include "io/dn_image.h"
+#include "io/image_file.h"
 #include "tests/io/test_images.h"
 #include "tests/support/temporary_folder.h"
 

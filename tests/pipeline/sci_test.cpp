@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "tests/support/expect_quality.h"
 #include "tests/support/temporary_folder.h"
 

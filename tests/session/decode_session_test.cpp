@@ -8,7 +8,7 @@
 
 #include "calibration/calibration_file.h"
 #include "core/error.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "session/video_shards.h"
 #include "tests/decoder/recordings.h"

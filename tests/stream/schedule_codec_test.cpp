@@ -1,4 +1,4 @@
-#include "stream/header_sections.h"
+#include "stream/header_codec.h"
 
 #include <gtest/gtest.h>
 

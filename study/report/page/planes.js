@@ -1,6 +1,6 @@
 'use strict';
 
-// Planes of 16-bit numbers in the page, packed as report/plane_code.h says.
+// Planes of 16-bit numbers in the page, packed as report/report_page.h says.
 
 const kCacheBytes = 384 * 1024 * 1024;
 const planeCache = new Map(); // id -> promise of a Uint16Array; the one used last is the last

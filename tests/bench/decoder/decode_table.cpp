@@ -15,7 +15,7 @@
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/common_options.h"
 #include "decoder/decode_options.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "study/scenes/scene.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"

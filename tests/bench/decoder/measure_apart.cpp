@@ -7,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "tests/bench/decoder/decode_table.h"
 #include "core/config.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -15,9 +14,10 @@
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
 #include "io/footage_reader.h"
-#include "io/npy_writer.h"
-#include "study/metrics/video_quality.h"
+#include "io/npy_file.h"
 #include "session/decode_setup.h"
+#include "study/metrics/video_quality.h"
+#include "tests/bench/decoder/decode_table.h"
 
 namespace stipple {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/exposure_schedule.h"
 #include "core/flux_video.h"
 #include "decoder/decode_options.h"
-#include "io/npy_volume.h"
+#include "io/npy_file.h"
 
 namespace stipple {
 

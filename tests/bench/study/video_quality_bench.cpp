@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "study/metrics/csf_error.h"
-#include "study/metrics/ssim.h"
+#include "study/metrics/perceptual.h"
 #include "tests/support/noise.h"
 
 namespace stipple {

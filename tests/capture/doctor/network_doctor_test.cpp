@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "capture/doctor/network_facts.h"
-
 namespace stipple {
 namespace {
 

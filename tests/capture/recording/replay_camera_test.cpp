@@ -4,7 +4,7 @@
 
 #include "capture/host_clock.h"
 #include "core/error.h"
-#include "io/npy_writer.h"
+#include "io/npy_file.h"
 #include "tests/capture/pooled_frames.h"
 #include "tests/capture/recording/recordings.h"
 #include "tests/support/temporary_folder.h"

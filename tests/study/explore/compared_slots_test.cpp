@@ -1,4 +1,4 @@
-#include "study/explore/compared_slots.h"
+#include "study/explore/trial.h"
 
 #include <gtest/gtest.h>
 

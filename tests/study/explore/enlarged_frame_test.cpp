@@ -1,4 +1,4 @@
-#include "study/explore/trial_picture.h"
+#include "study/explore/trial.h"
 
 #include <gtest/gtest.h>
 

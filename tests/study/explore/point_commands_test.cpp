@@ -1,4 +1,4 @@
-#include "study/explore/point_commands.h"
+#include "study/explore/results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "study/metrics/csf_error.h"
+#include "study/metrics/perceptual.h"
 
 #include <gtest/gtest.h>
 

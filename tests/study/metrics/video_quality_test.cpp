@@ -8,8 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "study/metrics/pu21.h"
-#include "study/metrics/ssim.h"
+#include "study/metrics/perceptual.h"
 #include "tests/support/noise.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "study/report/plane_code.h"
+#include "study/report/report_page.h"
 
 #include <gtest/gtest.h>
 

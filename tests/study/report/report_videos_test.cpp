@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "study/report/plane_code.h"
+#include "study/report/report_page.h"
 #include "tests/study/report/recorded_clip.h"
 
 namespace stipple {

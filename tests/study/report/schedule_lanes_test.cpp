@@ -1,4 +1,4 @@
-#include "study/report/schedule_lanes.h"
+#include "study/report/schedule_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "study/scenes/noise_texture.h"
+#include "study/scenes/surfaces.h"
 
 #include <gtest/gtest.h>
 

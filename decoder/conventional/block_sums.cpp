@@ -1,0 +1,106 @@
+#include "decoder/conventional/block_sums.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/index.h"
+#include "core/parallel.h"
+
+namespace stipple {
+namespace {
+
+constexpr int kBatch = 32;  ///< references that are filtered before their sums are formed
+
+std::vector<BlockPlace> references(const BlockGrid& grid) {
+    std::vector<BlockPlace> places;
+    const auto count = [&](int side) {
+        return (side - grid.side + grid.step_px - 1) / grid.step_px + 1;
+    };
+    const auto at = [&](int i, int side) { return std::min(i * grid.step_px, side - grid.side); };
+    for (int frame = 0; frame < grid.frames; ++frame)
+        for (int row = 0; row < count(grid.shape.rows); ++row)
+            for (int col = 0; col < count(grid.shape.cols); ++col)
+                places.push_back({frame, at(row, grid.shape.rows), at(col, grid.shape.cols)});
+    return places;
+}
+
+/// 1 in the middle of a side, less towards its ends.
+std::vector<float> window(int side) {
+    std::vector<float> values;
+    values.reserve(index(side));
+    for (int i = 0; i < side; ++i)
+        values.push_back(
+            std::min(0.4F + 0.3F * static_cast<float>(std::min(i, side - 1 - i)), 1.0F));
+    return values;
+}
+
+class Sums {
+  public:
+    explicit Sums(const BlockGrid& grid)
+        : side_(grid.side),
+          window_(window(grid.side)),
+          sum_(grid.frames, grid.shape),
+          weight_(grid.frames, grid.shape) {}
+
+    void add(const FilteredBlocks& blocks) {
+        const float* value = blocks.values.data();
+        for (int plane = 0; plane < sum_.shape().planes; ++plane)
+            for (const BlockPlace& place : blocks.places) {
+                add_block(plane, place, {value, blocks.weights[index(plane)]});
+                value += side_ * side_;
+            }
+    }
+
+    FluxVideo mean() {
+        parallel_for(0, sum_.slots(), [&](int frame) {
+            const auto weight = std::as_const(weight_).frame(frame);
+            const auto value = sum_.frame(frame);
+            for (std::size_t i = 0; i < value.size(); ++i) value[i] /= weight[i];
+        });
+        return std::move(sum_);
+    }
+
+  private:
+    struct Block {
+        const float* values;
+        float weight;
+    };
+
+    void add_block(int plane, const BlockPlace& place, const Block& block) {
+        for (int row = 0; row < side_; ++row) {
+            float* sum = &sum_.plane(place.frame, plane)(place.row + row, place.col);
+            float* weight = &weight_.plane(place.frame, plane)(place.row + row, place.col);
+            const float* value = block.values + row * side_;
+            for (int col = 0; col < side_; ++col) {
+                const float w = block.weight * window_[index(row)] * window_[index(col)];
+                sum[col] += w * value[col];
+                weight[col] += w;
+            }
+        }
+    }
+
+    int side_;
+    std::vector<float> window_;
+    FluxVideo sum_;
+    FluxVideo weight_;
+};
+
+}  // namespace
+
+std::optional<FluxVideo> filter_blocks(
+    const BlockGrid& grid, const std::function<FilteredBlocks(const BlockPlace&)>& filter,
+    const ProgressCallback& progress) {
+    Sums sums(grid);
+    const std::vector<BlockPlace> places = references(grid);
+    std::vector<FilteredBlocks> batch(kBatch);
+    for (std::size_t begin = 0; begin < places.size(); begin += kBatch) {
+        const auto count = static_cast<int>(std::min<std::size_t>(kBatch, places.size() - begin));
+        parallel_for(0, count, [&](int i) { batch[index(i)] = filter(places[begin + index(i)]); });
+        for (int i = 0; i < count; ++i) sums.add(batch[index(i)]);
+        const auto done = static_cast<double>(begin + index(count));
+        if (!progress(done / static_cast<double>(places.size()))) return {};
+    }
+    return sums.mean();
+}
+
+}  // namespace stipple
