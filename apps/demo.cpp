@@ -11,10 +11,10 @@
 #include "apps/output/own_command.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
-#include "study/explore/trial.h"
 #include "io/disk_sync.h"
 #include "io/pending_output.h"
 #include "io/text_file.h"
+#include "study/explore/trial.h"
 #include "study/report/run_report.h"
 
 namespace stipple {

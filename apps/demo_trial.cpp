@@ -5,8 +5,8 @@
 #include "apps/interrupt.h"
 #include "apps/output/progress.h"
 #include "apps/stream_output.h"
-#include "study/explore/trial.h"
 #include "readout/sensor_file.h"
+#include "study/explore/trial.h"
 
 namespace stipple {
 

@@ -19,11 +19,11 @@
 #include "core/memory_limit.h"
 #include "readout/provenance.h"
 #include "readout/timing/stretched_slots.h"
-#include "study/report/json_figures.h"
-#include "study/report/stream_text.h"
 #include "session/rig_folder.h"
 #include "session/stream_calibration.h"
 #include "stream/stream_figures.h"
+#include "study/report/json_figures.h"
+#include "study/report/stream_text.h"
 
 namespace stipple {
 namespace {

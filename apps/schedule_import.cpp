@@ -12,9 +12,9 @@
 #include "io/text_file.h"
 #include "readout/schedules/code_schedule.h"
 #include "readout/schedules/volume_schedule.h"
-#include "study/report/schedule_text.h"
 #include "stream/plain_text.h"
 #include "stream/stream_header.h"
+#include "study/report/schedule_text.h"
 
 namespace stipple {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "study/metrics/video_quality.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/footage.h"
+#include "study/metrics/video_quality.h"
 
 namespace stipple::python {
 namespace {

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "core/error.h"
-#include "study/explore/exploration.h"
-#include "study/explore/results.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/footage.h"
+#include "study/explore/exploration.h"
+#include "study/explore/results.h"
 
 namespace stipple::python {
 namespace {

@@ -9,7 +9,7 @@
 ///     std::cout << meter.quality().psnr_db << " dB\n";
 ///
 /// emva1288::evaluate measures a camera from its images by EMVA 1288 (docs/characterize.md).
+#include "stipple/video.h"
 #include "study/metrics/emva1288/camera_figures.h"
 #include "study/metrics/emva1288/series_evaluation.h"
 #include "study/metrics/video_quality.h"
-#include "stipple/video.h"

@@ -9,5 +9,5 @@
 ///     std::vector<float> light(decoded.shape().sites());
 ///     for (std::int64_t slot = 0; decoded.read(light); ++slot) report.put(video, slot, light);
 ///     std::ofstream("report.html") << report.page();
-#include "study/report/run_report.h"
 #include "stipple/video.h"
+#include "study/report/run_report.h"

@@ -11,5 +11,5 @@
 ///         file.write(light);
 ///     }
 ///     file.finish();
-#include "study/scenes/scene.h"
 #include "stipple/video.h"
+#include "study/scenes/scene.h"

@@ -4,9 +4,9 @@
 
 #include "core/flux_video.h"
 #include "core/geometry.h"
-#include "study/explore/space.h"
 #include "readout/rig.h"
 #include "sensor_model/binning.h"
+#include "study/explore/space.h"
 
 namespace stipple {
 

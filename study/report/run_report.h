@@ -11,9 +11,9 @@
 
 #include "core/flux_video.h"
 #include "core/geometry.h"
+#include "stream/stream_header.h"
 #include "study/metrics/video_quality.h"
 #include "study/report/report_window.h"
-#include "stream/stream_header.h"
 
 namespace stipple {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "study/report/json_figures.h"
 #include "stream/stream_figures.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "calibration/scene_gain.h"
 #include "decoder/decode_options.h"
-#include "study/scenes/scene.h"
 #include "stream/stream_reader.h"
+#include "study/scenes/scene.h"
 #include "tests/pipeline/chip_sites.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/footage_folder.h"

@@ -9,10 +9,10 @@
 #include "core/colour_filter.h"
 #include "core/flux_video.h"
 #include "decoder/reconstruct.h"
-#include "study/metrics/video_quality.h"
 #include "readout/schedules/named_schedule.h"
 #include "sensor_model/sensor_params.h"
 #include "stream/stream_header.h"
+#include "study/metrics/video_quality.h"
 
 namespace stipple {
 

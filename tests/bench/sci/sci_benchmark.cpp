@@ -11,9 +11,9 @@
 
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/common_options.h"
-#include "tests/bench/sci/sci_trial.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "tests/bench/sci/sci_trial.h"
 
 namespace stipple {
 namespace {

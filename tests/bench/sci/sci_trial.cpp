@@ -11,13 +11,13 @@
 #include "core/philox.h"
 #include "decoder/reconstruct.h"
 #include "io/footage_reader.h"
-#include "study/metrics/video_quality.h"
 #include "readout/emulator.h"
 #include "readout/schedules/volume_schedule.h"
-#include "study/scenes/scene.h"
 #include "sensor_model/sensor_config.h"
 #include "stream/stream_reader.h"
 #include "stream/stream_writer.h"
+#include "study/metrics/video_quality.h"
+#include "study/scenes/scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
