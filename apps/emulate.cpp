@@ -81,7 +81,7 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     if (calibration) calibration->write();
     if (waveform) {
         ReadoutCost cost(*setup.timing, setup.schedule.schedule, setup.shape,
-                         recorder.readout_cost()->budget());
+                         recorder.emulator().readout_cost()->budget());
         waveform->write(cost, setup.params.name,
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });

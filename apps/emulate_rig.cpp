@@ -88,8 +88,8 @@ void tell(const EmulateArguments& arguments, const RunOptions& run, JsonFile& js
     for (const RigRecorder& sensor : runs) {
         const StreamRecorder& recorder = sensor.recorder();
         const std::string file = (fs::path(arguments.output) / sensor.sensor().file()).string();
-        say_warning(
-            zero_warning(file, recorder.zero_fraction(), calibration_of(recorder.setup().params)));
+        say_warning(zero_warning(file, recorder.zero_fraction(),
+                                 calibration_of(recorder.emulator().setup().params)));
         run.say(fmt::format("{}: {}", file, emulation_text(recorder, slots_per_second)));
     }
     run.say(totals_text(totals));

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/capture_end.h"
+#include "capture/capture_limits.h"
 #include "capture/frame_light.h"
 #include "capture/frame_rate.h"
 #include "capture/gap_filler.h"

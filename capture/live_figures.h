@@ -23,7 +23,7 @@ void visit_live_figures(const LiveReport& report, const Add& add) {
     const LiveEmulation& live = report.emulation;
     add("frames", live.latencies.count());
     add("frames_hz", live.rate.hz());
-    add("slots_hz", 1e6 / report.recorder.setup().params.slot_us);
+    add("slots_hz", 1e6 / report.recorder.emulator().setup().params.slot_us);
     add("incomplete", live.totals.incomplete);
     add("repeated", live.totals.repeated);
     add("lost", NestedFigures{[&](const auto& inner) { visit_lost_figures(live.totals, inner); }});

@@ -24,9 +24,10 @@ namespace stipple::python {
 
 py::dict figures_of(const StreamRecorder& recorder) {
     py::dict figures = dict_of([&](const auto& add) { visit_emulation_figures(recorder, add); });
-    if (const ReadoutCost* cost = recorder.readout_cost())
-        figures["readout"] = dict_of(
-            [&](const auto& add) { visit_cost_figures(*cost, recorder.light_throughput(), add); });
+    if (const ReadoutCost* cost = recorder.emulator().readout_cost())
+        figures["readout"] = dict_of([&](const auto& add) {
+            visit_cost_figures(*cost, recorder.emulator().light_throughput(), add);
+        });
     return figures;
 }
 

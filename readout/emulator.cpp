@@ -79,6 +79,10 @@ const SamplePacket& Emulator::expose_unread(std::span<const float> frame) {
     return packets_[0];
 }
 
+double Emulator::light_throughput() const {
+    return stipple::light_throughput(setup_.schedule.schedule, filters_, setup_.shape);
+}
+
 double Emulator::light_read() const {
     const ExposureSchedule& schedule = setup_.schedule.schedule;
     const FrameShape& shape = setup_.shape;

@@ -40,12 +40,13 @@ class Emulator {
     /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
     [[nodiscard]] const CalibrationTile& filters() const { return filters_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
+    /// Fraction of the light that is collected in steady slots.
+    [[nodiscard]] double light_throughput() const;
     /// Fraction of the light on the array since slot 0 that the samples hold. Less than the light
     /// throughput by exposures that began before slot 0, exposures under way, and dropped rows. NaN
     /// before slot 0. Precondition: the first slot was 0.
     [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutCost* readout_cost() { return readout_cost_ ? &*readout_cost_ : nullptr; }
     [[nodiscard]] const ReadoutCost* readout_cost() const {
         return readout_cost_ ? &*readout_cost_ : nullptr;
     }

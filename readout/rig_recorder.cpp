@@ -20,7 +20,7 @@ void RigRecorder::expose(std::int64_t slot, std::span<const float> frame) {
 }
 
 void RigRecorder::finish(std::int64_t slots) {
-    if (recorder_.stats().slots == 0)
+    if (recorder_.emulator().stats().slots == 0)
         throw InputError(fmt::format("sensor \"{}\" of the rig", sensor_.name),
                          fmt::format("begins at slot {}, but the footage has {} slots",
                                      sensor_.phase_slots, slots));

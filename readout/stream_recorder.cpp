@@ -2,9 +2,6 @@
 
 #include <utility>
 
-#include "readout/emulator.h"
-#include "readout/light_throughput.h"
-
 namespace stipple {
 
 StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
@@ -42,47 +39,24 @@ bool StreamRecorder::keep() {
     return true;
 }
 
-const SensorSetup& StreamRecorder::setup() const {
-    return emulator_->setup();
-}
-
-const ReadoutStats& StreamRecorder::stats() const {
-    return emulator_->stats();
-}
-
 std::uint64_t StreamRecorder::payload_bits() const {
-    return samples() * static_cast<std::uint64_t>(setup().params.bit_depth);
+    return samples() * static_cast<std::uint64_t>(emulator().setup().params.bit_depth);
 }
 
 double StreamRecorder::compression_ratio() const {
-    const double light_values =
-        static_cast<double>(stats().slots) * static_cast<double>(setup().shape.sites());
+    const double light_values = static_cast<double>(emulator().stats().slots) *
+                                static_cast<double>(emulator().setup().shape.sites());
     return light_values / static_cast<double>(samples());
 }
 
 double StreamRecorder::saturated_fraction() const {
-    return static_cast<double>(stats().saturated_samples) / static_cast<double>(stats().samples);
+    return static_cast<double>(emulator().stats().saturated_samples) /
+           static_cast<double>(emulator().stats().samples);
 }
 
 double StreamRecorder::zero_fraction() const {
-    return static_cast<double>(stats().zero_samples) / static_cast<double>(stats().samples);
-}
-
-double StreamRecorder::light_throughput() const {
-    return stipple::light_throughput(setup().schedule.schedule, emulator_->filters(),
-                                     setup().shape);
-}
-
-double StreamRecorder::light_read() const {
-    return emulator_->light_read();
-}
-
-ReadoutCost* StreamRecorder::readout_cost() {
-    return emulator_->readout_cost();
-}
-
-const ReadoutCost* StreamRecorder::readout_cost() const {
-    return emulator_->readout_cost();
+    return static_cast<double>(emulator().stats().zero_samples) /
+           static_cast<double>(emulator().stats().samples);
 }
 
 }  // namespace stipple

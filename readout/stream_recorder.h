@@ -7,15 +7,10 @@
 #include <string>
 
 #include "io/pending_output.h"
-#include "readout/readout_stats.h"
+#include "readout/emulator.h"
 #include "stream/stream_writer.h"
 
 namespace stipple {
-
-class Emulator;
-class ReadoutCost;
-struct SamplePacket;
-struct SensorSetup;
 
 struct StreamRecorderOptions {
     bool force = false;           ///< replace the file if it exists
@@ -45,8 +40,8 @@ class StreamRecorder {
     /// in giving the file its name. \throws DeviceError.
     bool keep();
 
-    [[nodiscard]] const SensorSetup& setup() const;
-    [[nodiscard]] const ReadoutStats& stats() const;
+    /// The sensor, for its figures.
+    [[nodiscard]] const Emulator& emulator() const { return *emulator_; }
     /// Samples in the stream.
     [[nodiscard]] std::uint64_t samples() const { return samples_; }
     [[nodiscard]] std::uint64_t payload_bits() const;
@@ -57,13 +52,6 @@ class StreamRecorder {
     [[nodiscard]] double saturated_fraction() const;
     /// The same of the samples that are DN 0.
     [[nodiscard]] double zero_fraction() const;
-    /// Fraction of the light that is collected in steady slots.
-    [[nodiscard]] double light_throughput() const;
-    /// Fraction of the light since slot 0 that the samples hold, as in Emulator.
-    [[nodiscard]] double light_read() const;
-    /// Of the readout; null if the sensor has no timing.
-    [[nodiscard]] ReadoutCost* readout_cost();
-    [[nodiscard]] const ReadoutCost* readout_cost() const;
 
   private:
     PendingOutput output_;

@@ -17,14 +17,14 @@ nlohmann::ordered_json emulation_json(const StreamRecorder& recorder,
         visit_emulation_figures(recorder, add);
         visit_speed_figures(recorder, slots_per_second, add);
     });
-    if (const ReadoutCost* cost = recorder.readout_cost())
-        json["readout"] = readout_json(*cost, recorder.light_throughput());
+    if (const ReadoutCost* cost = recorder.emulator().readout_cost())
+        json["readout"] = readout_json(*cost, recorder.emulator().light_throughput());
     return json;
 }
 
 std::string emulation_text(const StreamRecorder& recorder, std::optional<double> slots_per_second) {
-    const SensorSetup& setup = recorder.setup();
-    const ReadoutStats& stats = recorder.stats();
+    const SensorSetup& setup = recorder.emulator().setup();
+    const ReadoutStats& stats = recorder.emulator().stats();
     const std::string per_sample =
         fmt::format(", 1 for {:.2f} values of light in this clip", recorder.compression_ratio());
     const std::string clipped =
@@ -37,9 +37,10 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
         counted(recorder.samples(), "sample"), setup.params.bit_depth,
         any ? per_sample : ": no exposure ended within the footage",
-        100 * recorder.light_throughput(), 100 * recorder.light_read(), any ? clipped : "",
+        100 * recorder.emulator().light_throughput(), 100 * recorder.emulator().light_read(),
+        any ? clipped : "",
         slots_per_second ? fmt::format(", {} slots/s", rounded(*slots_per_second)) : "");
-    if (const ReadoutCost* cost = recorder.readout_cost())
+    if (const ReadoutCost* cost = recorder.emulator().readout_cost())
         text.append(1, '\n').append(readout_text(*cost));
     return text;
 }

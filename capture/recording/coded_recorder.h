@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "capture/camera.h"
-#include "capture/capture_end.h"
+#include "capture/capture_limits.h"
 
 namespace stipple {
 

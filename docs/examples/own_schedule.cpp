@@ -32,8 +32,8 @@ int main(int argc, char** argv) try {
         recorder.expose(frame);
     }
     recorder.finish();
-    std::cout << recorder.samples() << " samples, light throughput " << recorder.light_throughput()
-              << "\n";
+    std::cout << recorder.samples() << " samples, light throughput "
+              << recorder.emulator().light_throughput() << "\n";
 } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

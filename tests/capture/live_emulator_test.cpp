@@ -147,7 +147,7 @@ TEST_F(LiveEmulatorTest, SlotsWithoutProportionAreLeftOutAndTold) {
         emulate({10, 20'000}, {.tell = [&](const LeftOut& left_out) { told.push_back(left_out); }});
     EXPECT_EQ(result.held_slots, 1032U);
     EXPECT_EQ(result.unheld_slots, 19'989U - 1032U);
-    EXPECT_EQ(recorder_.stats().slots, 1034);
+    EXPECT_EQ(recorder_.emulator().stats().slots, 1034);
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0].missing, 19'989U);
     EXPECT_EQ(told[0].held, 1032U);

@@ -33,7 +33,7 @@ TEST(RigRecorderTest, SeesTheMovedLightFromItsFirstSlotOn) {
     for (int slot = 0; slot < 5; ++slot)  // the spot moves by a column a slot
         recorder.expose(slot, spot(1, slot));
     recorder.finish(5);
-    EXPECT_EQ(recorder.recorder().stats().slots, 3);
+    EXPECT_EQ(recorder.recorder().emulator().stats().slots, 3);
 
     StreamReader reader(folder / "a.stipple", ReadPolicy::kStrict);
     SamplePacket packet;

@@ -65,9 +65,9 @@ TEST(StreamRecorderTest, TheStreamHoldsWhatTheChipRead) {
     EXPECT_EQ(recorder.samples(), sensor.stats().samples);
     // All exposures of one slot to eight, without gaps: the samples hold all light but that of
     // exposures that began before slot 0 or go on after the last.
-    EXPECT_DOUBLE_EQ(recorder.light_throughput(), 1);
-    EXPECT_LT(recorder.light_read(), 1);
-    EXPECT_GT(recorder.light_read(), 1 - 2.0 * 8 / kSlots);
+    EXPECT_DOUBLE_EQ(recorder.emulator().light_throughput(), 1);
+    EXPECT_LT(recorder.emulator().light_read(), 1);
+    EXPECT_GT(recorder.emulator().light_read(), 1 - 2.0 * 8 / kSlots);
 }
 
 TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfTheirOwn) {
@@ -93,8 +93,8 @@ TEST(StreamRecorderTest, RowsThatTheReadoutHasNoTimeForAreDroppedInAPacketOfThei
     EXPECT_EQ(rows, kSlots * kShape.rows);
     EXPECT_GT(dropped_rows, 0);
     EXPECT_LT(dropped_rows, rows);
-    EXPECT_EQ(recorder.samples() + recorder.readout_cost()->totals().dropped_samples,
-              recorder.stats().samples);
+    EXPECT_EQ(recorder.samples() + recorder.emulator().readout_cost()->totals().dropped_samples,
+              recorder.emulator().stats().samples);
     EXPECT_EQ(read(folder / "a.stipple"), packets);
 }
 
@@ -133,11 +133,12 @@ void expect_others_as_they_are(const SensorChoice& choice, FrameShape shape) {
     }
     EXPECT_EQ(read(folder / "part.stipple"), packets);
     EXPECT_EQ(part.samples(), samples);
-    EXPECT_NEAR(whole.light_read() - part.light_read(),
+    EXPECT_NEAR(whole.emulator().light_read() - part.emulator().light_read(),
                 unread_light / (kSlots * static_cast<double>(kShape.pixels())), 1e-12);
-    if (part.readout_cost() == nullptr) return;
-    EXPECT_EQ(part.readout_cost()->slots(), kSlots);
-    EXPECT_EQ(part.readout_cost()->totals().samples, whole.readout_cost()->totals().samples);
+    if (part.emulator().readout_cost() == nullptr) return;
+    EXPECT_EQ(part.emulator().readout_cost()->slots(), kSlots);
+    EXPECT_EQ(part.emulator().readout_cost()->totals().samples,
+              whole.emulator().readout_cost()->totals().samples);
 }
 
 TEST(StreamRecorderTest, SlotsThatAreNotReadLeaveTheOthersAsTheyAre) {
