@@ -10,6 +10,7 @@
 namespace stipple {
 
 class Config;
+struct BlockTask;
 
 /// Options of the method `bennett2005`; docs/decoder_conventional.md has the formulas.
 struct Bennett2005Options {
@@ -33,8 +34,6 @@ void read_options(Config& config, Bennett2005Options& options);
 [[nodiscard]] std::optional<FluxVideo> accumulate_samples(
     const DeliveredFrames& frames, const Bennett2005Options& options,
     const ProgressCallback& progress = [](double) { return true; });
-
-struct BlockTask;
 
 /// HDR video of frames whose exposure times alternate (Kang, Uyttendaele, Winder, Szeliski,
 /// SIGGRAPH 2003): each frame is merged with the frames before and after it, moved along motion to
