@@ -8,10 +8,10 @@
 #include "apps/output/column_width.h"
 #include "apps/output/json_file.h"
 #include "apps/subcommands.h"
-#include "capture/camera_feature.h"
+#include "capture/camera_search.h"
 #include "core/text.h"
-#include "study/report/json_figures.h"
 #include "stream/plain_text.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {

@@ -20,7 +20,7 @@
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/capture_end.h"
-#include "capture/live_origin.h"
+#include "capture/live_emulator.h"
 #include "capture/open_camera.h"
 #include "capture/sensor_warnings.h"
 #include "io/disk_sync.h"

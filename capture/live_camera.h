@@ -13,7 +13,6 @@
 
 #include "capture/capture_session.h"
 #include "capture/frame_queue.h"
-#include "capture/waiting_frames.h"
 
 namespace stipple {
 

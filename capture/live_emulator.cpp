@@ -4,18 +4,30 @@
 
 #include <algorithm>
 #include <chrono>
+#include <random>
 #include <utility>
 
-#include "capture/host_clock.h"
+#include "capture/camera_kind.h"
+#include "capture/frame_record.h"
+#include "capture/recording/recording_reader.h"
+#include "capture/recording/replay_camera.h"
 #include "core/fault_list.h"
 #include "core/gap_limit.h"
 #include "readout/emulator.h"
+#include "readout/footage_origin.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{50};
+
+/// A random number: packets of two recordings with the same settings are told apart by it
+/// (docs/stream_format.md, "Packet").
+std::string new_recording_name() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}", random(), random());
+}
 
 }  // namespace
 
@@ -118,6 +130,20 @@ void LiveEmulator::take(const CapturedFrame& frame) {
     ++result_.late_slots;
     if (result_.late.size() < kMaxListedFaults)
         result_.late.push_back({recorder_.stats().slots - 1, arrival_ns, latency_us});
+}
+
+FootageOrigin live_origin(const std::string& address, const LiveCamera& camera,
+                          double black_level_dn, const std::function<void()>& check) {
+    FootageOrigin origin{.name = camera.description().model};
+    if (camera_kind(address).is_replay) {
+        const std::string file(replayed_file(address));
+        origin = origin_of(file, FootageOptions{}, check);
+        if (!is_recording(file)) origin.pixel_format = camera.layout().format->name;
+    } else {
+        origin.recording = new_recording_name();
+    }
+    origin.black_level_dn = black_level_dn;
+    return origin;
 }
 
 }  // namespace stipple

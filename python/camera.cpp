@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "capture/camera_kind.h"
+#include "capture/capture_figures.h"
 #include "capture/live_camera.h"
 #include "capture/open_camera.h"
-#include "capture/session_figures.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "python/bindings.h"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "capture/capture_end.h"
-#include "capture/live_figures.h"
-#include "capture/live_origin.h"
+#include "capture/capture_figures.h"
+#include "capture/live_emulator.h"
 #include "capture/sensor_warnings.h"
 #include "core/error.h"
 #include "io/disk_sync.h"

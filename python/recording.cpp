@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "capture/frame_light.h"
 #include "capture/frame_record.h"
-#include "capture/frame_unpack.h"
 #include "capture/recording/recording_reader.h"
 #include "python/bindings.h"
 #include "python/errors.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "apps/standard_error.h"
-#include "capture/session_figures.h"
+#include "capture/capture_figures.h"
 #include "core/error.h"
 #include "study/report/json_figures.h"
 

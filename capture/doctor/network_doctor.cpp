@@ -1,8 +1,7 @@
-#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/doctor_findings.h"
 
 #include <fmt/format.h>
 
-#include "capture/doctor/network_facts.h"
 #include "capture/network.h"
 
 namespace stipple {

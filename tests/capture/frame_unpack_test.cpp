@@ -1,4 +1,4 @@
-#include "capture/frame_unpack.h"
+#include "capture/frame_light.h"
 
 #include <gtest/gtest.h>
 

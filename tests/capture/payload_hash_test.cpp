@@ -1,4 +1,4 @@
-#include "capture/payload_hash.h"
+#include "capture/frame_payload.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/repeat_filter.h"
+#include "capture/frame_ids.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "capture/frame_unpack.h"
-#include "capture/payload_hash.h"
+#include "capture/frame_light.h"
+#include "capture/frame_payload.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

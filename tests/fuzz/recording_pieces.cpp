@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "capture/payload_hash.h"
+#include "capture/frame_payload.h"
 #include "capture/recording/recording_format.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "capture/frame_light.h"
-#include "capture/frame_unpack.h"
 #include "capture/recording/recording_reader.h"
 #include "capture/recording/recording_writer.h"
 

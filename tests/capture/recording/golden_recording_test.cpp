@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "capture/frame_unpack.h"
+#include "capture/frame_light.h"
 #include "core/error.h"
 #include "tests/capture/recording/golden_recordings.h"
 #include "tests/capture/recording/recordings.h"
