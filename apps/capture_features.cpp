@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
+#include "apps/output/json_file.h"
 #include "apps/subcommands.h"
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 #include "core/text.h"
 #include "stream/plain_text.h"
 #include "study/report/json_figures.h"

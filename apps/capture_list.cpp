@@ -5,7 +5,7 @@
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
 #include "apps/subcommands.h"
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 
 namespace stipple {
 namespace {

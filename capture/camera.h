@@ -1,14 +1,17 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "capture/frame_pool.h"
 #include "capture/frame_record.h"
 #include "core/error.h"
 
@@ -62,6 +65,30 @@ struct StreamStart {
     std::int64_t monotonic_ns = 0;    ///< CLOCK_MONOTONIC, just before the camera was told to begin
 };
 
+/// Memory for the payloads of a number of frames. It is allocated in advance, and all of its pages
+/// are written to, so that the resident memory of a program does not depend on how many frames
+/// wait in its queues. Any thread may use it.
+class FramePool {
+  public:
+    /// Makes memory for `frames` payloads of `bytes` bytes each. Called once.
+    void reserve(std::size_t frames, std::size_t bytes);
+
+    /// An empty payload with memory of the pool; if no more is left, without memory.
+    [[nodiscard]] std::vector<std::uint8_t> take();
+    /// Keeps the memory of a payload for a later one, but no more payloads than were reserved.
+    void give_back(std::vector<std::uint8_t>&& payload);
+
+    /// Number of payloads without memory so far.
+    [[nodiscard]] std::uint64_t misses() const;
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<std::vector<std::uint8_t>> free_;
+    std::size_t frames_ = 0;
+    std::size_t bytes_ = 0;  ///< of a payload
+    std::uint64_t misses_ = 0;
+};
+
 /// A source of frames: GenICam through Aravis, V4L2, or a replayed recording. The function that
 /// opens it applies the settings; then it is started once. Used from one thread.
 class Camera {
@@ -105,6 +132,13 @@ class Camera {
 /// the same for all cameras.
 using CameraSettings = std::vector<std::pair<std::string, std::string>>;
 
+/// The text of a camera setting as an integer, decimal or 0x...; empty for any other text, or out
+/// of range.
+[[nodiscard]] std::optional<std::int64_t> integer_setting(std::string_view text);
+
+/// The same as a finite number; empty for any other text.
+[[nodiscard]] std::optional<double> number_setting(std::string_view text);
+
 /// Buffers for frames on the host.
 struct CameraBuffers {
     static constexpr int kMinFrames = 2;
@@ -113,5 +147,18 @@ struct CameraBuffers {
     int frames = 32;
     int socket_frames = 4;  ///< GigE Vision: frames in the receive buffer of the socket
 };
+
+/// The shortest frame period that the settings of a camera allow; 0 if they do not tell.
+[[nodiscard]] std::chrono::nanoseconds nominal_period(const CameraDescription& camera);
+
+/// Whether triggers decide when a frame comes.
+[[nodiscard]] bool waits_for_triggers(const CameraDescription& camera);
+
+/// Number of frames that a camera has sent before `first`, the first one that arrived. Some cameras
+/// begin with another id, although the standard says which. So the difference of the ids counts
+/// only if the camera had the time for so many frames since its start, by its nominal period (10 %
+/// tolerance). It is 0 if the period is not known, and if triggers decide.
+[[nodiscard]] std::uint64_t frames_before_first(const CameraDescription& camera,
+                                                const StreamStart& start, const FrameRecord& first);
 
 }  // namespace stipple

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include "capture/aravis/aravis_camera.h"
-#include "capture/doctor/network_doctor.h"
-#include "capture/doctor/usb_findings.h"
+#include "capture/doctor/doctor_findings.h"
 #include "capture/recording/replay_camera.h"
 #include "capture/v4l2/v4l2_camera.h"
-#include "capture/v4l2/v4l2_listing.h"
 #include "core/error.h"
 
 namespace stipple {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "capture/camera.h"
-#include "capture/camera_listing.h"
-#include "capture/doctor/doctor_finding.h"
+#include "capture/camera_search.h"
+#include "capture/doctor/doctor_findings.h"
 
 namespace stipple {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "capture/camera.h"
 #include "capture/camera_reopener.h"
-#include "capture/camera_timing.h"
 #include "capture/frame_ids.h"
 #include "capture/loss_counter.h"
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -37,11 +38,26 @@ struct SessionOptions {
     bool reconnect = true;
 };
 
+/// How long to capture; 0: until stopped.
+struct CaptureLimits {
+    std::uint64_t frames = 0;
+    double seconds = 0;
+
+    /// True if a limit is reached.
+    [[nodiscard]] bool reached(std::uint64_t taken_frames, double elapsed_s) const {
+        return (frames > 0 && taken_frames >= frames) || (seconds > 0 && elapsed_s >= seconds);
+    }
+    /// The frames that there will be, if that is known.
+    [[nodiscard]] std::optional<std::int64_t> total() const {
+        return frames == 0 ? std::nullopt : std::optional(static_cast<std::int64_t>(frames));
+    }
+};
+
 /// Counts of the frames of a session.
 struct SessionTotals {
-    std::uint64_t frames = 0;                ///< delivered
-    std::uint64_t incomplete = 0;            ///< of these with a status other than kComplete
-    LostFrames lost{};                       ///< missing, by GapCause
+    std::uint64_t frames = 0;      ///< delivered
+    std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
+    LostFrames lost{};  ///< missing, by GapCause
     std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
     std::uint64_t outages = 0;               ///< number of times that the camera was lost
     std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out
@@ -111,26 +127,5 @@ class CaptureSession {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-// Figures of a capture session under the names of docs/outputs.md (`capture record`, `capture
-// live`). The functions `visit_...` call `add(name, number)` for each.
-
-/// The key `lost`: missing frames by their cause.
-template <typename Add>
-void visit_lost_figures(const SessionTotals& totals, const Add& add) {
-    for (std::size_t i = 1; i < kGapCauses.size(); ++i)
-        add(kGapCauses[i].name.data(), totals.lost[i]);
-}
-
-/// The key `transport`.
-template <typename Add>
-void visit_transport_figures(const TransportCounts& counts, const Add& add) {
-    add("underruns", counts.underruns);
-    add("packets_resent", counts.packets_resent);
-    add("packets_missing", counts.packets_missing);
-    add("socket_drops", counts.socket_drops);
-    add("link_faults", counts.link_faults);
-    add("size_mismatches", counts.size_mismatches);
-}
 
 }  // namespace stipple

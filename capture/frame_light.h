@@ -2,12 +2,19 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "capture/frame_record.h"
 #include "core/geometry.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
+
+/// The samples of a frame by row, column and plane; `samples` is resized. What `payload` is too
+/// short for is 0.
+void unpack_frame(const FrameLayout& layout, std::span<const std::uint8_t> payload,
+                  std::vector<std::uint16_t>& samples);
 
 /// Turns captured frames into frames of light: light = max(0, DN - black level) / (full scale -
 /// black level), full scale 2^significant_bits - 1. Frames of a colour filter array stay mosaics of
@@ -31,9 +38,9 @@ class FrameLight {
     std::vector<std::uint16_t> samples_;
 };
 
-/// The samples of a frame by row, column and plane; `samples` is resized. What `payload` is too
-/// short for is 0.
-void unpack_frame(const FrameLayout& layout, std::span<const std::uint8_t> payload,
-                  std::vector<std::uint16_t>& samples);
+/// Fraction of the light of a frame that a pixel format clips, as a warning; empty if it clips
+/// none. Light 1.0 is its full scale. `name` is that of the footage.
+[[nodiscard]] std::string clipping_text(const std::string& name, std::span<const float> light,
+                                        const PixelFormat& format);
 
 }  // namespace stipple

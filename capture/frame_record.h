@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,7 +22,10 @@ struct FrameLayout {
     std::size_t stride_bytes = 0;  ///< from row to row; at least format->row_bytes(width)
 
     /// Bytes that a complete frame has: stride_bytes * (height - 1) + the last row.
-    [[nodiscard]] std::size_t payload_bytes() const;
+    [[nodiscard]] std::size_t payload_bytes() const {
+        if (format == nullptr || height <= 0) return 0;
+        return stride_bytes * (static_cast<std::size_t>(height) - 1) + format->row_bytes(width);
+    }
     friend bool operator==(const FrameLayout&, const FrameLayout&) = default;
 };
 
@@ -84,14 +87,21 @@ struct FrameRecord {
     std::uint64_t payload_hash = 0;  ///< XXH3, 64 bit, of the stored payload
 };
 
+/// CLOCK_MONOTONIC: nanoseconds since some start of the host.
+[[nodiscard]] inline std::int64_t monotonic_ns() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// CLOCK_REALTIME: nanoseconds since 1970, UTC; may be set back.
+[[nodiscard]] inline std::int64_t realtime_ns() {
+    return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 /// A frame in its wire format.
 struct CapturedFrame {
     FrameRecord record;
     std::vector<std::uint8_t> payload;  ///< bytes of the image alone, no chunks; holes are zero
     std::vector<std::pair<std::size_t, std::size_t>> holes;  ///< [begin, end) of payload, if known
 };
-
-/// XXH3, 64 bit, seed 0: the hash of a frame's payload, and of a camera's XML description.
-[[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
 
 }  // namespace stipple

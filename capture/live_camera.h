@@ -13,7 +13,6 @@
 
 #include "capture/capture_session.h"
 #include "capture/frame_queue.h"
-#include "readout/provenance.h"
 
 namespace stipple {
 
@@ -78,10 +77,5 @@ class LiveCamera {
     std::exception_ptr failure_;     ///< the same
     std::jthread thread_;            ///< last: it uses the other members
 };
-
-/// What the stream of a camera says of where its light comes from: no address, no time. A replay
-/// has the origin of its file. `check` as in origin_of. \throws InputError as origin_of.
-[[nodiscard]] FootageOrigin live_origin(const std::string& address, const LiveCamera& camera,
-                                        double black_level_dn, const std::function<void()>& check);
 
 }  // namespace stipple

@@ -4,18 +4,30 @@
 
 #include <algorithm>
 #include <chrono>
+#include <random>
 #include <utility>
 
-#include "capture/host_clock.h"
+#include "capture/camera_kind.h"
+#include "capture/frame_record.h"
+#include "capture/recording/recording_reader.h"
+#include "capture/recording/replay_camera.h"
 #include "core/fault_list.h"
 #include "core/gap_limit.h"
 #include "readout/emulator.h"
+#include "readout/footage_origin.h"
 #include "readout/sensor_file.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{50};
+
+/// A random number: packets of two recordings with the same settings are told apart by it
+/// (docs/stream_format.md, "Packet").
+std::string new_recording_name() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}", random(), random());
+}
 
 }  // namespace
 
@@ -55,8 +67,7 @@ LiveEmulation LiveEmulator::run(const Observer& progress) {
     }
     if (const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
         passed_s > 0)
-        result_.slots_per_second =
-            static_cast<double>(recorder_.emulator().stats().slots - 1) / passed_s;
+        result_.slots_per_second = static_cast<double>(recorder_.emulator().stats().slots - 1) / passed_s;
     return std::move(result_);
 }
 
@@ -72,8 +83,7 @@ std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
     const auto max_held = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
     const std::uint64_t held = std::min(lost, max_held - std::min(max_held, result_.held_slots));
     if (held < lost && result_.unheld_slots == 0 && options_.tell)
-        options_.tell(
-            {lost, held, recorder_.emulator().stats().slots + static_cast<std::int64_t>(held)});
+        options_.tell({lost, held, recorder_.emulator().stats().slots + static_cast<std::int64_t>(held)});
     result_.unheld_slots += lost - held;
     return held;
 }
@@ -116,11 +126,24 @@ void LiveEmulator::take(const CapturedFrame& frame) {
     if (result_.latencies.count() == 0) first_done_ns_ = last_done_ns_;
     const auto latency_us = static_cast<double>(last_done_ns_ - arrival_ns) * 1e-3;
     result_.latencies.add(latency_us);
-    if (latency_us <= options_.late_after_slots * recorder_.emulator().setup().params.slot_us)
-        return;
+    if (latency_us <= options_.late_after_slots * recorder_.emulator().setup().params.slot_us) return;
     ++result_.late_slots;
     if (result_.late.size() < kMaxListedFaults)
         result_.late.push_back({recorder_.emulator().stats().slots - 1, arrival_ns, latency_us});
+}
+
+FootageOrigin live_origin(const std::string& address, const LiveCamera& camera,
+                          double black_level_dn, const std::function<void()>& check) {
+    FootageOrigin origin{.name = camera.description().model};
+    if (camera_kind(address).is_replay) {
+        const std::string file(replayed_file(address));
+        origin = origin_of(file, FootageOptions{}, check);
+        if (!is_recording(file)) origin.pixel_format = camera.layout().format->name;
+    } else {
+        origin.recording = new_recording_name();
+    }
+    origin.black_level_dn = black_level_dn;
+    return origin;
 }
 
 }  // namespace stipple

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "capture/capture_limits.h"
+#include "capture/capture_session.h"
 #include "capture/frame_light.h"
-#include "capture/frame_rate.h"
-#include "capture/gap_filler.h"
+#include "capture/frame_sequence.h"
 #include "capture/live_camera.h"
 #include "core/duration_histogram.h"
+#include "readout/provenance.h"
 #include "readout/stream_recorder.h"
 
 namespace stipple {
@@ -93,5 +93,10 @@ class LiveEmulator {
     std::int64_t first_done_ns_ = 0;  ///< when the first slot was in the stream
     std::int64_t last_done_ns_ = 0;
 };
+
+/// What the stream of a camera says of where its light comes from: no address, no time. A replay
+/// has the origin of its file. `check` as in origin_of. \throws InputError as origin_of.
+[[nodiscard]] FootageOrigin live_origin(const std::string& address, const LiveCamera& camera,
+                                        double black_level_dn, const std::function<void()>& check);
 
 }  // namespace stipple

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "capture/frame_rate.h"
+#include "capture/frame_sequence.h"
 #include "core/message.h"
 #include "io/image.h"
 #include "sensor_model/sensor_params.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "capture/camera_kind.h"
-#include "capture/capture_session.h"
+#include "capture/capture_figures.h"
 #include "capture/live_camera.h"
 #include "capture/open_camera.h"
 #include "core/config.h"

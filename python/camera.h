@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "capture/camera.h"
-#include "capture/capture_limits.h"
 #include "capture/capture_session.h"
 #include "capture/recording/replay_camera.h"
 #include "python/errors.h"

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <vector>
 
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 #include "python/bindings.h"
 
 namespace stipple::python {

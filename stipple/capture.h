@@ -7,7 +7,7 @@
 ///
 /// CameraRecorder records a camera, CaptureSession gives its frames one by one, RecordingReader
 /// reads a recording, and LiveEmulator sends a camera's frames through an emulated sensor.
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 #include "capture/capture_session.h"
 #include "capture/live_emulator.h"
 #include "capture/open_camera.h"

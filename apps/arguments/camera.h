@@ -5,7 +5,6 @@
 
 #include "apps/arguments/command_line.h"
 #include "capture/camera.h"
-#include "capture/capture_limits.h"
 #include "capture/capture_session.h"
 
 namespace stipple {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "apps/standard_error.h"
-#include "capture/capture_session.h"
+#include "capture/capture_figures.h"
 #include "core/error.h"
 #include "study/report/json_figures.h"
 

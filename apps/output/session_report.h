@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "capture/capture_figures.h"
 #include "capture/capture_session.h"
-#include "capture/live_figures.h"
 
 namespace stipple {
 

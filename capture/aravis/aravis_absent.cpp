@@ -1,5 +1,5 @@
 #include "capture/aravis/aravis_camera.h"
-#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/doctor_findings.h"
 #include "core/error.h"
 
 namespace stipple {

@@ -3,11 +3,10 @@
 #include <arv.h>
 #include <fmt/format.h>
 
+#include "capture/aravis/aravis_call.h"
 #include "capture/aravis/aravis_device.h"
 #include "capture/aravis/aravis_stream.h"
-#include "capture/aravis/glib_error.h"
-#include "capture/aravis/limited_time.h"
-#include "capture/frame_record.h"
+#include "capture/frame_payload.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/parsed_number.h"

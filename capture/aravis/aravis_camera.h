@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "capture/camera.h"
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 
 namespace stipple {
 

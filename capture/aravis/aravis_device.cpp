@@ -11,9 +11,9 @@
 #include <set>
 #include <span>
 
+#include "capture/aravis/aravis_call.h"
 #include "capture/aravis/genicam_description.h"
-#include "capture/aravis/glib_error.h"
-#include "capture/doctor/usb_findings.h"
+#include "capture/doctor/doctor_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
 #include "core/parsed_number.h"

@@ -3,10 +3,9 @@
 
 #include <limits>
 
+#include "capture/aravis/aravis_call.h"
 #include "capture/aravis/aravis_camera.h"
 #include "capture/aravis/aravis_device.h"
-#include "capture/aravis/glib_error.h"
-#include "capture/aravis/limited_time.h"
 
 namespace stipple {
 namespace {

@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cstring>
 
+#include "capture/aravis/aravis_call.h"
 #include "capture/aravis/gige_link.h"
-#include "capture/aravis/glib_error.h"
-#include "capture/frame_holes.h"
-#include "capture/host_clock.h"
+#include "capture/frame_payload.h"
+#include "capture/frame_record.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "capture/aravis/glib_error.h"
-#include "capture/doctor/network_doctor.h"
+#include "capture/aravis/aravis_call.h"
+#include "capture/network.h"
 #include "capture/serve/big_endian.h"
 
 namespace stipple {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "capture/frame_holes.h"
+#include "capture/frame_payload.h"
 #include "stream/little_endian.h"
 
 namespace stipple {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "capture/aravis/aravis_call.h"
 #include "capture/aravis/aravis_device.h"
-#include "capture/aravis/glib_error.h"
-#include "capture/aravis/limited_time.h"
-#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/doctor_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
 #include "io/pixel_format.h"

@@ -1,4 +1,4 @@
-#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/doctor_findings.h"
 
 #include <fmt/format.h>
 

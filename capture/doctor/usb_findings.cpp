@@ -1,4 +1,4 @@
-#include "capture/doctor/usb_findings.h"
+#include "capture/doctor/doctor_findings.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-#include "capture/setting_value.h"
+#include "capture/camera.h"
 
 namespace stipple {
 namespace {

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "capture/camera_timing.h"
+#include "capture/camera.h"
 #include "capture/frame_queue.h"
-#include "capture/frame_rate.h"
-#include "capture/host_clock.h"
-#include "capture/recording/recording_queue.h"
+#include "capture/frame_record.h"
+#include "capture/frame_sequence.h"
 #include "capture/recording/recording_writer.h"
 #include "core/version.h"
 #include "io/pending_output.h"

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "capture/capture_limits.h"
 #include "capture/capture_session.h"
 #include "capture/recording/recording_format.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "capture/camera.h"
 #include "capture/serve/coded_payload.h"
-#include "capture/setting_value.h"
 #include "core/error.h"
 #include "core/gap_limit.h"
 #include "io/pending_output.h"

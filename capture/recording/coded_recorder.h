@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "capture/camera.h"
-#include "capture/capture_limits.h"
+#include "capture/capture_session.h"
 
 namespace stipple {
 

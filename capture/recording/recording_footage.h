@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "capture/frame_light.h"
-#include "capture/frame_rate.h"
-#include "capture/gap_filler.h"
+#include "capture/frame_sequence.h"
 #include "capture/recording/recording_reader.h"
 #include "core/fault_list.h"
 #include "io/footage_reader.h"

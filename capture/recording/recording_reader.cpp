@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "capture/frame_record.h"
+#include "capture/frame_payload.h"
 #include "core/error.h"
 #include "stream/buffered_reader.h"
 #include "stream/crc32c.h"

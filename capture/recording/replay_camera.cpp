@@ -7,10 +7,10 @@
 #include <thread>
 #include <utility>
 
-#include "capture/gap_filler.h"
-#include "capture/host_clock.h"
+#include "capture/camera.h"
+#include "capture/frame_record.h"
+#include "capture/frame_sequence.h"
 #include "capture/recording/replay_source.h"
-#include "capture/setting_value.h"
 #include "core/error.h"
 
 namespace stipple {

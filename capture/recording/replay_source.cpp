@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "capture/clipping.h"
+#include "capture/frame_light.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "stream/little_endian.h"

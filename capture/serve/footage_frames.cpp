@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "capture/clipping.h"
+#include "capture/frame_light.h"
 #include "core/error.h"
 #include "sensor_model/colour_mosaic.h"
 #include "stream/bit_packing.h"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "capture/serve/gige_registers.h"
-#include "capture/serve/gige_templates.h"
 
 namespace stipple {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "capture/frame_rate.h"
+#include "capture/frame_sequence.h"
 #include "core/error.h"
 #include "core/text.h"
 

@@ -1,6 +1,5 @@
 // Stands in for the V4L2 sources where the build leaves them out.
 #include "capture/v4l2/v4l2_camera.h"
-#include "capture/v4l2/v4l2_listing.h"
 #include "core/error.h"
 
 namespace stipple {

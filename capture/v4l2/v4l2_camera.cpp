@@ -9,11 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "capture/host_clock.h"
+#include "capture/frame_record.h"
 #include "capture/v4l2/v4l2_buffers.h"
-#include "capture/v4l2/v4l2_controls.h"
 #include "capture/v4l2/v4l2_device.h"
-#include "capture/v4l2/v4l2_format.h"
+#include "capture/v4l2/v4l2_settings.h"
 #include "core/error.h"
 
 namespace stipple {

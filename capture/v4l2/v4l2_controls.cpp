@@ -1,4 +1,4 @@
-#include "capture/v4l2/v4l2_controls.h"
+#include "capture/v4l2/v4l2_settings.h"
 
 #include <fmt/format.h>
 #include <linux/videodev2.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "capture/setting_value.h"
+#include "capture/camera.h"
 #include "core/error.h"
 #include "core/text.h"
 

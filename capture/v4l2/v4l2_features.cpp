@@ -1,8 +1,8 @@
 #include <linux/videodev2.h>
 
-#include "capture/v4l2/v4l2_controls.h"
+#include "capture/v4l2/v4l2_camera.h"
 #include "capture/v4l2/v4l2_device.h"
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/v4l2/v4l2_settings.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/v4l2/v4l2_camera.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "capture/v4l2/v4l2_device.h"
-#include "capture/v4l2/v4l2_format.h"
+#include "capture/v4l2/v4l2_settings.h"
 #include "core/error.h"
 #include "core/text.h"
 

@@ -1,4 +1,4 @@
-#include "capture/camera_timing.h"
+#include "capture/camera.h"
 
 #include <gtest/gtest.h>
 

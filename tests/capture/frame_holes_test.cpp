@@ -1,4 +1,4 @@
-#include "capture/frame_holes.h"
+#include "capture/frame_payload.h"
 
 #include <gtest/gtest.h>
 

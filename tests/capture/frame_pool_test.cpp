@@ -1,4 +1,4 @@
-#include "capture/frame_pool.h"
+#include "capture/camera.h"
 
 #include <gtest/gtest.h>
 

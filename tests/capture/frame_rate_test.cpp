@@ -1,4 +1,4 @@
-#include "capture/frame_rate.h"
+#include "capture/frame_sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/gap_filler.h"
+#include "capture/frame_sequence.h"
 
 #include <gtest/gtest.h>
 

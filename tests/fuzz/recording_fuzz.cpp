@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "capture/frame_light.h"
-#include "capture/frame_record.h"
+#include "capture/frame_payload.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

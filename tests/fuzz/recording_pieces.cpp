@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "capture/frame_record.h"
+#include "capture/frame_payload.h"
 #include "capture/recording/recording_format.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"

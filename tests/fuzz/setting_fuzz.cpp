@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "capture/camera.h"
 #include "capture/network.h"
-#include "capture/setting_value.h"
 
 /// Input: what a camera or a user gives as a number or an address. What is taken for one reads the
 /// same when written out.

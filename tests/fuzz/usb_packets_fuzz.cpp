@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/aravis/aravis_stream.h"
-#include "capture/frame_holes.h"
+#include "capture/frame_payload.h"
 #include "stream/little_endian.h"
 #include "tests/fuzz/require.h"
 

@@ -9,9 +9,9 @@
 #include <memory>
 #include <thread>
 
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 #include "capture/capture_session.h"
-#include "capture/doctor/usb_findings.h"
+#include "capture/doctor/doctor_findings.h"
 #include "capture/open_camera.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"

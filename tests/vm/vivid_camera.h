@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "capture/v4l2/v4l2_camera.h"
-#include "capture/v4l2/v4l2_controls.h"
 #include "capture/v4l2/v4l2_device.h"
+#include "capture/v4l2/v4l2_settings.h"
 
 namespace stipple {
 

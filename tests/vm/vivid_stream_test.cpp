@@ -9,7 +9,7 @@
 #include <iterator>
 #include <set>
 
-#include "capture/v4l2/v4l2_format.h"
+#include "capture/v4l2/v4l2_settings.h"
 #include "core/error.h"
 #include "core/philox.h"
 #include "tests/vm/loop_writer.h"

@@ -10,7 +10,7 @@
 
 #include "capture/aravis/aravis_device.h"
 #include "capture/capture_session.h"
-#include "capture/host_clock.h"
+#include "capture/frame_record.h"
 #include "capture/open_camera.h"
 #include "core/error.h"
 #include "tests/capture/aravis/fake_camera_process.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "capture/frame_holes.h"
+#include "capture/frame_payload.h"
 
 namespace stipple {
 namespace {

@@ -1,6 +1,8 @@
-#include "capture/doctor/network_doctor.h"
+#include "capture/doctor/doctor_findings.h"
 
 #include <gtest/gtest.h>
+
+#include "capture/network.h"
 
 namespace stipple {
 namespace {

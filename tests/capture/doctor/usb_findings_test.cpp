@@ -1,4 +1,4 @@
-#include "capture/doctor/usb_findings.h"
+#include "capture/doctor/doctor_findings.h"
 
 #include <gtest/gtest.h>
 

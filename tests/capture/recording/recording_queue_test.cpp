@@ -1,4 +1,4 @@
-#include "capture/recording/recording_queue.h"
+#include "capture/recording/recording_writer.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "capture/frame_record.h"
+#include "capture/frame_payload.h"
 #include "capture/recording/recording_reader.h"
 #include "capture/recording/recording_writer.h"
 #include "core/philox.h"

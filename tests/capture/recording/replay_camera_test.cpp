@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "capture/host_clock.h"
+#include "capture/frame_record.h"
 #include "core/error.h"
 #include "io/npy_file.h"
 #include "tests/capture/pooled_frames.h"

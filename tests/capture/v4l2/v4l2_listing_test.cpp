@@ -1,5 +1,5 @@
 // Emulated ioctl: which nodes are cameras, and what is wrong with them.
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/v4l2/v4l2_camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

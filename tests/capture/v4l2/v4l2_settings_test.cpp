@@ -6,7 +6,7 @@
 #include <cstring>
 #include <map>
 
-#include "capture/v4l2/v4l2_listing.h"
+#include "capture/v4l2/v4l2_camera.h"
 #include "core/error.h"
 #include "io/pixel_format.h"
 #include "tests/capture/emulated_camera.h"

@@ -1,4 +1,4 @@
-#include "capture/camera_listing.h"
+#include "capture/camera_search.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>
@@ -9,6 +9,15 @@
 namespace stipple {
 namespace {
 
+void add_cameras(CameraSearch& search, std::vector<CameraListing> (*source)()) {
+    try {
+        const auto found = source();
+        search.cameras.insert(search.cameras.end(), found.begin(), found.end());
+    } catch (const DeviceError& e) {
+        search.problems.emplace_back(e.what());
+    }
+}
+
 bool matches(const std::string& name, const std::string& pattern) {
     const bool is_part = pattern.find_first_of("*?[") == std::string::npos;
     const std::string whole = is_part ? "*" + pattern + "*" : pattern;
@@ -16,6 +25,13 @@ bool matches(const std::string& name, const std::string& pattern) {
 }
 
 }  // namespace
+
+CameraSearch list_cameras() {
+    CameraSearch search;
+    for (const CameraKind& kind : camera_kinds())
+        if (kind.list != nullptr) add_cameras(search, kind.list);
+    return search;
+}
 
 std::vector<CameraFeature> camera_features(const std::string& address, const std::string& pattern) {
     const CameraKind& kind = camera_kind(address);

@@ -1,9 +1,12 @@
-#include "capture/camera_timing.h"
+#include "capture/camera.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "core/parsed_number.h"
 
 namespace stipple {
 namespace {
@@ -21,6 +24,52 @@ double number_of(const CameraDescription& camera, const char* feature) {
 }
 
 }  // namespace
+
+void FramePool::reserve(std::size_t frames, std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    frames_ = frames;
+    bytes_ = bytes;
+    free_.reserve(frames);
+    for (std::size_t i = 0; i < frames; ++i) {
+        free_.emplace_back(bytes);  // zeros: each page is written to
+        free_.back().clear();
+    }
+}
+
+std::vector<std::uint8_t> FramePool::take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) {
+        ++misses_;
+        return {};
+    }
+    auto payload = std::move(free_.back());
+    free_.pop_back();
+    return payload;
+}
+
+void FramePool::give_back(std::vector<std::uint8_t>&& payload) {
+    const std::lock_guard lock(mutex_);
+    if (free_.size() == frames_ || payload.capacity() < bytes_) return;
+    payload.clear();
+    free_.push_back(std::move(payload));
+}
+
+std::uint64_t FramePool::misses() const {
+    const std::lock_guard lock(mutex_);
+    return misses_;
+}
+
+std::optional<std::int64_t> integer_setting(std::string_view text) {
+    constexpr std::string_view kHexadecimal = "0x";
+    if (text.substr(0, 2) != kHexadecimal) return parsed_number<std::int64_t>(text);
+    const std::string_view digits = text.substr(2);
+    return digits.substr(0, 1) == "-" ? std::nullopt : parsed_number<std::int64_t>(digits, 16);
+}
+
+std::optional<double> number_setting(std::string_view text) {
+    const auto value = parsed_number<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
 nanoseconds nominal_period(const CameraDescription& camera) {
     const double rate = number_of(camera, "AcquisitionFrameRate");

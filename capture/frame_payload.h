@@ -21,4 +21,7 @@ void mark_unwritten(std::span<std::uint8_t> buffer, std::size_t begin, std::size
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> clear_holes(
     std::span<std::uint8_t> buffer);
 
+/// XXH3, 64 bit, seed 0: the hash of a frame's payload, and of a camera's XML description.
+[[nodiscard]] std::uint64_t payload_hash(std::span<const std::uint8_t> payload);
+
 }  // namespace stipple

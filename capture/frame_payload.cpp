@@ -1,4 +1,7 @@
-#include "capture/frame_holes.h"
+#include "capture/frame_payload.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -52,6 +55,10 @@ std::vector<std::pair<std::size_t, std::size_t>> clear_holes(std::span<std::uint
         std::fill(buffer.begin() + static_cast<std::ptrdiff_t>(begin),
                   buffer.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{0});
     return holes;
+}
+
+std::uint64_t payload_hash(std::span<const std::uint8_t> payload) {
+    return XXH3_64bits(payload.data(), payload.size());
 }
 
 }  // namespace stipple

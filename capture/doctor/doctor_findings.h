@@ -1,12 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "capture/doctor/doctor_finding.h"
-
 namespace stipple {
+
+/// One result of `stipple capture doctor`.
+struct DoctorFinding {
+    enum class Level { kFact, kGood, kWarning, kProblem };
+    Level level = Level::kGood;
+    std::string subject;  ///< "receive buffer", "group video"
+    std::string fact;     ///< finding, with numbers
+    std::string fix;      ///< advice, if possible a command; empty if none is needed here
+};
 
 /// Network of this machine for the GigE Vision camera at "gige:IP", for all such cameras if the
 /// address is empty: the interfaces that lead there with address and MTU, receive buffer,
@@ -25,17 +33,12 @@ namespace stipple {
 /// the address is none.
 [[nodiscard]] std::vector<DoctorFinding> examine_genicam_camera(const std::string& address);
 
-/// net.core.rmem_max: the largest receive buffer that a program may request, in bytes; 0 if
-/// unknown.
-[[nodiscard]] std::int64_t rmem_max_bytes();
+/// Requirements of USB3 Vision cameras: memory for transfers in flight (usbfs_memory_mb), and
+/// permission to open the device. `root` is the root of the file system.
+[[nodiscard]] std::vector<DoctorFinding> usb_findings(const std::filesystem::path& root = "/");
 
-/// Whether this program may have a receive buffer above net.core.rmem_max (CAP_NET_ADMIN).
-[[nodiscard]] bool can_exceed_rmem_max();
-
-/// Datagrams dropped by the full UDP socket bound to `port`; 0 if there is no such socket.
-[[nodiscard]] std::uint64_t udp_drops(int port);
-
-/// Number of dropped or damaged frames of an interface plus its link changes.
-[[nodiscard]] std::uint64_t link_faults(const std::string& interface);
+/// Whether a program on this machine has opened the USB3 Vision camera with this serial number.
+[[nodiscard]] bool usb_camera_is_taken(const std::string& serial,
+                                       const std::filesystem::path& root = "/");
 
 }  // namespace stipple

@@ -1,8 +1,6 @@
-#include "capture/aravis/glib_error.h"
+#include "capture/aravis/aravis_call.h"
 
 #include <arv.h>
-
-#include "core/error.h"
 
 namespace stipple {
 

@@ -7,6 +7,24 @@
 
 namespace stipple {
 
+/// Frame rate of a camera, with lost frames counted: number of periods between the first and the
+/// last frame over the time between them, by device stamps, or by arrival if there are none. An
+/// outage restarts the measurement, and so does an id or a stamp that goes back.
+class FrameRate {
+  public:
+    void add(const FrameRecord& record);
+
+    /// Time from the first to the last frame.
+    [[nodiscard]] double seconds() const;
+    [[nodiscard]] std::uint64_t periods() const;
+    /// Empty until there are two frames.
+    [[nodiscard]] std::optional<double> hz() const;
+
+  private:
+    std::optional<FrameRecord> first_;
+    FrameRecord last_;
+};
+
 /// Frames of a camera in slots of equal length. Each used frame has one slot. So that each slot
 /// keeps its time, a missing frame and a frame that is not used (incomplete) have one too: there
 /// the used frame before it is held. Before the first used frame nothing can be held, so there

@@ -1,4 +1,7 @@
-#include "capture/frame_rate.h"
+#include "capture/frame_sequence.h"
+
+#include <algorithm>
+#include <utility>
 
 namespace stipple {
 namespace {
@@ -8,6 +11,8 @@ std::int64_t stamp_ns(const FrameRecord& record) {
                       record.stamp_source == StampSource::kUnnamedClock;
     return none ? record.host_monotonic_ns : record.device_ns;
 }
+
+constexpr std::uint64_t kMaxHeld = std::uint64_t{1} << 40U;
 
 }  // namespace
 
@@ -34,6 +39,16 @@ std::uint64_t FrameRate::periods() const {
 std::optional<double> FrameRate::hz() const {
     if (periods() == 0 || seconds() <= 0) return std::nullopt;
     return static_cast<double>(periods()) / seconds();
+}
+
+GapFiller::Gap GapFiller::next(const FrameRecord& record, bool is_used) {
+    const bool goes_on = last_id_ && record.id > *last_id_;
+    const std::uint64_t by_ids = goes_on ? record.id - *last_id_ - 1 : 0;
+    last_id_ = record.id;
+    Gap gap{.lost = std::max(record.lost_before, by_ids)};
+    if (has_used_) gap.held = std::min(gap.lost, kMaxHeld) + (is_used ? 0 : 1);
+    has_used_ = has_used_ || is_used;
+    return gap;
 }
 
 }  // namespace stipple
