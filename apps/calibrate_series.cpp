@@ -13,17 +13,17 @@
 #include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "calibration/chip_exposures.h"
-#include "calibration/field_exposure.h"
+#include "calibration/field_samples.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
 #include "io/dn_image.h"
-#include "study/metrics/emva1288/series_evaluation.h"
 #include "readout/provenance.h"
 #include "readout/sensor_file.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
+#include "study/metrics/emva1288/series_evaluation.h"
 
 namespace stipple {
 namespace {
