@@ -8,8 +8,6 @@
 
 #include <hwy/highway.h>
 
-#include "decoder/best/colour_axes.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
 

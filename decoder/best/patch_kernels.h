@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/flux_video.h"
 #include "decoder/best/patch_matching.h"
 
 namespace stipple {
@@ -39,5 +40,21 @@ using ColourGroupFrames = std::array<GroupFrames, 3>;
 /// Filters a group in three planes, after rotating its colours to the principal axes of the pilot's
 /// colours: an edge between two colours then appears in one plane only. One weight for all planes.
 void filter_group(const ColourGroupFrames& planes, float sigma) noexcept;
+
+/// A 3 x 3 matrix by rows.
+using ColourMatrix = std::array<std::array<float, 3>, 3>;
+
+/// Principal axes of colours with this covariance: its eigenvectors, orthonormal, one per column,
+/// by increasing variance. The same bits everywhere, because it uses square roots and the four
+/// operations only. Precondition: symmetric, finite.
+[[nodiscard]] ColourMatrix principal_colour_axes(const ColourMatrix& covariance) noexcept;
+
+/// Filters all groups of similar patches of `noisy` by the Wiener filter of `filter_group`; three
+/// planes are filtered together, other numbers of planes one by one. `pilot` is an estimate of
+/// `noisy` without noise. A voxel becomes the weighted mean over all its patches. `sigma` is the
+/// standard deviation of the noise, equal everywhere. The same bits for any thread count and SIMD
+/// target. Precondition: the videos have one shape, and the groups belong to it.
+void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
+                   float sigma, FluxVideo& filtered);
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "decoder/naive/joint_nearest.h"
+#include "decoder/naive/nearest_samples.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,9 +10,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
-#include "decoder/naive/nearest_samples.h"
 #include "decoder/naive/site_exposures.h"
-#include "decoder/naive/unsampled_sites.h"
 
 namespace stipple {
 namespace {

@@ -9,9 +9,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
-#include "decoder/naive/joint_nearest.h"
 #include "decoder/naive/site_exposures.h"
-#include "decoder/naive/unsampled_sites.h"
 
 namespace stipple {
 namespace {

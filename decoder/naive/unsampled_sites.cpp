@@ -1,4 +1,4 @@
-#include "decoder/naive/unsampled_sites.h"
+#include "decoder/naive/nearest_samples.h"
 
 #include <algorithm>
 #include <cassert>

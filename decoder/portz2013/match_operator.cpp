@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "decoder/reddy2011/wavelet.h"
+#include "decoder/reddy2011/sparse_frames.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/index.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "decoder/rivals/frame_octave.h"
+#include "decoder/rivals/shahar2011.h"
 
 #include <algorithm>
 #include <array>

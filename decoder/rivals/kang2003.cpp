@@ -10,9 +10,9 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/block_task.h"
+#include "decoder/decode_method.h"
 #include "decoder/fast/box_blur.h"
-#include "decoder/frame_video.h"
+#include "decoder/frame_exposures.h"
 #include "decoder/measurements.h"
 #include "decoder/motion/frame_interpolation.h"
 #include "decoder/rivals/fast_gaussian.h"

@@ -13,8 +13,8 @@ struct BlockTask;
 /// its time. Weights are inverse variances of the samples, less where the frames contradict each
 /// other. Where a frame is saturated, the frames of other exposure times, interpolated along their
 /// own motion, take its place; its bound remains. Then the video between the merged frames
-/// (frame_video.h). The same bits for any thread count. Returns nothing if the progress callback
-/// has stopped it. \throws InputError if the samples are not those of frames.
+/// (frame_exposures.h). The same bits for any thread count. Returns nothing if the progress
+/// callback has stopped it. \throws InputError if the samples are not those of frames.
 [[nodiscard]] std::optional<FluxVideo> merge_exposure_times(const BlockTask& block);
 
 }  // namespace stipple

@@ -10,9 +10,8 @@
 
 #include "core/index.h"
 #include "core/key_reader.h"
-#include "decoder/block_task.h"
+#include "decoder/decode_method.h"
 #include "decoder/frame_exposures.h"
-#include "decoder/frame_video.h"
 #include "decoder/measurements.h"
 #include "decoder/motion/frame_interpolation.h"
 #include "decoder/rivals/frame_decoding.h"

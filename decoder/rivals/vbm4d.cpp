@@ -8,9 +8,8 @@
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "core/parallel.h"
-#include "decoder/rivals/block_paths.h"
-#include "decoder/rivals/block_sums.h"
-#include "decoder/rivals/stabilised_frames.h"
+#include "decoder/rivals/block_filter.h"
+#include "decoder/rivals/frame_decoding.h"
 #include "decoder/rivals/volume_transform.h"
 
 namespace stipple {

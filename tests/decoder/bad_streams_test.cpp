@@ -11,7 +11,7 @@
 
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_check/schedule_shift.h"
+#include "decoder/schedule_check/schedule_check.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/hitomi2011/cosine_dictionary.h"

@@ -11,11 +11,11 @@
 
 #include "core/error.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_check/schedule_shift.h"
-#include "study/metrics/video_quality.h"
+#include "decoder/schedule_check/schedule_check.h"
 #include "readout/coded_sensor.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
+#include "study/metrics/video_quality.h"
 #include "tests/pipeline/clip.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "decoder/best/colour_axes.h"
+#include "decoder/best/patch_kernels.h"
 
 #include <gtest/gtest.h>
 

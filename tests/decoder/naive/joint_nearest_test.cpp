@@ -1,10 +1,9 @@
-#include "decoder/naive/joint_nearest.h"
+#include "decoder/naive/nearest_samples.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "decoder/naive/nearest_samples.h"
 #include "tests/decoder/hand_made.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "decoder/portz2013/flow_matches.h"
+#include "decoder/portz2013/patch_matches.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"

@@ -1,4 +1,4 @@
-#include "decoder/reddy2011/wavelet.h"
+#include "decoder/reddy2011/sparse_frames.h"
 
 #include <gtest/gtest.h>
 

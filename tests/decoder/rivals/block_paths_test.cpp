@@ -1,4 +1,4 @@
-#include "decoder/rivals/block_paths.h"
+#include "decoder/rivals/block_filter.h"
 
 #include <gtest/gtest.h>
 

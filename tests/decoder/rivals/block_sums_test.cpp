@@ -1,4 +1,4 @@
-#include "decoder/rivals/block_sums.h"
+#include "decoder/rivals/block_filter.h"
 
 #include <gtest/gtest.h>
 

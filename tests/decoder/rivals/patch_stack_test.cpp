@@ -1,4 +1,4 @@
-#include "decoder/rivals/patch_stack.h"
+#include "decoder/rivals/zhang2009.h"
 
 #include <gtest/gtest.h>
 
