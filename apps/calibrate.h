@@ -8,7 +8,7 @@
 #include "apps/arguments/sensor.h"
 #include "calibration/chip_calibration.h"
 #include "calibration/field_samples.h"
-#include "calibration/response_levels.h"
+#include "calibration/response_fit.h"
 #include "core/geometry.h"
 #include "readout/flat_field.h"
 #include "stream/stream_header.h"

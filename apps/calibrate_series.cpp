@@ -13,7 +13,7 @@
 #include "apps/output/progress.h"
 #include "apps/standard_error.h"
 #include "calibration/chip_exposures.h"
-#include "calibration/field_exposure.h"
+#include "calibration/field_samples.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "core/input_file.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/interrupt.h"
-#include "apps/output/number_text.h"
 #include "apps/output/json_file.h"
+#include "apps/output/number_text.h"
 #include "apps/subcommands.h"
 #include "capture/camera_search.h"
 #include "core/text.h"

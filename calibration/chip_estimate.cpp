@@ -12,7 +12,7 @@
 
 #include "calibration/chip_exposures.h"
 #include "calibration/dark_maps.h"
-#include "calibration/field_exposure.h"
+#include "calibration/field_samples.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "decoder/pixel_response.h"

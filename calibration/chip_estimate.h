@@ -7,7 +7,6 @@
 #include "calibration/chip_calibration.h"
 #include "calibration/field_samples.h"
 #include "calibration/response_fit.h"
-#include "calibration/response_levels.h"
 #include "calibration/shrinkage.h"
 #include "stream/stream_header.h"
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calibration/chip_estimate.h"
-#include "calibration/field_exposure.h"
 #include "calibration/field_samples.h"
 #include "calibration/response_fit.h"
 #include "stream/stream_header.h"

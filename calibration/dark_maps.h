@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "calibration/field_exposure.h"
+#include "calibration/field_samples.h"
 #include "calibration/shrinkage.h"
 #include "stream/stream_header.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "calibration/field_exposure.h"
-#include "calibration/robust_scale.h"
+#include "calibration/field_samples.h"
+#include "calibration/shrinkage.h"
 #include "core/colour_filter.h"
 #include "core/error.h"
 #include "core/exposure_schedule.h"

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
-#include "calibration/robust_scale.h"
 #include "core/index.h"
 
 namespace stipple {
 namespace {
+
+constexpr double kDeviationOfMedian = 1.4826;  ///< standard deviation / median abs deviation
 
 constexpr double kOutlierSigmas = 6;
 constexpr double kLineSigmas = 3;
@@ -67,6 +69,17 @@ double remove_lines(const Lines& lines, const LineOf& line_of, std::vector<doubl
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+double robust_deviation(std::vector<double> deviations) {
+    for (double& deviation : deviations) deviation = std::abs(deviation);
+    return kDeviationOfMedian * median(std::move(deviations));
+}
 
 std::vector<bool> inliers(const EstimateMap& map) {
     std::vector<bool> used(map.value.size(), false);

@@ -55,9 +55,9 @@ struct CaptureLimits {
 
 /// Counts of the frames of a session.
 struct SessionTotals {
-    std::uint64_t frames = 0;      ///< delivered
-    std::uint64_t incomplete = 0;  ///< of these with a status other than kComplete
-    LostFrames lost{};  ///< missing, by GapCause
+    std::uint64_t frames = 0;                ///< delivered
+    std::uint64_t incomplete = 0;            ///< of these with a status other than kComplete
+    LostFrames lost{};                       ///< missing, by GapCause
     std::uint64_t missing_before_first = 0;  ///< of these, before the first delivered frame
     std::uint64_t outages = 0;               ///< number of times that the camera was lost
     std::uint64_t repeated = 0;              ///< complete frames that came a second time, left out

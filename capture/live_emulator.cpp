@@ -67,7 +67,8 @@ LiveEmulation LiveEmulator::run(const Observer& progress) {
     }
     if (const auto passed_s = static_cast<double>(last_done_ns_ - first_done_ns_) * 1e-9;
         passed_s > 0)
-        result_.slots_per_second = static_cast<double>(recorder_.emulator().stats().slots - 1) / passed_s;
+        result_.slots_per_second =
+            static_cast<double>(recorder_.emulator().stats().slots - 1) / passed_s;
     return std::move(result_);
 }
 
@@ -83,7 +84,8 @@ std::uint64_t LiveEmulator::lost_to_hold(std::uint64_t lost) {
     const auto max_held = static_cast<std::uint64_t>(max_missing_slots(frames, to_light_.shape()));
     const std::uint64_t held = std::min(lost, max_held - std::min(max_held, result_.held_slots));
     if (held < lost && result_.unheld_slots == 0 && options_.tell)
-        options_.tell({lost, held, recorder_.emulator().stats().slots + static_cast<std::int64_t>(held)});
+        options_.tell(
+            {lost, held, recorder_.emulator().stats().slots + static_cast<std::int64_t>(held)});
     result_.unheld_slots += lost - held;
     return held;
 }
@@ -126,7 +128,8 @@ void LiveEmulator::take(const CapturedFrame& frame) {
     if (result_.latencies.count() == 0) first_done_ns_ = last_done_ns_;
     const auto latency_us = static_cast<double>(last_done_ns_ - arrival_ns) * 1e-3;
     result_.latencies.add(latency_us);
-    if (latency_us <= options_.late_after_slots * recorder_.emulator().setup().params.slot_us) return;
+    if (latency_us <= options_.late_after_slots * recorder_.emulator().setup().params.slot_us)
+        return;
     ++result_.late_slots;
     if (result_.late.size() < kMaxListedFaults)
         result_.late.push_back({recorder_.emulator().stats().slots - 1, arrival_ns, latency_us});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -49,5 +50,16 @@ void data_prox(const Measurements& measurements, const SiteRun& run, std::span<c
 /// Adds the part of a sensor, step A^T dual, to x.v.
 void add_duals(const Measurements& measurements, const SiteRun& run, std::span<const float> step,
                const DualVideo& x) noexcept;
+
+/// argmin_z |z| + (z - v)^2 / (2 threshold)
+[[nodiscard]] inline float soft_threshold(float v, float threshold) noexcept {
+    return v > 0 ? std::max(v - threshold, 0.0F) : std::min(v + threshold, 0.0F);
+}
+
+/// argmin_z max(-z, 0) + (z - v)^2 / (2 threshold), for saturated samples, which light may exceed:
+/// Eq. 6 of Portz et al. 2013 with 1 / rho = threshold.
+[[nodiscard]] inline float one_sided_soft_threshold(float v, float threshold) noexcept {
+    return v > 0 ? v : std::min(v + threshold, 0.0F);
+}
 
 }  // namespace stipple

@@ -10,21 +10,69 @@
 #include "core/text.h"
 #include "decoder/best/collaborative.h"
 #include "decoder/block_partition.h"
-#include "decoder/block_task.h"
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/bennett2005.h"
 #include "decoder/conventional/conventional_schedule.h"
 #include "decoder/conventional/frame_decoding.h"
+#include "decoder/conventional/kang2003.h"
+#include "decoder/conventional/shahar2011.h"
+#include "decoder/conventional/vbm4d.h"
+#include "decoder/conventional/zhang2009.h"
 #include "decoder/decode_options.h"
 #include "decoder/fast/motion_tv.h"
+#include "decoder/frame_exposures.h"
 #include "decoder/hitomi2011/hitomi2011.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
+#include "decoder/pixel_response.h"
 #include "decoder/portz2013/portz2013.h"
-#include "decoder/prior_decoding.h"
 #include "decoder/reddy2011/reddy2011.h"
 
 namespace stipple {
 namespace {
+
+/// Arguments of a method with a prior on the video.
+struct PriorTask {
+    Measurements& measurements;
+    const SampleNoise& noise;
+    const DecodeOptions& options;
+    const ProgressCallback& progress;
+};
+
+/// A frame's one exposure has all its read noise, most of it below 0 where it is dark.
+DecodeOptions options_of_frames(const BlockTask& block, std::span<const FrameExposure> exposures) {
+    DecodeOptions options = block.options;
+    if (block.calibration.noise_free)
+        options.best = without_noise(options.best);
+    else if (exposures.front().open_slots == 1 && !block.measurements.mosaic)
+        options.best = for_direct_samples(options.best);
+    options.best.offset_slots = 1;
+    options.best.min_light = -1;
+    return options;
+}
+
+/// Decodes a block by such a method, after the samples of stuck pixels are removed. If all pixels
+/// have the same exposures, as in a conventional camera (one sensor), `decode` restores the frames,
+/// and the video is interpolated between them.
+std::optional<FluxVideo> decode_with_prior(
+    const BlockTask& block, std::optional<FluxVideo> (*decode)(const PriorTask& task)) {
+    const SampleNoise noise(block.calibration);
+    Measurements& measurements = block.measurements;
+    const auto exposures = measurements.others.empty()
+                               ? frame_exposures(measurements)
+                               : std::optional<std::vector<FrameExposure>>();
+    if (!exposures) {
+        for_each_sensor(measurements, [](Measurements& sensor) { mask_defects(sensor); });
+        DecodeOptions options = block.options;
+        if (block.calibration.noise_free) options.best = without_noise(options.best);
+        return decode({measurements, noise, options, block.progress});
+    }
+    Measurements frames = measurements_of_frames(measurements, *exposures, noise);
+    mask_defects(frames);
+    const auto lights = decode({frames, noise_of_frames(block.calibration, *exposures),
+                                options_of_frames(block, *exposures), block.progress});
+    if (!lights) return {};
+    return video_of_frames(measurements, *exposures, *lights);
+}
 
 constexpr NamedDecodeMethod kMethods[] = {
     {"naive", DecodeMethod::kNaive, true, false, "nearest samples of each pixel: fast and noisy",
@@ -143,6 +191,13 @@ DecodeMethod decode_method_from_name(std::string_view name) {
     }
     throw InputError("decoding method",
                      fmt::format("\"{}\" is unknown; {}", name, suggestion(name, names)));
+}
+
+DecodeOptions read_decode_options(DecodeMethod method, Config& config) {
+    DecodeOptions options{.method = method};
+    named(method).read_options(config, options);
+    config.reject_unknown_keys();
+    return options;
 }
 
 }  // namespace stipple

@@ -6,13 +6,16 @@
 #include <string_view>
 
 #include "core/flux_video.h"
+#include "core/progress.h"
+#include "decoder/stage_observer.h"
 
 namespace stipple {
 
 class Config;
 class ExposureSchedule;
-struct BlockTask;
+struct Calibration;
 struct DecodeOptions;
+struct Measurements;
 
 enum class DecodeMethod {
     kNaive,      ///< each pixel holds its nearest samples; no model of the scene
@@ -29,6 +32,15 @@ enum class DecodeMethod {
     kVbm4d,         ///< collaborative filter of volumes along motion
     kShahar2011,    ///< temporal super-resolution by self-similarity
     kKang2003,      ///< frames of alternating exposure times, merged along motion
+};
+
+/// A block of the video and the context of its decoding.
+struct BlockTask {
+    Measurements& measurements;  ///< a method may change them
+    const Calibration& calibration;
+    const DecodeOptions& options;
+    const ProgressCallback& progress;
+    const StageObserver& observer;
 };
 
 /// A row of the table of methods.

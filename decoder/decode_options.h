@@ -4,7 +4,10 @@
 
 #include "core/config.h"
 #include "decoder/best/collaborative.h"
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/bennett2005.h"
+#include "decoder/conventional/shahar2011.h"
+#include "decoder/conventional/vbm4d.h"
+#include "decoder/conventional/zhang2009.h"
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/hitomi2011/hitomi2011.h"

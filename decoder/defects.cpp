@@ -1,4 +1,4 @@
-#include "decoder/defects.h"
+#include "decoder/measurements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/measurements.h"
 
 namespace stipple {
 namespace {

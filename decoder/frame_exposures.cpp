@@ -9,6 +9,7 @@
 
 #include "core/index.h"
 #include "decoder/measurements.h"
+#include "decoder/motion/frame_interpolation.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -208,6 +209,14 @@ std::vector<float> centre_slots(std::span<const FrameExposure> exposures) {
 SampleNoise noise_of_frames(Calibration calibration, std::span<const FrameExposure> exposures) {
     calibration.electrons_per_unit *= exposures.front().open_slots;
     return SampleNoise(calibration);
+}
+
+FluxVideo video_of_frames(const Measurements& measurements,
+                          std::span<const FrameExposure> exposures, const FluxVideo& frames) {
+    if (frames.slots() == measurements.slots) return frames;
+    FluxVideo x = interpolate_frames(frames, centre_slots(exposures), measurements.slots);
+    back_project_residual(measurements, exposures, frames, x);
+    return x;
 }
 
 }  // namespace stipple

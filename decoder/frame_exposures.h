@@ -8,9 +8,9 @@
 
 namespace stipple {
 
+class SampleNoise;
 struct Calibration;
 struct Measurements;
-class SampleNoise;
 
 /// A frame of a conventional camera: an exposure that all sites share.
 struct FrameExposure {
@@ -51,5 +51,13 @@ void back_project_residual(const Measurements& measurements,
 /// The noise of a frame as light per slot.
 [[nodiscard]] SampleNoise noise_of_frames(Calibration calibration,
                                           std::span<const FrameExposure> exposures);
+
+/// The video of all slots from the frames of a conventional camera: interpolated along motion
+/// between the centres of their exposures (frame_interpolation.h), then with what the frames lack
+/// (frame_exposures.h). If each slot is a frame, the frames themselves. Precondition: at least one
+/// frame.
+[[nodiscard]] FluxVideo video_of_frames(const Measurements& measurements,
+                                        std::span<const FrameExposure> exposures,
+                                        const FluxVideo& frames);
 
 }  // namespace stipple

@@ -6,11 +6,24 @@
 #include <vector>
 
 #include "core/geometry.h"
-#include "decoder/video_window.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
+
+/// A box of voxels of a video: `slots` slots from `first_slot`, and the pixels from (first_row,
+/// first_col); `shape` is the size of one of its frames.
+struct VideoWindow {
+    std::int64_t first_slot = 0;
+    int slots = 0;
+    int first_row = 0;
+    int first_col = 0;
+    FrameShape shape;
+
+    [[nodiscard]] std::size_t voxels() const {
+        return static_cast<std::size_t>(slots) * shape.sites();
+    }
+};
 
 /// The samples y of a window in the units of FluxVideo, as arrays of order (slot, plane, row, col),
 /// so that each voxel finds its exposure. Exposures that reach beyond the window, and exposures
@@ -79,5 +92,18 @@ void for_each_sensor(Sensors& measurements, const Body& body) {
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);
+
+/// Removes the samples of stuck pixels, so that the prior fills them, and returns the number of
+/// these sites. A site with at least four samples is stuck if at most two of its neighbours with
+/// samples are unsound (of up to eight neighbours, at least three of them with samples), and
+/// - all its samples are saturated, and their bound is at least three times the light of every
+///   sound neighbour; or
+/// - the sum of its samples is within three standard deviations of no light, and the light of the
+///   darkest sound neighbour is at least twenty standard deviations.
+/// A site is sound if its samples are neither all saturated nor all dark. Not detected: larger
+/// groups of adjacent defects, defects in planes of a mosaic whose neighbouring sites have another
+/// colour, and intermittent defects. A single bright or black point that is static for a whole
+/// block, with a sharp edge all around, cannot be distinguished from a defect and is lost.
+std::size_t mask_defects(Measurements& measurements);
 
 }  // namespace stipple

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exposure_schedule.h"
+
 namespace stipple {
 namespace {
 
@@ -115,6 +117,18 @@ PixelResponses::PixelResponses(const Calibration& calibration) {
     rows_ = tile.rows;
     cols_ = tile.cols;
     for (const CalibrationPixel& pixel : tile.pixels) responses_.emplace_back(calibration, pixel);
+}
+
+void SaturatedSamples::add(const SamplePacket& packet) {
+    if (packet.dn.empty()) return;  // dropped
+    const std::uint16_t* dn = packet.dn.data();
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        for_each_readout(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
+            for (int plane = 0; plane < header_.shape.planes; ++plane)
+                if (responses_.at(plane, row, col).saturated(*dn++)) ++saturated_;
+        });
+    zeros_ += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
+    samples_ += packet.dn.size();
 }
 
 }  // namespace stipple

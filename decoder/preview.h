@@ -8,7 +8,7 @@
 
 #include "core/progress.h"
 #include "decoder/decode_method.h"
-#include "decoder/video_window.h"
+#include "decoder/measurements.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 

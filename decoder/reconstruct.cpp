@@ -17,11 +17,11 @@
 #include "core/memory_limit.h"
 #include "core/text.h"
 #include "decoder/block_partition.h"
-#include "decoder/block_task.h"
 #include "decoder/decode_cost.h"
+#include "decoder/decode_method.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
-#include "decoder/saturated_samples.h"
+#include "decoder/pixel_response.h"
 
 namespace stipple {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <list>
 #include <utility>
 #include <vector>
@@ -9,15 +10,14 @@
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "core/parallel.h"
-#include "decoder/best/collaborative_filter.h"
-#include "decoder/best/residual_gain.h"
-#include "decoder/best/variance_stabilisation.h"
+#include "decoder/best/patch_kernels.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/joint/joint_prox.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
+#include "decoder/pixel_transforms.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {
@@ -144,7 +144,7 @@ class CollaborativeSolver {
     /// Residual feedback: a share of (samples - forward model of the estimate) is added to the
     /// samples, as in generalised alternating projection (Liao et al., SIAM J. Imaging Sci. 7(2),
     /// 2014). What was added decays, so that the noise does not return; the gain is that of
-    /// residual_gain.h. Without decay all of the residuals is added in the end, noise too, and the
+    /// residual_part. Without decay all of the residuals is added in the end, noise too, and the
     /// gain is the length of a step. The residuals of several sensors add up in a voxel, so each
     /// has its part of the gain.
     void add_residuals(Sensor& sensor) {
@@ -322,6 +322,16 @@ std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const 
     solver.restore_samples();
     if (stopped) return {};
     return x;
+}
+
+float samples_per_voxel(const Measurements& measurements) {
+    std::ptrdiff_t samples = 0;
+    for_each_sensor(measurements, [&](const Measurements& sensor) {
+        samples += std::ranges::count_if(
+            sensor.state, [](std::uint8_t state) { return (state & Measurements::kLast) != 0; });
+    });
+    return static_cast<float>(static_cast<double>(samples) /
+                              static_cast<double>(measurements.voxels()));
 }
 
 }  // namespace stipple

@@ -63,7 +63,7 @@ struct CollaborativeOptions {
     float light_offset = 0.002F;
     float offset_slots = 32;  ///< length of the exposure whose read noise sets the offset
     float min_light = 0;      ///< minimum of the light, flux; at least -offset
-    /// Residual feedback: r <- decay r + gain part (y - A x), with the part of residual_gain.h;
+    /// Residual feedback: r <- decay r + gain part (y - A x), the part by residual_part;
     /// y + r replaces the samples y.
     float residual_gain = 0.25F;
     float residual_decay = 0.9F;
@@ -91,5 +91,28 @@ void read_options(Config& config, CollaborativeOptions& options);
 [[nodiscard]] std::optional<FluxVideo> decode_collaborative(
     Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
     const ProgressCallback& progress = [](double) { return true; });
+
+/// Samples of all sensors for a voxel of the video.
+[[nodiscard]] float samples_per_voxel(const Measurements& measurements);
+
+/// The part of the gain of residual feedback for a sample. Feedback restores detail that the filter
+/// has taken and that other samples do not show, and returns noise. So all of the gain is used up
+/// to one sample for four voxels, and nothing where each voxel has its own sample; and less, down
+/// to half of it, where noise is read noise, which the filter does not assume. But where noise
+/// exceeds the light, only feedback corrects the bias of means of square roots:
+///
+///     min(1, (4/3 (1 - m))^2) (1 - d w / 2),    d = dark variance / variance,
+///     m samples per voxel,                       w = light^2 / (light^2 + 2 variance)
+///
+/// `light`: of the sample, by the estimate.
+[[nodiscard]] inline float residual_part(float samples_per_voxel, float light, float dark_variance,
+                                         float variance) noexcept {
+    const float unsampled = samples_per_voxel < 1 ? (1 - samples_per_voxel) / 0.75F : 0;
+    const float few = unsampled < 1 ? unsampled * unsampled : 1;
+    const float dark = variance > dark_variance ? dark_variance / variance : 1;
+    const float square = light * light;
+    const float above_noise = square > 0 ? square / (square + 2 * variance) : 0;
+    return few * (1 - dark * above_noise / 2);
+}
 
 }  // namespace stipple

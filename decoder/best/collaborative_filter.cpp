@@ -1,5 +1,6 @@
-#include "decoder/best/collaborative_filter.h"
+#include "decoder/best/patch_kernels.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
@@ -8,7 +9,6 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/best/patch_kernels.h"
 
 namespace stipple {
 namespace {
@@ -125,6 +125,14 @@ void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGr
     Aggregation aggregation(noisy, pilot, groups, sigma, filtered);
     aggregation.run();
     aggregation.divide();
+}
+
+ColourMatrix principal_colour_axes(const ColourMatrix& covariance) noexcept {
+    using Rows = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+    const Eigen::SelfAdjointEigenSolver<Rows> solver(Eigen::Map<const Rows>(covariance[0].data()));
+    ColourMatrix axes;
+    Eigen::Map<Rows>(axes[0].data()) = solver.eigenvectors();
+    return axes;
 }
 
 }  // namespace stipple

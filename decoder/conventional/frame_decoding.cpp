@@ -1,16 +1,16 @@
 #include "decoder/conventional/frame_decoding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
 #include "core/error.h"
-#include "decoder/block_task.h"
+#include "core/parallel.h"
+#include "decoder/decode_method.h"
 #include "decoder/decode_options.h"
-#include "decoder/defects.h"
 #include "decoder/frame_exposures.h"
-#include "decoder/frame_video.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
@@ -78,6 +78,29 @@ std::optional<FluxVideo> decode_frames(const BlockTask& block, const FrameFilter
     for (std::size_t i = 0; i < lights->voxels(); ++i)
         if (frames.bounds[i] > 0) lights->data()[i] = std::max(lights->data()[i], frames.bounds[i]);
     return video_of_frames(measurements, exposures, *lights);
+}
+
+StabilisedFrames stabilised(const DeliveredFrames& frames) {
+    constexpr float kMaxOffset = 1e3F;  // flux; where noise is larger than that, light is not seen
+    const FluxVideo& light = frames.light;
+    const float offset = std::min(frames.noise.dark_variance / frames.noise.per_light, kMaxOffset);
+    StabilisedFrames result{FluxVideo(light.slots(), light.shape()),
+                            AnscombeParams{.offset = offset, .min_light = -offset},
+                            std::sqrt(frames.noise.per_light)};
+    parallel_for(0, light.slots(), [&](int frame) {
+        stabilise_variance(light.frame(frame), light.shape().planes, result.scale,
+                           result.values.frame(frame));
+    });
+    return result;
+}
+
+FluxVideo restored(const FluxVideo& values, AnscombeParams scale, const FrameNoise& noise) {
+    FluxVideo light(values.slots(), values.shape());
+    parallel_for(0, values.slots(), [&](int frame) {
+        restore_light(values.frame(frame), values.shape().planes, scale, light.frame(frame));
+        for (float& x : light.frame(frame)) x += noise.per_light / 4;
+    });
+    return light;
 }
 
 }  // namespace stipple

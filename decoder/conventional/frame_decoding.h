@@ -7,6 +7,7 @@
 
 #include "core/flux_video.h"
 #include "core/progress.h"
+#include "decoder/pixel_transforms.h"
 
 namespace stipple {
 
@@ -39,8 +40,8 @@ using FrameFilter = std::function<std::optional<FluxVideo>(const DeliveredFrames
                                                            const ProgressCallback& progress)>;
 
 /// Decodes the samples of a conventional camera: frames as delivered, without those of stuck
-/// pixels, then the filter, then the video between the frames (frame_video.h). Where a sample is
-/// saturated, the filtered light is at least its bound. Frames without noise are not filtered.
+/// pixels, then the filter, then the video between the frames (frame_exposures.h). Where a sample
+/// is saturated, the filtered light is at least its bound. Frames without noise are not filtered.
 /// Without any sample the video is black. \throws InputError if the samples are not those of
 /// frames.
 [[nodiscard]] std::optional<FluxVideo> decode_frames(const BlockTask& block,
@@ -58,5 +59,20 @@ enum class FrameLengths { kEqual, kAny };
 
 /// The mean noise of the samples of frames.
 [[nodiscard]] FrameNoise noise_of_samples(const Measurements& frames);
+
+/// Frames after 2 sqrt(x + d), d = dark_variance / per_light, whose noise has the standard
+/// deviation `sigma` everywhere; three planes as luma and opponent colours.
+struct StabilisedFrames {
+    FluxVideo values;
+    AnscombeParams scale;
+    float sigma = 0;
+};
+
+[[nodiscard]] StabilisedFrames stabilised(const DeliveredFrames& frames);
+
+/// The light of frames without noise: y^2 / 4 - d + per_light / 4. The last term corrects the mean
+/// of square roots, which is below the square root of the mean.
+[[nodiscard]] FluxVideo restored(const FluxVideo& values, AnscombeParams scale,
+                                 const FrameNoise& noise);
 
 }  // namespace stipple

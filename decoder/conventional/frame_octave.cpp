@@ -1,4 +1,4 @@
-#include "decoder/conventional/frame_octave.h"
+#include "decoder/conventional/shahar2011.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/kang2003.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/block_task.h"
 #include "decoder/conventional/fast_gaussian.h"
 #include "decoder/conventional/frame_decoding.h"
+#include "decoder/decode_method.h"
 #include "decoder/fast/box_blur.h"
-#include "decoder/frame_video.h"
+#include "decoder/frame_exposures.h"
 #include "decoder/measurements.h"
 #include "decoder/motion/frame_interpolation.h"
 

@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/shahar2011.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,9 @@
 
 #include "core/index.h"
 #include "core/key_reader.h"
-#include "decoder/block_task.h"
 #include "decoder/conventional/frame_decoding.h"
+#include "decoder/decode_method.h"
 #include "decoder/frame_exposures.h"
-#include "decoder/frame_video.h"
 #include "decoder/measurements.h"
 #include "decoder/motion/frame_interpolation.h"
 

@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/vbm4d.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +8,8 @@
 #include "core/index.h"
 #include "core/key_reader.h"
 #include "core/parallel.h"
-#include "decoder/conventional/block_paths.h"
-#include "decoder/conventional/block_sums.h"
-#include "decoder/conventional/stabilised_frames.h"
+#include "decoder/conventional/block_filter.h"
+#include "decoder/conventional/frame_decoding.h"
 #include "decoder/conventional/volume_transform.h"
 
 namespace stipple {

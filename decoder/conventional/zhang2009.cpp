@@ -1,15 +1,15 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/zhang2009.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "core/index.h"
 #include "core/key_reader.h"
-#include "decoder/conventional/block_paths.h"
-#include "decoder/conventional/block_sums.h"
-#include "decoder/conventional/patch_stack.h"
-#include "decoder/conventional/stabilised_frames.h"
+#include "decoder/conventional/block_filter.h"
+#include "decoder/conventional/frame_decoding.h"
 
 namespace stipple {
 namespace {
@@ -39,6 +39,9 @@ void keep_similar(const FluxVideo& video, const BlockPlace& reference, int side,
     };
     std::erase_if(path, differs);
 }
+
+/// Patches by rows.
+using Stack = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -82,6 +85,32 @@ void read_options(Config& config, Zhang2009Options& options) {
     read({"max_distance", {0, 1e4}, "", "mean square to the reference, in noise variances"},
          options.max_distance);
     read({"min_confidence", {0, 255}, "", "least confidence of the flow"}, options.min_confidence);
+}
+
+float filter_patch_stack(std::span<float> stack, int patches, float sigma) {
+    if (patches == 1) return 1;
+    const auto values = static_cast<int>(std::ssize(stack)) / patches;
+    Stack x = Eigen::Map<const Stack>(stack.data(), patches, values);
+    const Eigen::RowVectorXf mean = x.colwise().sum() / static_cast<float>(patches);
+    x.rowwise() -= mean;
+    const Eigen::SelfAdjointEigenSolver<Stack> solver(x * x.transpose());
+    const float variance = sigma * sigma;
+    const float root =
+        std::sqrt(static_cast<float>(values)) + std::sqrt(static_cast<float>(patches));
+    const float limit = variance * root * root;
+    Stack kept = Stack::Zero(patches, patches);
+    float squares = 1;
+    for (int k = 0; k < patches; ++k) {
+        const float power = solver.eigenvalues()(k);
+        if (!(power > limit)) continue;
+        const float factor = (power - variance * static_cast<float>(values)) / power;
+        kept += factor * solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+        squares += factor * factor;
+    }
+    x = (kept * x).eval();
+    x.rowwise() += mean;
+    std::copy_n(x.data(), x.size(), stack.begin());
+    return squares;
 }
 
 }  // namespace stipple

@@ -1,6 +1,6 @@
 // Compiled once per SIMD target by foreach_target.h, chosen at run time; every target gives the
 // same bits.
-#include "decoder/fast/motion_kernels.h"
+#include "decoder/fast/gradient_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decoder/fast/motion_kernels.cpp"

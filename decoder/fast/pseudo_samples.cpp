@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "decoder/fast/box_blur.h"
 #include "decoder/measurements.h"
-#include "decoder/naive/nearest_samples.h"
+#include "decoder/naive/site_exposures.h"
 #include "decoder/pixel_response.h"
 
 namespace stipple {

@@ -8,10 +8,9 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/fast/gradient_kernels.h"
-#include "decoder/fast/motion_kernels.h"
 #include "decoder/joint/joint_prox.h"
 #include "decoder/measurements.h"
-#include "decoder/opponent_planes.h"
+#include "decoder/pixel_transforms.h"
 
 namespace stipple {
 namespace {

@@ -21,7 +21,7 @@ struct TotalVariationOptions {
     float temporal_weight = 45;  ///< all links of a voxel together, at full confidence
     float reference_step = 0.005F;
     /// 0: all planes share one norm. Otherwise three planes have a norm for luma and a norm for the
-    /// two opponents (opponent_planes.h), whose weight is larger by this factor.
+    /// two opponents (pixel_transforms.h), whose weight is larger by this factor.
     float chroma_weight = 0;
     std::function<bool()> keep_going = [] { return true; };  ///< after each iteration; false stops
 };

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
+#include "decoder/naive/site_exposures.h"
 
 namespace stipple {
 namespace {

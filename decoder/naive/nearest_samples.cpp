@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
+#include "decoder/naive/site_exposures.h"
 
 namespace stipple {
 namespace {

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/flux_video.h"
 
@@ -19,8 +17,8 @@ struct Measurements;
 /// bound of the voxel's own exposure. If all exposures within 8 slots are saturated, the estimate
 /// is their highest bound. So the frames of a conventional camera are held during their exposure
 /// and interpolated between exposures. Sites without any sample, such as two of three colours under
-/// a colour filter, are interpolated from their surroundings (fill_unsampled). Without any sample
-/// the video is 0.
+/// a colour filter, are interpolated from their surroundings (fill_unsampled). Without any
+/// sample the video is 0. Of several sensors: joint_nearest_samples.
 [[nodiscard]] FluxVideo nearest_samples(const Measurements& measurements);
 
 /// exp(-d / 1.5) at a distance of d slots, constant from 16 on. Precondition: d >= 0.
@@ -37,26 +35,6 @@ inline constexpr int kNearSlots = 8;
 /// photons. Saturated exposures have no weight, but if all that include the slot are saturated, the
 /// mean is at least their highest bound.
 [[nodiscard]] FluxVideo joint_nearest_samples(const Measurements& measurements);
-
-/// An exposure of a site, with its sample.
-struct SiteExposure {
-    int first_slot = 0;
-    int last_slot = 0;
-    float light_slots = 0;  ///< sum of the weights of the open slots; without weights their number
-    float mean_weight = 0;  ///< 1 / (0.3 + light_slots), as of nearest_samples.h
-    bool saturated = false;
-    std::uint8_t chain = 0;       ///< 0, or Measurements::kSecond
-    float light_per_slot = 0;     ///< a lower bound if saturated
-    float variance_per_slot = 0;  ///< of `light_per_slot`
-};
-
-/// Sets `list` to the exposures of a site that have samples, in the order of their ends.
-void list_exposures(const Measurements& measurements, std::size_t site,
-                    std::vector<SiteExposure>& list);
-
-/// The same of all sensors, in the order of their ends, then of the sensors.
-void list_all_exposures(const Measurements& measurements, std::size_t site,
-                        std::vector<SiteExposure>& list);
 
 /// Fills the sites without samples (`sampled` is 0; order (plane, row, col)) from their
 /// surroundings, slot by slot. The guide is the plane with the most samples. In it a site becomes

@@ -1,4 +1,4 @@
-#include "decoder/naive/nearest_samples.h"
+#include "decoder/naive/site_exposures.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "decoder/portz2013/match_admm.h"
+#include "decoder/portz2013/match_operator.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>

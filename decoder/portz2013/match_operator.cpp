@@ -1,4 +1,4 @@
-#include "decoder/portz2013/match_admm.h"
+#include "decoder/portz2013/match_operator.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 
 namespace stipple {
 namespace {

@@ -10,7 +10,7 @@
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/portz2013/exposure_table.h"
-#include "decoder/portz2013/match_admm.h"
+#include "decoder/portz2013/match_operator.h"
 #include "decoder/portz2013/patch_matches.h"
 
 namespace stipple {

@@ -32,7 +32,7 @@ struct FlowMatchOptions {
     float sigma = 0.05F;       ///< as in MatchSearch
 };
 
-/// Minimisation by ADMM (match_admm.h).
+/// Minimisation by ADMM (match_operator.h).
 struct MatchAdmmOptions {
     int iterations = 10;
     float rho = 2;               ///< larger: smaller steps; per unit of light

@@ -1,4 +1,4 @@
-#include "decoder/reddy2011/flow_links.h"
+#include "decoder/reddy2011/sparse_frames.h"
 
 #include <algorithm>
 #include <array>

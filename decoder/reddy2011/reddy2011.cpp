@@ -13,7 +13,6 @@
 #include "decoder/mosaic_hues.h"
 #include "decoder/motion/motion.h"
 #include "decoder/naive/nearest_samples.h"
-#include "decoder/reddy2011/flow_links.h"
 #include "decoder/reddy2011/sparse_frames.h"
 
 namespace stipple {

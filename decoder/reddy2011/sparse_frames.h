@@ -7,9 +7,11 @@
 #include "core/flux_video.h"
 #include "core/geometry.h"
 #include "core/plane.h"
-#include "decoder/reddy2011/flow_links.h"
+#include "decoder/motion/motion.h"
 
 namespace stipple {
+
+struct Measurements;
 
 /// Orthonormal wavelet transform of planes, periodic, by Daubechies' wavelet with four vanishing
 /// moments (8 taps). Each level halves the rows and columns of the lowpass corner. The same bits
@@ -41,7 +43,34 @@ class WaveletTransform {
     int levels_;
 };
 
-struct Measurements;
+/// Brightness constancy along optical flow: B x, with a row for each pixel whose flow is
+/// consistent,
+///
+///     (B x)_p = x(p + flow, next slot) - x(p, slot),
+///
+/// interpolated bilinearly, and the same for the flow to the slot before.
+class FlowLinks {
+  public:
+    /// Links of pixels with at least `min_confidence` (0..1); `shape` is that of the video.
+    /// Precondition: rows, cols >= 2.
+    FlowLinks(std::vector<MotionField> motion, FrameShape shape, float min_confidence);
+
+    /// gradient += weight B^T B x. The same bits for any thread count.
+    void add_gradient(const FluxVideo& x, float weight, std::span<float> gradient) const;
+
+    /// An upper bound of the squared norm of B: the largest sum of absolute values in a row times
+    /// that in a column.
+    [[nodiscard]] float squared_norm_bound() const;
+
+    /// Fraction of the pixels and directions with a link, 0..1.
+    [[nodiscard]] double share() const;
+
+  private:
+    [[nodiscard]] int slots() const;
+
+    std::vector<MotionField> motion_;
+    FrameShape shape_;
+};
 
 /// Weights of a minimisation. light 1.0 is 1.
 struct SparseFramesTask {
@@ -59,7 +88,7 @@ struct SparseFramesTask {
 ///     1/2 sum_k (y_k - (A x)_k)^2 / ||a_k||^2 + beta/2 ||B x||^2 + lambda sum_t |W x_t|_1
 ///
 /// over the light x: a_k are the rows of the sampling operator A, B is brightness constancy along
-/// flow (flow_links.h), W the wavelet transform of each plane of a slot, without its lowpass
+/// flow (FlowLinks), W the wavelet transform of each plane of a slot, without its lowpass
 /// corner. A saturated sample has no error if A x is above it. The method is FISTA (Beck and
 /// Teboulle 2009) with continuation in lambda.
 class SparseFramesSolver {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/index.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 
 namespace stipple {
 namespace {

@@ -1,4 +1,4 @@
-#include "calibration/response_levels.h"
+#include "calibration/response_fit.h"
 
 #include <gtest/gtest.h>
 

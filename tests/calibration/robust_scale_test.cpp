@@ -1,4 +1,4 @@
-#include "calibration/robust_scale.h"
+#include "calibration/shrinkage.h"
 
 #include <gtest/gtest.h>
 

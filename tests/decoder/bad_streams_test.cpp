@@ -11,7 +11,7 @@
 
 #include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_check/schedule_shift.h"
+#include "decoder/schedule_check/schedule_check.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"
 #include "tests/decoder/hitomi2011/cosine_dictionary.h"
@@ -209,7 +209,7 @@ TEST(FastTest, WeightsMayBeZero) {
         }
 }
 
-/// Those of conventional cameras are tested in conventional/frame_decoding_test.cpp.
+/// Those of conventional cameras are tested in rivals/frame_decoding_test.cpp.
 std::vector<NamedDecodeMethod> methods_of_coded_streams() {
     std::vector<NamedDecodeMethod> methods;
     std::ranges::copy_if(decode_methods(), std::back_inserter(methods),

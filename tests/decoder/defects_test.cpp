@@ -1,8 +1,7 @@
-#include "decoder/defects.h"
+#include "decoder/measurements.h"
 
 #include <gtest/gtest.h>
 
-#include "decoder/measurements.h"
 #include "tests/decoder/recordings.h"
 
 namespace stipple {

@@ -1,4 +1,4 @@
-#include "decoder/opponent_planes.h"
+#include "decoder/pixel_transforms.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "decoder/saturated_samples.h"
+#include "decoder/pixel_response.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "decoder/reconstruct.h"
-#include "decoder/schedule_check/schedule_shift.h"
+#include "decoder/schedule_check/schedule_check.h"
 #include "readout/coded_sensor.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "stream/stream_writer.h"

@@ -1,4 +1,4 @@
-#include "decoder/best/collaborative_filter.h"
+#include "decoder/best/patch_kernels.h"
 
 #include <gtest/gtest.h>
 

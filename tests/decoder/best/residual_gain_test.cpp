@@ -1,4 +1,4 @@
-#include "decoder/best/residual_gain.h"
+#include "decoder/best/collaborative.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "decoder/best/variance_stabilisation.h"
+#include "decoder/pixel_transforms.h"
 
 #include <gtest/gtest.h>
 

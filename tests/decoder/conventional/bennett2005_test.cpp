@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/bennett2005.h"
 
 #include <gtest/gtest.h>
 

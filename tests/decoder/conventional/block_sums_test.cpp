@@ -1,4 +1,4 @@
-#include "decoder/conventional/block_sums.h"
+#include "decoder/conventional/block_filter.h"
 
 #include <gtest/gtest.h>
 

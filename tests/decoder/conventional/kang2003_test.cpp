@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/kang2003.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/vbm4d.h"
 
 #include <gtest/gtest.h>
 

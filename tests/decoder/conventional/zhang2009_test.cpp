@@ -1,4 +1,4 @@
-#include "decoder/conventional/conventional_methods.h"
+#include "decoder/conventional/zhang2009.h"
 
 #include <gtest/gtest.h>
 

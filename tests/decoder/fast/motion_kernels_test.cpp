@@ -1,4 +1,4 @@
-#include "decoder/fast/motion_kernels.h"
+#include "decoder/fast/gradient_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "decoder/portz2013/match_admm.h"
+#include "decoder/portz2013/match_operator.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "decoder/portz2013/soft_threshold.h"
+#include "decoder/data_prox.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 #include "tests/readout/gapped_schedule.h"
