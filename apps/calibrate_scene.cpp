@@ -7,7 +7,7 @@
 #include "apps/arguments/common_options.h"
 #include "apps/interrupt.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "calibration/scene_gain.h"
 #include "core/error.h"
 #include "core/named_value.h"

@@ -11,7 +11,7 @@
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "calibration/chip_exposures.h"
 #include "calibration/field_samples.h"
 #include "core/error.h"

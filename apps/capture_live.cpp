@@ -16,7 +16,7 @@
 #include "apps/output/preview_image.h"
 #include "apps/output/progress.h"
 #include "apps/output/session_report.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/capture_end.h"

@@ -17,7 +17,7 @@
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
 #include "apps/output/session_report.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "capture/capture_end.h"
 #include "capture/open_camera.h"

@@ -9,11 +9,11 @@
 #include "apps/output/leftovers.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "capture/recording/recording_footage.h"
 #include "core/error.h"
-#include "core/fault_list.h"
+#include "core/message.h"
 #include "io/frame_writer.h"
 #include "io/output_names.h"
 

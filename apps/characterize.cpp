@@ -22,7 +22,7 @@
 #include "apps/output/leftovers.h"
 #include "apps/output/own_command.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/input_file.h"

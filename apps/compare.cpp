@@ -16,7 +16,7 @@
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "capture/recording/footage_notes.h"
 #include "capture/recording/read_ahead.h"

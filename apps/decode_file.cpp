@@ -17,7 +17,7 @@
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
 #include "apps/output/stage_outputs.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "core/named_value.h"
 #include "core/parallel.h"

@@ -14,7 +14,7 @@
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "session/video_shards.h"

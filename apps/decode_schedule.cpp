@@ -8,7 +8,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "study/report/json_figures.h"
 

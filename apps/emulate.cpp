@@ -18,7 +18,7 @@
 #include "apps/output/leftovers.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/stream_output.h"
 #include "apps/subcommands.h"
 #include "capture/recording/footage_notes.h"

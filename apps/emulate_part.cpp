@@ -14,7 +14,7 @@
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "readout/emulator.h"
 #include "readout/lead_in.h"

@@ -14,7 +14,7 @@
 #include "apps/output/leftovers.h"
 #include "apps/output/number_text.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "capture/recording/footage_notes.h"
 #include "core/config.h"
 #include "io/frame_writer.h"

@@ -1,6 +1,6 @@
 #include "apps/emulate.h"
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "capture/recording/footage_notes.h"
 
 namespace stipple {

@@ -16,7 +16,7 @@
 #include "apps/output/number_text.h"
 #include "apps/output/own_command.h"
 #include "apps/output/progress.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "study/explore/results.h"
 #include "study/report/run_report.h"

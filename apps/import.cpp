@@ -6,7 +6,7 @@
 #include "apps/mat_volume.h"
 #include "apps/output/json_file.h"
 #include "apps/output/number_text.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/index.h"

@@ -11,7 +11,7 @@
 #include "apps/output/json_file.h"
 #include "apps/output/leftovers.h"
 #include "apps/output/number_text.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "capture/recording/recording_reader.h"

@@ -18,7 +18,7 @@
 #include "capture/frame_sequence.h"
 #include "capture/recording/recording_reader.h"
 #include "core/error.h"
-#include "core/fault_list.h"
+#include "core/message.h"
 #include "core/text.h"
 #include "stream/plain_text.h"
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <ctime>
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "io/pending_output.h"
 
 namespace stipple {

@@ -15,7 +15,7 @@
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/run_options.h"
 #include "apps/interrupt.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "apps/output/manual.h"
-#include "apps/standard_output.h"
+#include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "core/version.h"
 #include "io/pending_output.h"

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/index.h"

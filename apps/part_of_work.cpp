@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

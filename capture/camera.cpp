@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/text.h"
-#include "core/toml_keys.h"
 
 namespace stipple {
 namespace {

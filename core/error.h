@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cerrno>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/message.h"
@@ -36,5 +40,13 @@ class DeviceError : public Error {
   public:
     using Error::Error;
 };
+
+/// That `where` cannot be written for the reason `error` of the system (errno), with the remedy if
+/// the disk is full.
+[[nodiscard]] inline DeviceError write_failure(std::string_view where, int error) {
+    const bool full = error == ENOSPC || error == EDQUOT;
+    return {where, "cannot be written: " + std::generic_category().message(error) +
+                       (full ? "; free space, or write to another disk" : "")};
+}
 
 }  // namespace stipple

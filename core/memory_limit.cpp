@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "core/geometry.h"
@@ -40,5 +43,16 @@ template <typename Strings>
 /// reference has 8 x 6 x 1" for `others` = "but the reference has".
 [[nodiscard]] std::string shape_difference(FrameShape found, FrameShape wanted,
                                            std::string_view others);
+
+/// The number that all of `text` is; nothing for any other text, and outside the range of Number.
+/// `form`: as of std::from_chars, the base of an integer. As there, no sign + and no blanks.
+template <typename Number, typename... Form>
+[[nodiscard]] std::optional<Number> parsed_number(std::string_view text, Form... form) {
+    Number number{};
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data(), end, number, form...);
+    if (error != std::errc() || last != end) return std::nullopt;
+    return number;
+}
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "core/toml_keys.h"
+#include "core/config.h"
 
 #include <algorithm>
 

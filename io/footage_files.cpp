@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/image_file.h"
 
 namespace stipple {

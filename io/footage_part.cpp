@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
-#include "core/parsed_number.h"
 #include "core/plane.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

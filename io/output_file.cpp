@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/write_failure.h"
+#include "core/error.h"
 #include "io/output_names.h"
 
 namespace stipple {

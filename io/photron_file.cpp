@@ -19,7 +19,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/footage_files.h"
 #include "io/pixel_unpack.h"
 

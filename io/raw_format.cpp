@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/pixel_unpack.h"
 
 namespace stipple {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/write_failure.h"
 
 namespace stipple {
 namespace {

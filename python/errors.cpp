@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <string>
 
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/partial_output.h"
 #include "python/bindings.h"
 

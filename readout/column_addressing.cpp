@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/key_reader.h"
+#include "core/config.h"
 #include "core/named_value.h"
 
 namespace stipple {

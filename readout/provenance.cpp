@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/config.h"
 #include "core/text.h"
-#include "core/toml_keys.h"
 #include "core/version.h"
 #include "readout/sensor_file.h"
 #include "sensor_model/sensor_keys.h"

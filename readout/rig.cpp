@@ -8,7 +8,6 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/key_reader.h"
 #include "core/named_value.h"
 #include "readout/sensor_file.h"
 

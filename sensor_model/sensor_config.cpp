@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/config.h"
 #include "core/error.h"
-#include "core/key_reader.h"
 #include "sensor_model/sensor_keys.h"
 
 namespace stipple {

@@ -16,7 +16,7 @@
 #include "readout/footage_origin.h"
 #include "session/decode_session.h"
 #include "session/shard_folder.h"
-#include "stream/stream_identity.h"
+#include "stream/slot_index.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/write_failure.h"
+#include "core/error.h"
 
 namespace stipple {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/fault_list.h"
+#include "core/message.h"
 
 namespace stipple {
 

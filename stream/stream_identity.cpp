@@ -1,4 +1,4 @@
-#include "stream/stream_identity.h"
+#include "stream/slot_index.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
 #include "stream/header_codec.h"
-#include "stream/slot_index.h"
 
 namespace stipple {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/fault_list.h"
+#include "core/message.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 

@@ -11,8 +11,7 @@
 #include <system_error>
 
 #include "apps/arguments/usage_problem.h"
-#include "apps/standard_error.h"
-#include "apps/standard_output.h"
+#include "apps/standard_streams.h"
 #include "capture/recording/replay_camera.h"
 #include "core/text.h"
 

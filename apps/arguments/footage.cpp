@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/arguments/common_options.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "study/scenes/scene.h"
 

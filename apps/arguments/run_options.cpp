@@ -2,8 +2,7 @@
 
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/common_options.h"
-#include "apps/standard_error.h"
-#include "apps/standard_output.h"
+#include "apps/standard_streams.h"
 #include "core/memory_limit.h"
 #include "stream/plain_text.h"
 

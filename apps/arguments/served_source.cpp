@@ -7,7 +7,7 @@
 #include "apps/arguments/sensor.h"
 #include "apps/arguments/settings.h"
 #include "apps/interrupt.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "capture/recording/recording_footage.h"
 #include "capture/serve/served_frames.h"
 #include "core/error.h"

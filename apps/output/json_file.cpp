@@ -4,8 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/standard_error.h"
-#include "apps/standard_output.h"
+#include "apps/standard_streams.h"
 #include "io/text_file.h"
 #include "stream/plain_text.h"
 

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "io/partial_output.h"
 
 namespace stipple {

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "apps/output/number_text.h"
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 
 namespace stipple {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "capture/capture_figures.h"
 #include "core/error.h"
 #include "study/report/json_figures.h"

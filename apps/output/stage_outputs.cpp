@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "io/disk_sync.h"
 #include "io/text_file.h"

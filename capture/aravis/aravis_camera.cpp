@@ -9,7 +9,7 @@
 #include "capture/frame_payload.h"
 #include "core/error.h"
 #include "core/geometry.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple {
 namespace {

@@ -16,7 +16,6 @@
 #include "capture/doctor/doctor_findings.h"
 #include "capture/network.h"
 #include "core/error.h"
-#include "core/parsed_number.h"
 #include "core/text.h"
 
 namespace stipple {

@@ -8,7 +8,7 @@
 #include "capture/frame_light.h"
 #include "capture/frame_sequence.h"
 #include "capture/recording/recording_reader.h"
-#include "core/fault_list.h"
+#include "core/message.h"
 #include "io/footage_reader.h"
 
 namespace stipple {

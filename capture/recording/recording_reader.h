@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "capture/recording/recording_format.h"
-#include "core/fault_list.h"
+#include "core/message.h"
 
 namespace stipple {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/best/patch_kernels.h"
 #include "decoder/data_prox.h"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/conventional/fast_gaussian.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "decoder/conventional/frame_decoding.h"
 #include "decoder/decode_method.h"
 #include "decoder/frame_exposures.h"

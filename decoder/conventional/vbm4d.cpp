@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/conventional/block_filter.h"
 #include "decoder/conventional/frame_decoding.h"

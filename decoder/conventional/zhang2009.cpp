@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "decoder/conventional/block_filter.h"
 #include "decoder/conventional/frame_decoding.h"
 

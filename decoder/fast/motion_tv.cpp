@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "core/light.h"
 #include "core/parallel.h"
 #include "decoder/fast/box_blur.h"

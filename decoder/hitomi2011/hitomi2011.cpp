@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "core/parallel.h"
 #include "decoder/hitomi2011/patch_samples.h"
 #include "decoder/measurements.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/key_reader.h"
+#include "core/config.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"

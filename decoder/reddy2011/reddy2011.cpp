@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
 #include "core/index.h"
-#include "core/key_reader.h"
 #include "decoder/measurements.h"
 #include "decoder/mosaic_hues.h"
 #include "decoder/motion/motion.h"

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/index.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "stream/plain_text.h"
 #include "stream/stream_header.h"
 

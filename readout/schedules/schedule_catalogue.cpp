@@ -6,8 +6,8 @@
 #include <array>
 #include <iterator>
 
+#include "core/config.h"
 #include "core/error.h"
-#include "core/key_reader.h"
 #include "core/memory_limit.h"
 #include "core/named_value.h"
 #include "readout/column_addressing.h"

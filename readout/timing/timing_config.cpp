@@ -2,9 +2,9 @@
 #include <string>
 #include <string_view>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "core/geometry.h"
-#include "core/key_reader.h"
 #include "core/named_value.h"
 #include "readout/timing/readout_timing.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple {
 

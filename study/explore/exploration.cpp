@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "study/explore/ranking.h"
 #include "study/explore/trial.h"
 

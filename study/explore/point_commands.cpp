@@ -7,7 +7,6 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/parsed_number.h"
 #include "core/text.h"
 #include "readout/provenance.h"
 #include "study/explore/point_view.h"

@@ -9,7 +9,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 #include "io/footage_part.h"
 
 namespace stipple {

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <utility>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "core/toml_keys.h"
 #include "study/scenes/scene.h"
 
 namespace stipple {

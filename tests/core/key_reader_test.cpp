@@ -1,4 +1,4 @@
-#include "core/key_reader.h"
+#include "core/config.h"
 
 #include <gtest/gtest.h>
 

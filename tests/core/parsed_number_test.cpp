@@ -1,4 +1,4 @@
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 #include <gtest/gtest.h>
 

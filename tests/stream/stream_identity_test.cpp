@@ -1,4 +1,4 @@
-#include "stream/stream_identity.h"
+#include "stream/slot_index.h"
 
 #include <gtest/gtest.h>
 

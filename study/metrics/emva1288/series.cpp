@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/geometry.h"
-#include "core/parsed_number.h"
+#include "core/text.h"
 
 namespace stipple::emva1288 {
 namespace {

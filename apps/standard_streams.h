@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/format.h>
-
 #include <concepts>
 #include <new>
 #include <string>
@@ -84,5 +83,9 @@ void say_kept(const char* output, Text what = kAllBefore) noexcept {
         write_error_text("stipple: what was written before is kept\n");
     }
 }
+
+/// Writes text to standard output. \throws std::system_error at "standard output" if it cannot be
+/// written.
+void print_text(std::string_view text);
 
 }  // namespace stipple

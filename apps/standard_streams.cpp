@@ -1,13 +1,14 @@
-#include "apps/standard_error.h"
+#include "apps/standard_streams.h"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <system_error>
 
 #include "stream/plain_text.h"
 
@@ -105,6 +106,11 @@ std::string in_options(const Parameter& parameter) {
 std::vector<std::string> said_warnings() {
     const std::lock_guard lock(warnings_mutex);
     return warnings;
+}
+
+void print_text(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+        throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
 }  // namespace stipple
