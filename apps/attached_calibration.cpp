@@ -1,5 +1,7 @@
 #include "apps/attached_calibration.h"
 
+#include <system_error>
+
 #include "calibration/calibration_file.h"
 #include "io/text_file.h"
 #include "readout/emulator.h"
@@ -20,10 +22,14 @@ std::string bytes_of(const std::string& file, const SensorSetup& setup) {
 
 AttachedCalibration::AttachedCalibration(const std::string& file, std::filesystem::path stream,
                                          const SensorSetup& setup, const RunOptions& run)
-    : bytes_(bytes_of(file, setup)), output_(stream.replace_extension(".stcal"), run.force) {}
+    : bytes_(bytes_of(file, setup)) {
+    std::error_code absent;
+    stream.replace_extension(".stcal");
+    if (!std::filesystem::equivalent(file, stream, absent)) output_.emplace(stream, run.force);
+}
 
 void AttachedCalibration::write() {
-    write_text(output_, bytes_);
+    if (output_) write_text(*output_, bytes_);
 }
 
 }  // namespace stipple

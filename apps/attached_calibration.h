@@ -11,7 +11,8 @@ namespace stipple {
 
 struct SensorSetup;
 
-/// A copy of a calibration file that goes with a new stream: calibration_beside finds it.
+/// A copy of a calibration file that goes with a new stream, if the file is not beside it already:
+/// calibration_beside finds it.
 class AttachedCalibration {
   public:
     /// \throws InputError as read_calibration for the stream of `setup`, and as PendingOutput.
@@ -22,7 +23,7 @@ class AttachedCalibration {
 
   private:
     std::string bytes_;
-    PendingOutput output_;
+    std::optional<PendingOutput> output_;
 };
 
 }  // namespace stipple

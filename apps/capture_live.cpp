@@ -54,7 +54,7 @@ LiveCameraOptions camera_options(const LiveArguments& arguments) {
 LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
                       LiveEmulatorOptions options, const RunOptions& run) {
     constexpr double kRateAfterS = 1;
-    const SensorParams& sensor = recorder.setup().params;
+    const SensorParams& sensor = recorder.emulator().setup().params;
     const auto frames = options.limits.total();
     LiveEmulator emulator(camera, std::move(to_light), recorder, std::move(options));
     Progress progress(run, "emulating live", frames);

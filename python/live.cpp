@@ -90,7 +90,7 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
     static_cast<void>(progress.reach(static_cast<double>(result.latencies.count())));
     result.totals.repeated = setup.camera.stop().repeated;
     if (result.latencies.count() == 0) return result;
-    warnings.take(camera_rate_warning(result.rate, recorder.setup().params));
+    warnings.take(camera_rate_warning(result.rate, recorder.emulator().setup().params));
     put_in_place(recorder, result);
     if (setup.preview) setup.preview->finish(!goes_on);
     return result;
