@@ -80,13 +80,21 @@ void examine(const std::string& address, std::vector<DoctorFinding>& findings) {
         findings.push_back({Level::kFact, name, value, ""});
 }
 
+/// What an error says without its hint to ask the doctor.
+std::string fact_of(const DeviceError& error) {
+    constexpr std::string_view kHint = " (\"stipple capture doctor\")";
+    std::string fact = error.what();
+    if (const auto at = fact.find(kHint); at != std::string::npos) fact.erase(at, kHint.size());
+    return fact;
+}
+
 /// What was found before the camera was lost counts too.
 std::vector<DoctorFinding> examined(const std::string& address) {
     std::vector<DoctorFinding> findings;
     try {
         examine(address, findings);
     } catch (const DeviceError& e) {
-        findings.push_back({Level::kProblem, "camera", e.what(), ""});
+        findings.push_back({Level::kProblem, "camera", fact_of(e), ""});
     }
     return findings;
 }
@@ -100,7 +108,7 @@ std::vector<DoctorFinding> examine_genicam_camera(const std::string& address) {
         std::ranges::move(within_limited_time(address, [address] { return examined(address); }),
                           std::back_inserter(findings));
     } catch (const DeviceError& e) {
-        findings.push_back({Level::kProblem, "camera", e.what(), ""});
+        findings.push_back({Level::kProblem, "camera", fact_of(e), ""});
     }
     return findings;
 }

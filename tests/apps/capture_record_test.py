@@ -244,6 +244,7 @@ class CaptureRecordTest(ProgramTest):
         (camera,) = [one for one in findings if one["subject"] == "camera"]
         self.assertEqual((camera["level"], camera["fix"]), ("problem", ""))
         self.assertIn("check power, cable", camera["fact"])
+        self.assertNotIn("doctor", camera["fact"])
 
     def test_what_cannot_be_is_refused(self):
         self.serve()
