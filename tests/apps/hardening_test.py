@@ -1,4 +1,5 @@
-"""What the loader is told of an optimised program, and what it calls to check its buffers (cmake/Hardening.cmake)."""
+"""What the loader is told of an optimised program, what it calls to check its buffers (cmake/Hardening.cmake), and that
+it does not say where it was built."""
 
 import os
 import subprocess
@@ -36,6 +37,11 @@ class HardeningTest(unittest.TestCase):
         symbols = readelf("--dyn-syms", PROGRAM)
         self.assertIn(" __stack_chk_fail@", symbols)
         self.assertIn(" __memcpy_chk@", symbols)
+
+    def test_no_file_names_the_folder_of_the_sources(self):
+        sources = os.fsencode(Path(__file__).parents[2])
+        for file in (PROGRAM, LIBRARY):
+            self.assertNotIn(sources, Path(file).read_bytes())
 
 
 if __name__ == "__main__":
