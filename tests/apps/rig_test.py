@@ -135,6 +135,8 @@ class RigTest(ProgramTest):
             with self.subTest(text):
                 self.fails(INPUT, parts, "emulate", "light.npy", "-o", "rig", "--rig", "bad.toml")
         self.fails(INPUT, ["nosuch", "rigs"], "emulate", "light.npy", "-o", "rig", "--rig", "nosuch")
+        self.fails(INPUT, ['did you mean "tocci2011_slow"?'], "emulate", "light.npy", "-o", "rig", "--rig",
+                   "tocci2011_slo")
 
     def test_streams_that_do_not_belong_together_are_refused(self):
         self.emulate()

@@ -106,6 +106,7 @@ frames = 36"""))
         done = self.run_program("rivals", "nosuch", "-o", "r", "--space", "space.toml")
         self.assertEqual((done.returncode, done.stdout.count("nosuch"), done.stderr.count("nosuch")), (INPUT, 0, 1))
         self.assertIn("nosuch: there is no such file or folder", done.stderr)
+        self.fails(INPUT, ['did you mean "hardware best"?'], "rivals", "pan", "-o", "r", "--system", "hardwar best")
 
     def test_the_figures_of_a_rig_are_those_of_the_commands(self):
         (self.folder / "rig.toml").write_text("""
