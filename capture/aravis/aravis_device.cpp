@@ -51,8 +51,8 @@ ArvDevice* open_usb(const std::string& address, const std::string& serial) {
         if (device != nullptr) return device;
         throw DeviceError(address,
                           fmt::format("cannot be opened ({}): another program may have it, "
-                                      "or this user may not (\"stipple capture doctor\")",
-                                      error.text()));
+                                      "or this user may not{}",
+                                      error.text(), kAskDoctor));
     }
     throw DeviceError(address,
                       "no USB3 Vision camera has this serial number: check the cable, and "

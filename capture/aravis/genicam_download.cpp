@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "capture/doctor/doctor_findings.h"
 #include "capture/serve/big_endian.h"
 #include "capture/serve/gige_registers.h"
 #include "capture/serve/gvcp_codec.h"
@@ -170,9 +171,10 @@ void check_genicam_download(const std::string& address, std::uint32_t ip) {
         check_description(memory);
     } catch (const Unusable& unusable) {
         if (!unusable.why.empty()) throw DeviceError(address, unusable.why);
-        throw DeviceError(address,
-                          "no camera answers: check power, cable and that the address is in the "
-                          "subnet of an interface of this machine (\"stipple capture doctor\")");
+        throw DeviceError(
+            address, fmt::format("no camera answers: check power, cable and that the address is "
+                                 "in the subnet of an interface of this machine{}",
+                                 kAskDoctor));
     }
 }
 

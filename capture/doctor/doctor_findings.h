@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stipple {
@@ -15,6 +16,9 @@ struct DoctorFinding {
     std::string fact;     ///< finding, with numbers
     std::string fix;      ///< advice, if possible a command; empty if none is needed here
 };
+
+/// The hint of errors whose cause the doctor may find; its own findings do not have it.
+inline constexpr std::string_view kAskDoctor = " (\"stipple capture doctor\")";
 
 /// Network of this machine for the GigE Vision camera at "gige:IP", for all such cameras if the
 /// address is empty: the interfaces that lead there with address and MTU, receive buffer,

@@ -80,11 +80,10 @@ void examine(const std::string& address, std::vector<DoctorFinding>& findings) {
         findings.push_back({Level::kFact, name, value, ""});
 }
 
-/// What an error says without its hint to ask the doctor.
 std::string fact_of(const DeviceError& error) {
-    constexpr std::string_view kHint = " (\"stipple capture doctor\")";
     std::string fact = error.what();
-    if (const auto at = fact.find(kHint); at != std::string::npos) fact.erase(at, kHint.size());
+    if (const auto at = fact.find(kAskDoctor); at != std::string::npos)
+        fact.erase(at, kAskDoctor.size());
     return fact;
 }
 
