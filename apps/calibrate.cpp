@@ -12,7 +12,7 @@
 #include "apps/calibrate.h"
 #include "apps/output/json_file.h"
 #include "apps/output/leftovers.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"
 #include "calibration/chip_estimate.h"

@@ -6,7 +6,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/subcommands.h"
 #include "capture/camera_kind.h"
 #include "core/error.h"

@@ -9,7 +9,7 @@
 #include "apps/arguments/served_source.h"
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "capture/serve/gige_server.h"

@@ -12,8 +12,8 @@
 
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
 #include "apps/output/progress.h"
+#include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 #include "core/error.h"
 #include "readout/emulator.h"

@@ -35,8 +35,6 @@ void require_figures(const ExploreRun& what, const Exploration& exploration);
 /// "results/report.html: 4 run, 0 known before, 0 failed"
 [[nodiscard]] std::string counts_text(const ExploreRun& what, const Exploration& exploration);
 
-class Exploration;
-
 /// The points with their figures for people, a line each, and what the figures mean.
 [[nodiscard]] std::string table_text(const Exploration& exploration);
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "core/text.h"
 #include "study/explore/exploration.h"
 

@@ -5,7 +5,7 @@
 #include "apps/arguments/common_options.h"
 #include "apps/mat_volume.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "core/error.h"

@@ -10,7 +10,7 @@
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
 #include "apps/output/leftovers.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "calibration/calibration_file.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "calibration/calibration_file.h"
 #include "stream/plain_text.h"
 

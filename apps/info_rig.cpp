@@ -7,7 +7,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "core/config.h"
 #include "core/error.h"
 #include "core/text.h"

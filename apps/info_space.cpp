@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "core/config.h"
 #include "core/input_file.h"
 #include "core/text.h"

@@ -11,7 +11,7 @@
 
 #include "apps/key_list.h"
 #include "apps/output/json_file.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "core/input_file.h"

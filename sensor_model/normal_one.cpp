@@ -1,9 +1,9 @@
 #include <bit>
 #include <cmath>
 
-#include "sensor_model/horner.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/normal_table.h"
+#include "sensor_model/portable_math.h"
 
 namespace stipple {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "core/philox.h"
-#include "sensor_model/horner.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/poisson.h"
+#include "sensor_model/portable_math.h"
 
 namespace stipple {
 namespace {

@@ -2,11 +2,11 @@
 #include <bit>
 #include <cmath>
 
-#include "sensor_model/horner.h"
 #include "sensor_model/normal.h"
 #include "sensor_model/poisson.h"
 #include "sensor_model/poisson_sum.h"
 #include "sensor_model/poisson_table.h"
+#include "sensor_model/portable_math.h"
 
 namespace stipple {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "sensor_model/horner.h"
+#include "sensor_model/portable_math.h"
 #include "sensor_model/sensor_keys.h"
 
 namespace stipple {

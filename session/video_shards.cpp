@@ -16,7 +16,7 @@
 #include "readout/footage_origin.h"
 #include "session/decode_session.h"
 #include "session/shard_folder.h"
-#include "stream/slot_index.h"
+#include "stream/crc32c.h"
 
 namespace stipple {
 namespace fs = std::filesystem;
@@ -112,6 +112,11 @@ DecodingIdentity parse_identity(const std::string& text, const fs::path& where) 
         throw InputError(where.string(),
                          fmt::format("is of another version of this program: {}", other));
     return identity;
+}
+
+std::string window_mark(std::int64_t number, std::string_view decoding) {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(decoding.data());
+    return fmt::format("window {} of {:08x}", number, crc32c({bytes, decoding.size()}));
 }
 
 VideoShards::VideoShards(fs::path folder, const DecodingIdentity& identity)

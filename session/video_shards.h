@@ -50,6 +50,10 @@ struct DecodingIdentity {
 [[nodiscard]] DecodingIdentity parse_identity(const std::string& text,
                                               const std::filesystem::path& where);
 
+/// The comment in the header of window `number` of a decoding: it has the CRC-32C of `decoding`,
+/// the text of its decoding.json, so that no window of another decoding is taken for it.
+[[nodiscard]] std::string window_mark(std::int64_t number, std::string_view decoding);
+
 /// A folder with a decoded stream in windows, each a complete file `window_000000.npy` or absent.
 /// The windows are the blocks that the decoder decodes independently. `decoding.json` holds the
 /// identity. Each window names its number and the CRC of the identity, so that none of another

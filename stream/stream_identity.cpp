@@ -1,12 +1,12 @@
-#include "stream/slot_index.h"
+#include "stream/stream_reader.h"
 
 #include <fmt/format.h>
 
 #include <cstddef>
 
 #include "stream/buffered_reader.h"
-#include "stream/crc32c.h"
 #include "stream/header_codec.h"
+#include "stream/slot_index.h"
 
 namespace stipple {
 
@@ -19,11 +19,6 @@ std::optional<std::string> stream_identity(const std::filesystem::path& file) {
     const auto index = read_trailing_index(window, framing);
     if (!index || !index->checksum) return std::nullopt;
     return fmt::format("crc {:08x} {:08x}", framing.seed, *index->checksum);
-}
-
-std::string window_mark(std::int64_t number, std::string_view decoding) {
-    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(decoding.data());
-    return fmt::format("window {} of {:08x}", number, crc32c({bytes, decoding.size()}));
 }
 
 }  // namespace stipple

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "readout/emulation_figures.h"
 #include "readout/sensor_file.h"
 #include "study/report/json_figures.h"

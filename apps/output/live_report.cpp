@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/output/emulation_text.h"
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "study/report/json_figures.h"
 
 namespace stipple {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 
 namespace stipple {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/output/number_text.h"
+#include "apps/output/text_layout.h"
 #include "readout/timing/readout_figures.h"
 #include "study/report/json_figures.h"
 

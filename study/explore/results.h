@@ -12,8 +12,6 @@
 
 namespace stipple {
 
-class Exploration;
-
 /// Nothing, a text, a figure or a count.
 using TableValue = std::variant<std::monostate, std::string, double, int>;
 

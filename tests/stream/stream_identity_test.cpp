@@ -1,4 +1,4 @@
-#include "stream/slot_index.h"
+#include "stream/stream_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -38,10 +38,6 @@ TEST_F(StreamIdentityTest, NeedsTheEndOfTheStream) {
         EXPECT_EQ(identity(whole.substr(0, whole.size() - lacking)), std::nullopt);
     EXPECT_EQ(identity(whole + "x"), std::nullopt);
     EXPECT_THROW(identity("no stream, but long enough"), InputError);
-}
-
-TEST(WindowMarkTest, HasTheChecksumOfTheDecoding) {
-    EXPECT_EQ(window_mark(3, "123456789"), "window 3 of e3069283");  // check value of CRC-32C
 }
 
 }  // namespace
