@@ -110,7 +110,8 @@ endfunction()
 
 # stipple_fuzz(NAME file.cpp LIBS lib ... [MUTATOR file.cpp]): `file.cpp` defines LLVMFuzzerTestOneInput,
 # MUTATOR LLVMFuzzerCustomMutator, tests/fuzz/corpus/NAME holds its inputs. With STIPPLE_FUZZ a libFuzzer
-# program, which a test runs for 5 s and scripts/fuzz for longer; without, the corpus alone is replayed,
+# program, which a test runs for 5 s and scripts/fuzz for longer (an input may take 60 s: the largest
+# hardware tile takes 1.4 s in a release build and 20 times that here); without, the corpus alone is replayed,
 # with any compiler.
 function(stipple_fuzz name source)
     cmake_parse_arguments(arg "" "MUTATOR" "LIBS" ${ARGN})
@@ -124,7 +125,7 @@ function(stipple_fuzz name source)
         set(found ${CMAKE_BINARY_DIR}/fuzz/${name})  # new inputs stay out of the source tree
         file(MAKE_DIRECTORY ${found})
         add_test(NAME fuzz_${name}_finds_nothing
-                 COMMAND fuzz_${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=4096
+                 COMMAND fuzz_${name} -max_total_time=5 -timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=4096
                          -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/ ${found} ${corpus})
         set_tests_properties(fuzz_${name}_finds_nothing PROPERTIES LABELS fuzz)
     else()
