@@ -7,6 +7,7 @@
 namespace stipple {
 
 void SlotIndex::add(IndexEntry entry) {
+    if (!entries_.empty() && entry.slot <= entries_.back().slot) return;
     if (entry.slot % stride_ != 0) return;
     if (entries_.size() == max_entries_) {
         stride_ *= 2;
@@ -14,6 +15,13 @@ void SlotIndex::add(IndexEntry entry) {
         if (entry.slot % stride_ != 0) return;
     }
     entries_.push_back(entry);
+}
+
+std::optional<IndexEntry> last_before(std::span<const IndexEntry> entries, std::int64_t slot) {
+    if (slot < 0) return std::nullopt;
+    const auto after =
+        std::ranges::upper_bound(entries, static_cast<std::uint64_t>(slot), {}, &IndexEntry::slot);
+    return after == entries.begin() ? std::nullopt : std::optional(*(after - 1));
 }
 
 void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> payload) {

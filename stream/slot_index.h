@@ -20,6 +20,10 @@ struct IndexEntry {
 
 inline constexpr std::size_t kIndexEntryBytes = 16;
 
+/// The last of `entries`, whose slots rise, that is not after `slot`.
+[[nodiscard]] std::optional<IndexEntry> last_before(std::span<const IndexEntry> entries,
+                                                    std::int64_t slot);
+
 /// The offsets of slots in a file of any length, in bounded memory: beyond `max_entries` entries it
 /// keeps only every second one, then every fourth, and so on.
 class SlotIndex {
@@ -27,7 +31,7 @@ class SlotIndex {
     explicit SlotIndex(std::size_t max_entries = std::size_t{1} << 16U)
         : max_entries_(max_entries) {}
 
-    /// Precondition: slots rise.
+    /// Slots rise; one that does not is left out.
     void add(IndexEntry entry);
     [[nodiscard]] std::span<const IndexEntry> entries() const { return entries_; }
 

@@ -3,12 +3,20 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <system_error>
 
 #include "stream/buffered_reader.h"
 #include "stream/header_codec.h"
 #include "stream/slot_index.h"
 
 namespace stipple {
+
+bool is_stream(const std::filesystem::path& path) {
+    std::error_code error;  // the reader of the file says what it is
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    BufferedReader file(path);
+    return begins_as_stream(file.peek(kHeaderStartBytes));
+}
 
 std::optional<std::string> stream_identity(const std::filesystem::path& file) {
     BufferedReader window(file);

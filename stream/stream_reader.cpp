@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/memory_limit.h"
 #include "stream/bit_packing.h"
 #include "stream/buffered_reader.h"
 #include "stream/crc32c.h"
-#include "stream/header_codec.h"
 #include "stream/packet_codec.h"
 #include "stream/packet_order.h"
 #include "stream/slot_index.h"
+#include "stream/stream_start.h"
 
 namespace stipple {
 namespace {
@@ -26,41 +25,6 @@ constexpr std::size_t kSearchBytes = std::size_t{1} << 16U;
 constexpr std::string_view kOtherPackets =
     "the packets are not those that were recorded, though each is good (checksum of all packets)";
 constexpr std::uint64_t kMaxRescanBytes = std::uint64_t{1} << 32U;
-
-/// The next `bytes` bytes, or fewer if they do not come.
-Bytes peek_or_wait(BufferedReader& window, std::size_t bytes, const WaitForMore& wait) {
-    Bytes there = window.peek(bytes);
-    while (there.size() < bytes && wait && wait(window.bytes_read())) there = window.peek(bytes);
-    return there;
-}
-
-/// What a stream says before its first packet.
-struct Opened {
-    StreamHeader header;
-    Framing framing;
-    std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
-};
-
-/// Of a file that is not followed.
-std::uint64_t bytes_of(const BufferedReader& window, const WaitForMore& wait) {
-    return wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput);
-}
-
-Opened read_header(BufferedReader& window, const std::string& where, ReadPolicy policy,
-                   const WaitForMore& wait) {
-    const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), where);
-    const Bytes header = peek_or_wait(window, bytes, wait);
-    if (header.size() < bytes)
-        throw InputError(fmt::format("{}: byte {}", where, header.size()),
-                         fmt::format("the file ends within its header of {} bytes", bytes));
-    std::optional<DueCounts> counts;
-    const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
-                          bytes_of(window, wait)};
-    StreamHeader decoded = decode_header(header, where, use);
-    Opened result{std::move(decoded), framing_of(header), std::move(counts)};
-    window.skip(bytes);
-    return result;
-}
 
 }  // namespace
 
@@ -73,8 +37,9 @@ struct StreamReader::Impl {
           window(file,
                  wait ? BufferedReader::EmptyPipe::kReturn : BufferedReader::EmptyPipe::kWait),
           input_bytes(bytes_of(window, wait)),
-          stream(read_header(window, where, read_policy, wait)),
+          stream(read_stream_start(window, where, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
+          first_packet(window.offset()),
           order(stream.header.shape.rows),
           checksum(stream.framing.seed) {
         report.version = stream.framing.version;
@@ -104,6 +69,8 @@ struct StreamReader::Impl {
     void limit_rescans(std::size_t payload_bytes);
     void extend_damage(std::uint64_t begin, std::uint64_t end);
     void skip_to(StreamPosition position);
+    /// Forgets what was read after the header.
+    void begin_at(IndexEntry place);
 
     std::string where;
     bool strict;
@@ -111,8 +78,10 @@ struct StreamReader::Impl {
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
     BufferedReader window;
     std::uint64_t input_bytes;
-    Opened stream;
+    StreamStart stream;
     std::optional<std::int64_t> slots;
+    std::uint64_t first_packet;  ///< its offset
+    SlotIndex seen;              ///< the slots that were read, up to the last one so far
     PacketOrder order;
     StreamReport report;
     std::optional<std::uint64_t> search_begin;  ///< set while searching
@@ -272,6 +241,7 @@ void StreamReader::Impl::deliver(const PacketHeader& found, Bytes payload, Sampl
     packet.rows = found.rows;
     packet.flags = found.flags;
     skip_to({packet.slot, packet.first_row});
+    if (packet.first_row == 0) seen.add({found.slot, window.offset()});
     packet.dn.resize(found.samples);
     unpack_bits(payload, stream.header.calibration.bit_depth, packet.dn);
     order.advance(packet.rows);
@@ -280,6 +250,20 @@ void StreamReader::Impl::deliver(const PacketHeader& found, Bytes payload, Sampl
     report.payload_bits +=
         std::uint64_t{found.samples} * static_cast<unsigned>(stream.header.calibration.bit_depth);
     report.slots = packet.slot + 1;
+}
+
+void StreamReader::Impl::begin_at(IndexEntry place) {
+    window.seek(place.offset);
+    order = PacketOrder(stream.header.shape.rows);
+    order.begin_at(static_cast<std::int64_t>(place.slot));
+    report = {};
+    report.version = stream.framing.version;
+    search_begin.reset();
+    searched_to = 0;
+    checksum = stream.framing.seed;
+    sought = place.slot > 0;
+    index_offset.reset();
+    end_offset.reset();
 }
 
 void StreamReader::Impl::take_index(const PacketHeader& found) {
@@ -314,13 +298,6 @@ void StreamReader::Impl::count_bytes_after_end() {
         extend_damage(*end_offset, window.offset() + bytes.size());
         window.skip(bytes.size());
     }
-}
-
-bool is_stream(const std::filesystem::path& path) {
-    std::error_code error;  // the reader of the file says what it is
-    if (!std::filesystem::is_regular_file(path, error)) return false;
-    BufferedReader file(path);
-    return begins_as_stream(file.peek(kHeaderStartBytes));
 }
 
 StreamReader::StreamReader(const std::filesystem::path& file, ReadPolicy policy, WaitForMore wait)
@@ -368,12 +345,11 @@ std::optional<std::int64_t> StreamReader::slots() const {
 }
 
 std::int64_t StreamReader::seek(std::int64_t slot) {
-    assert(impl_->report.packets == 0);
-    const auto entry = entry_before(impl_->window, impl_->stream.framing, slot);
-    if (impl_->wait || !entry || entry->slot == 0) return 0;
-    impl_->sought = true;
-    impl_->window.seek(entry->offset);
-    impl_->order.begin_at(static_cast<std::int64_t>(entry->slot));
+    if (impl_->wait || !impl_->window.file_bytes()) return 0;
+    auto place = entry_before(impl_->window, impl_->stream.framing, slot);
+    const auto seen = last_before(impl_->seen.entries(), slot);
+    if (seen && (!place || seen->slot > place->slot)) place = seen;
+    impl_->begin_at(place.value_or(IndexEntry{0, impl_->first_packet}));
     return impl_->order.expected().slot;
 }
 

@@ -93,10 +93,11 @@ class StreamReader {
     /// been read. Nothing if the stream was interrupted, is still growing, or comes through a pipe.
     [[nodiscard]] std::optional<std::int64_t> slots() const;
 
-    /// Moves to the last slot of the index that is not after `slot`, if the file ends with a good
-    /// index, and returns it; else stays at the beginning and returns 0. Then the packets before
-    /// are not in the report, and the checksum of all packets is not checked.
-    /// Precondition: no packet has been read. \throws InputError if the file cannot be read.
+    /// Moves to the last slot that is not after `slot` and whose place is known, by a good index at
+    /// the end of the file or since it was read, and returns it; else to the beginning, 0. The
+    /// report begins anew: the packets before are not in it, and the checksum of all packets is not
+    /// checked. A stream that is followed or comes through a pipe stays where it is, and 0 is
+    /// returned. \throws InputError if the file cannot be read.
     std::int64_t seek(std::int64_t slot);
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the

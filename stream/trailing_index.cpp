@@ -51,12 +51,10 @@ std::optional<std::int64_t> slots_by_index(const BufferedReader& file, const Fra
 std::optional<IndexEntry> entry_before(const BufferedReader& file, const Framing& framing,
                                        std::int64_t slot) {
     const auto index = read_trailing_index(file, framing);
-    if (!index || slot < 0) return std::nullopt;
-    const auto after = std::ranges::upper_bound(index->entries, static_cast<std::uint64_t>(slot),
-                                                {}, &IndexEntry::slot);
-    if (after == index->entries.begin() || !leads_to_slot(*(after - 1), file, framing))
-        return std::nullopt;
-    return *(after - 1);
+    if (!index) return std::nullopt;
+    auto entry = last_before(index->entries, slot);
+    if (entry && !leads_to_slot(*entry, file, framing)) entry.reset();
+    return entry;
 }
 
 std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,

@@ -53,6 +53,27 @@ TEST_F(SeekTest, WithoutAnEndItStaysAtTheBeginning) {
     EXPECT_EQ(read_packets(reader), packets_);
 }
 
+TEST_F(SeekTest, ItMayBeRepeatedBackAndForth) {
+    write(bytes_);
+    StreamReader reader(file_, ReadPolicy::kStrict);
+    for (const std::int64_t slot : {15, 3, 0, 19, 7}) {
+        EXPECT_EQ(reader.seek(slot), slot);
+        EXPECT_EQ(read_packets(reader), from(packets_, slot)) << slot;
+        EXPECT_TRUE(reader.report().complete);
+    }
+}
+
+TEST_F(SeekTest, WithoutAnEndItFindsTheSlotsThatWereRead) {
+    write(bytes_.substr(0, bytes_.size() - 1));
+    StreamReader reader(file_);
+    SamplePacket packet;
+    while (packet.slot < 12) ASSERT_TRUE(reader.next(packet));
+    EXPECT_EQ(reader.seek(5), 5);
+    EXPECT_EQ(read_packets(reader), from(packets_, 5));
+    EXPECT_EQ(reader.seek(17), 17);
+    EXPECT_EQ(read_packets(reader), from(packets_, 17));
+}
+
 TEST_F(SeekTest, DamageBeforeIsNotMetAndDamageAfterIsReported) {
     const StreamBytes stream = bytes_of(header_, packets_);
     std::string damaged = stream.bytes;
