@@ -1,6 +1,7 @@
 """Footage that cannot be used is refused with what is wrong and where."""
 
 import ctypes
+import struct
 import unittest
 
 import numpy as np
@@ -57,6 +58,30 @@ class BadFootageTest(ProgramTest):
         path = self.folder / "frames/f2.png"
         path.write_bytes(path.read_bytes()[:-20])
         self.refuse("frames", "f2.png")
+
+    def write_exr(self, name, *channels):
+        """4 x 2 pixels of the half 0.5; of each channel its name and how many pixels share a sample."""
+        def attribute(name, kind, value):
+            return b"%s\0%s\0%s" % (name.encode(), kind.encode(), struct.pack("<i", len(value)) + value)
+
+        listed = b"".join(name.encode() + struct.pack("<xi4x2i", 1, share, share) for name, share in channels) + b"\0"
+        box, rows = struct.pack("<4i", 0, 0, 3, 1), [sum(4 // n for _, n in channels if y % n == 0) for y in (0, 1)]
+        head = b"".join((struct.pack("<2i", 20000630, 2), attribute("channels", "chlist", listed),
+                         attribute("compression", "compression", b"\0"), attribute("dataWindow", "box2i", box),
+                         attribute("displayWindow", "box2i", box), attribute("lineOrder", "lineOrder", b"\0"),
+                         attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                         attribute("screenWindowCenter", "v2f", bytes(8)),
+                         attribute("screenWindowWidth", "float", struct.pack("<f", 1)))) + b"\0"
+        first = len(head) + 16
+        rows = [struct.pack("<2i", y, 2 * count) + count * np.float16(0.5).tobytes() for y, count in enumerate(rows)]
+        (self.folder / name).write_bytes(head + struct.pack("<2Q", first, first + len(rows[0])) + b"".join(rows))
+
+    def test_luminance_with_chroma_of_fewer_pixels(self):
+        self.write_exr("grey.exr", ("Y", 1))
+        self.succeed("emulate", "grey.exr", "-o", "grey.stipple", "--truth", "grey.npy")
+        np.testing.assert_array_equal(self.array("grey.npy"), np.full((1, 2, 4), 0.5))
+        self.write_exr("yc.exr", ("BY", 2), ("RY", 2), ("Y", 1))
+        self.refuse("yc.exr", "holds the channels BY, RY, Y; give R, G, B or Y alone")
 
     def test_wrong_shape(self):
         self.refuse(self.write_array("flat.npy", np.zeros(5)), "(5)")

@@ -73,6 +73,11 @@ class BadSettingsTest(ProgramTest):
             self.fails(INPUT, parts, "decode", "clip.stipple", "-o", "out.npy",
                        *([] if "--method" in options else ["--method", "fast"]), *options)
 
+    def test_a_key_of_a_method_without_options(self):
+        self.write_stream()
+        self.fails(INPUT, ["--set decoder.foo: is unknown; there are no keys to set\n"], "decode", "clip.stipple", "-o",
+                   "out.npy", "--method", "naive", "--set", "decoder.foo=1")
+
     def test_a_name_that_nobody_knows_with_the_known_ones(self):
         self.refuse(["nobody", "paper"], "--sensor", "nobody")
         self.refuse(["nobody", "full4x", "random", "tiled"], "--schedule", "nobody")

@@ -2,8 +2,10 @@
 
 import json
 import os
+import re
 import resource
 import signal
+import socket
 import struct
 import subprocess
 import threading
@@ -11,9 +13,14 @@ import time
 import unittest
 
 import numpy as np
-from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, USAGE, ProgramTest
+from program import DEVICE, INPUT, OK, PROGRAM, STOPPED, USAGE, ProgramTest, project_path
 
 CAUSES = ("device", "transport", "host_underrun", "queue_drop", "reconnect", "layout")
+
+
+def counted_by_long_live():
+    """What tests/bench/capture/long_live.py takes for an outage in what the program says."""
+    return re.search(r'messages[.]count[(]"(.+)"[)]', project_path("tests/bench/capture/long_live.py").read_text())[1]
 
 
 def records_of(path):
@@ -27,6 +34,34 @@ def records_of(path):
         elif kind == 2 and at <= len(data):
             records.append(np.frombuffer(record, dtype, 1)[0])
     return records
+
+
+class Relay(threading.Thread):
+    """A camera's control channel at another address, until the register 0xE8, DeviceUserID, is read: from then on the
+    camera `goes`, so that nothing is answered, or it asks for another minute."""
+
+    def __init__(self, address, camera, goes=True):
+        super().__init__(daemon=True)
+        self.addresses = [socket.inet_aton(one) for one in (camera, address)]
+        self.camera, self.goes, self.reached = (camera, 3956), goes, threading.Event()
+        self.outside, self.inside = (socket.socket(type=socket.SOCK_DGRAM) for _ in range(2))
+        self.outside.bind((address, 3956))
+        self.inside.bind(("127.0.0.1", 0))
+        self.start()
+
+    def run(self):
+        discovery, read_memory, pending_ack, minute_ms = 0x02, 0x84, 0x89, 60_000
+        while True:
+            request, client = self.outside.recvfrom(65536)
+            if request[3] == read_memory and request[8:12] == b"\0\0\0\xe8":
+                self.reached.set()
+            if not self.reached.is_set():
+                self.inside.sendto(request, self.camera)
+                answer = self.inside.recv(65536)
+                self.outside.sendto(answer.replace(*self.addresses) if request[3] == discovery else answer, client)
+            elif not self.goes:
+                self.outside.sendto(struct.pack(">3H", 0, pending_ack, 4) + request[6:8] + struct.pack(">2H", 0, minute_ms),
+                                    client)
 
 
 class CaptureRecordTest(ProgramTest):
@@ -128,6 +163,31 @@ class CaptureRecordTest(ProgramTest):
         self.fails(INPUT, ['"nothing"', "matches none of"], "capture", "features", self.address, "nothing")
         self.fails(INPUT, ["replay:light.npy: has no features"], "capture", "features", "replay:light.npy")
 
+    def relay(self, **options):
+        """Another address of the camera, as Relay says."""
+        CaptureRecordTest.count += 1
+        relay = Relay(f"127.{150 + self.count}.{self.ip.split('.', 2)[2]}", self.ip, **options)
+        return relay, "gige:" + socket.inet_ntoa(relay.addresses[1])
+
+    def test_a_camera_that_goes_away_while_it_is_looked_at_is_lost(self):
+        self.serve()
+        for command in ("features", "doctor"):
+            relay, address = self.relay()
+            done = self.run_program("capture", command, address)
+            self.assertTrue(relay.reached.is_set(), done.stderr)
+            self.assertEqual(done.returncode, DEVICE, done.stderr)
+            self.assertIn(f"{address}: camera lost: it no longer answers", done.stdout + done.stderr)
+
+    def test_the_doctor_that_waits_for_a_camera_ends_when_told_to(self):
+        self.serve()
+        relay, address = self.relay(goes=False)
+        doctor = self.start_program("capture", "doctor", address, stdout=subprocess.DEVNULL)
+        self.addCleanup(self.end, doctor)
+        self.assertTrue(relay.reached.wait(60))
+        doctor.terminate()
+        errors = doctor.communicate(timeout=20)[1]  # of the minute
+        self.assertEqual(doctor.returncode, 128 + signal.SIGTERM, errors)
+
     def test_a_folder_gets_a_recording_named_by_the_time(self):
         self.serve()
         (self.folder / "clips").mkdir()
@@ -188,11 +248,16 @@ class CaptureRecordTest(ProgramTest):
         figures = json.loads((self.folder / "figures.json").read_text())
         if figures["outages"] == 0:
             self.skipTest("all frames had come before the camera was gone")
+        self.assertEqual(errors.count(counted_by_long_live()), figures["outages"])
         records = records_of(self.folder / "clip.strec")
         self.assertEqual(len(records), 60)
         self.assertGreaterEqual(records[-1]["epoch"], 1)
         for before, record in zip(records, records[1:]):
             self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
+
+    def test_the_text_that_long_live_counts_as_an_outage_is_in_the_program(self):
+        sources = "".join(path.read_text() for path in project_path("apps").rglob("*.cpp"))
+        self.assertIn(f'say_warning("{counted_by_long_live()}', sources)
 
     def test_a_replay_ends_where_its_recording_does(self):
         self.serve()

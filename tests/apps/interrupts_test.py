@@ -109,6 +109,15 @@ class InterruptsTest(ProgramTest):
         self.assertIn(program.returncode, (STOPPED, 143), message)
         self.assertGreaterEqual(len(self.array("out.npy")), 50000 // FRAME_BYTES)
 
+    def test_the_message_names_the_second_signal_that_stops_at_once(self):
+        for number, said in ((signal.SIGTERM, "stipple: stopping when this step is done; a second signal stops at once\n"),
+                             (signal.SIGINT, "\nstipple: stopping when this step is done; a second Ctrl-C stops at once\n")):
+            program = self.endless()
+            program.send_signal(number)
+            message = program.communicate(timeout=60)[1]
+            self.assertTrue(message.startswith(said), message)
+            (self.folder / "out.npy").unlink()
+
     def test_a_terminal_that_closes_leaves_a_shorter_output_too(self):
         program = self.endless()
         program.send_signal(signal.SIGHUP)

@@ -89,6 +89,14 @@ class InputTest(ProgramTest):
                               "x", *option)
             self.assertNotIn("stipple timing", said)
 
+    def test_footage_that_is_too_large_is_told_what_takes_it(self):
+        for name, rows, cols in (("big.npy", 3072, 4096), ("wide.npy", 1200, 2000)):
+            np.lib.format.open_memmap(self.folder / name, "w+", np.uint8, (2, rows, cols))
+        self.fails(INPUT, ["4096 x 3072 pixels", "give --schedule tiled\n"], "emulate", "big.npy", "-o", "x.stipple")
+        wide = ("emulate", "wide.npy", "-o", "x.stipple", "--sensor", "imx273")
+        self.fails(INPUT, ["2000 x 1200 pixels (width x height)", "array of 1408 x 1080", "--crop takes a part"], *wide)
+        self.succeed(*wide, "--crop", "1408x1080")
+
     def test_luminance_is_no_advice_where_sizes_differ(self):
         for rows, advised in ((8, True), (6, False)):
             self.write_array("a.npy", np.zeros((3, rows, 8, 3)))

@@ -53,6 +53,12 @@ class RivalsTest(ProgramTest):
         # As bright as in 1 slot, as dark as in 8.
         self.assertAlmostEqual(coded["sample_range_stops"] - frames["sample_range_stops"], 3, places=9)
 
+    def test_the_page_is_headed_by_the_scene(self):
+        self.rivals("pan", "--system", "frames")
+        page = (self.folder / "results/report.html").read_text()
+        self.assertIn("<title>Rivals: pan</title>", page)
+        self.assertNotIn("space.toml</", page)
+
     def test_the_figures_are_those_of_explore(self):
         rows = self.rivals()
         self.figures("explore", "space.toml", "-o", "explored", "--no-report")

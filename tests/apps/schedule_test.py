@@ -84,8 +84,24 @@ class ShowTest(ProgramTest):
             self.assertTrue(text.startswith(f"{name}.svg: {name}: tile of "), text)
             image = ElementTree.parse(self.folder / f"{name}.svg").getroot()
             self.assertTrue(image.tag.endswith("svg"))
-        self.succeed("schedule", "show", "random", "-o", "random.png", "--pixels", "16")
-        self.assertTrue((self.folder / "random.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_an_image_has_a_dot_for_each_reading_of_the_text(self):
+        for name in ("random", "two_bucket", "global_flutter", "rolling"):
+            show = ("schedule", "show", name, "--size", "32x32", "--slots", 60)
+            self.succeed(*show, "-o", f"{name}.svg")
+            dots = re.findall("<use [^>]*#gpPt6' transform", (self.folder / f"{name}.svg").read_text())
+            lanes = re.findall(r"^ .*[12)] +([-.\d+]{60})$", self.succeed(*show), re.M)
+            self.assertEqual(len(dots) - 1, len(re.findall(r"[\d+]", "".join(lanes))), name)  # 1: of the legend
+
+    def test_an_image_has_each_colour_as_often_as_pixels_expose_so_long(self):
+        """Viridis, the longest exposures darkest. Borders of boxes take more of the short ones."""
+        self.succeed("schedule", "show", "random", "-o", "random.png", "--pixels", 16, "--slots", 60)
+        self.succeed("emulate", "random.png", "-o", "x.stipple", "--transfer", "linear", "--truth", "image.npy")
+        image = np.rint(255 * self.array("image.npy")).astype(int).reshape(-1, 3)
+        colours, counts = np.unique(image[np.ptp(image, axis=1) > 0], axis=0, return_counts=True)
+        order = np.argsort(counts)[:-5:-1]
+        self.assertEqual(colours[order[[0, 3]]].tolist(), [[68, 1, 84], [253, 231, 37]])
+        np.testing.assert_allclose(counts[order] / counts[order].sum(), np.array([8, 4, 2, 1]) / 15, rtol=0.1)
 
     def test_a_image_of_another_kind_is_refused(self):
         self.fails(USAGE, ["chart.pdf", ".png"], "schedule", "show", "random", "-o", "chart.pdf")

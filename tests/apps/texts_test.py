@@ -53,6 +53,12 @@ class TextsTest(ProgramTest):
         self.check(text, "# % of the samples saturated, # % at DN 0", 100 * figures["saturated_fraction"],
                    100 * figures["zero_fraction"])
 
+    def test_a_rate_of_a_hundred_thousand_has_no_exponent(self):
+        for slot_us, rate in ((10, 100000), (8.1, 123457)):
+            text = self.succeed("emulate", self.write_ramp(), "-o", "a.stipple", "--sensor", "lux1310", "--overrun", "drop",
+                                "--set", f"sensor.slot_us={slot_us}", "--force")
+            self.assertIn(f"readout      {rate} slots/s of the sensor", text)
+
     def test_timing(self):
         text, figures = self.told("timing", "--sensor", "lux1310")
         self.check(text, "full +# readouts/s: # clocks, # a row", figures["full_readout_hz"], figures["frame_clocks"],

@@ -107,6 +107,11 @@ class StreamTest(ProgramTest):
             np.testing.assert_array_equal(samples, stream.samples(slot))
         self.assertEqual(slot, 6)
 
+    def test_says_what_it_holds(self):
+        for slots, said in ((1, "1 slot of"), (2, "2 slots of")):
+            stream = stipple.emulate(np.full((slots, 6, 4, 3), 0.2))
+            self.assertEqual(repr(stream), f"<stipple.Stream (temporary): {said} 4 x 6 x 3>")
+
     def test_is_closed_after_its_block(self):
         files = set(os.listdir("/proc/self/fd"))
         with stipple.emulate(np.full((5, 6, 10), 0.2)) as stream:
