@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "capture/camera.h"
 #include "capture/capture_session.h"
@@ -20,6 +22,11 @@ namespace stipple {
 [[nodiscard]] std::unique_ptr<Camera> open_image_camera(const std::string& address,
                                                         const CameraSettings& settings,
                                                         const CameraBuffers& buffers);
+
+/// From now on `tell` gets what GLib and Aravis say of a camera, which standard error got before:
+/// the first 200 bytes of each text, once, of at most 20 texts. They may hold bytes of the camera.
+/// `tell` is called by any thread, of the whole process; it must not throw.
+void tell_camera_messages(std::function<void(std::string_view)> tell);
 
 /// Session options without the stall timeout for a replay: a replay has an end, and the pauses of
 /// its recording.

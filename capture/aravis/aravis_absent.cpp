@@ -1,5 +1,6 @@
 #include "capture/aravis/aravis_camera.h"
 #include "capture/doctor/doctor_findings.h"
+#include "capture/open_camera.h"
 #include "core/error.h"
 
 namespace stipple {
@@ -8,6 +9,8 @@ std::unique_ptr<Camera> open_aravis_camera(const std::string& address, const Cam
                                            const CameraBuffers&) {
     throw DeviceError(address, "built without Aravis: configure with -DSTIPPLE_ARAVIS=ON");
 }
+
+void tell_camera_messages(std::function<void(std::string_view)>) {}
 
 std::vector<CameraListing> list_aravis_cameras() {
     throw DeviceError("GenICam cameras",
