@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -49,13 +48,12 @@ std::string text_of(const ResponseFit& response) {
                        rounded(response.error_dn), response.levels);
 }
 
-nlohmann::ordered_json json_of(const ChipEstimate& estimate, double gain_error) {
-    const auto pattern = [](const PatternVariances& p) -> nlohmann::ordered_json {
-        return {{"mean", p.mean},
-                {"pixels", std::sqrt(p.pixels)},
-                {"rows", std::sqrt(p.rows)},
-                {"columns", std::sqrt(p.cols)},
-                {"outliers", p.outliers}};
+nlohmann::ordered_json json_of(const ChipEstimate& estimate, const ChipFigures& figures) {
+    const auto map = [](const MapFigures& stored,
+                        const PatternVariances& p) -> nlohmann::ordered_json {
+        return {{"mean", stored.mean},           {"deviation", stored.deviation},
+                {"pixels", std::sqrt(p.pixels)}, {"rows", std::sqrt(p.rows)},
+                {"columns", std::sqrt(p.cols)},  {"outliers", p.outliers}};
     };
     const ChipCalibration& c = estimate.calibration;
     return {{"rows", c.shape.rows},
@@ -63,27 +61,17 @@ nlohmann::ordered_json json_of(const ChipEstimate& estimate, double gain_error) 
             {"planes", c.shape.planes},
             {"flats", c.flats},
             {"darks", c.darks},
-            {"gain", pattern(estimate.gain)},
-            {"gain_error", gain_error},
-            {"offset_dn", pattern(estimate.offset_dn)},
-            {"dark_dn_per_s", pattern(estimate.dark_dn_per_s)},
-            {"readout_noise_dn2", pattern(estimate.readout_noise_dn2)},
+            {"gain", map(figures.gain, estimate.gain)},
+            {"gain_error", figures.gain_error},
+            {"offset_dn", map(figures.offset_dn, estimate.offset_dn)},
+            {"dark_dn_per_s", map(figures.dark_dn_per_s, estimate.dark_dn_per_s)},
+            {"readout_noise_dn2", map(figures.readout_noise_dn2, estimate.readout_noise_dn2)},
             {"response", json_of(estimate.response)},
-            {"defects", estimate.defects}};
+            {"defects", figures.defects}};
 }
 
-/// Root mean square of the standard deviations of the gains.
-double gain_error_of(const ChipCalibration& calibration) {
-    double sum = 0;
-    for (const SiteCalibration& site : calibration.sites)
-        sum += static_cast<double>(site.gain_variance);
-    return std::sqrt(sum / static_cast<double>(calibration.sites.size()));
-}
-
-std::string text_of(const std::string& file, const ChipEstimate& estimate, double gain_error) {
-    const auto deviation = [](const PatternVariances& p) {
-        return rounded(std::sqrt(p.pixels + p.rows + p.cols));
-    };
+std::string text_of(const std::string& file, const ChipEstimate& estimate,
+                    const ChipFigures& figures) {
     const ChipCalibration& c = estimate.calibration;
     return fmt::format(
         "{}: {} x {} pixels from {} and {} of each\n"
@@ -94,24 +82,16 @@ std::string text_of(const std::string& file, const ChipEstimate& estimate, doubl
         "  response      {}\n"
         "  defects       {}",
         file, c.shape.cols, c.shape.rows, counted(c.flats, "flat"), counted(c.darks, "dark"),
-        deviation(estimate.gain), rounded(gain_error), rounded(estimate.offset_dn.mean),
-        deviation(estimate.offset_dn), rounded(estimate.dark_dn_per_s.mean),
-        deviation(estimate.dark_dn_per_s),
-        rounded(std::sqrt(std::max(estimate.readout_noise_dn2.mean, 0.0))),
-        text_of(estimate.response), estimate.defects);
+        rounded(figures.gain.deviation), rounded(figures.gain_error),
+        rounded(figures.offset_dn.mean), rounded(figures.offset_dn.deviation),
+        rounded(figures.dark_dn_per_s.mean), rounded(figures.dark_dn_per_s.deviation),
+        rounded(std::sqrt(figures.readout_noise_dn2.mean)), text_of(estimate.response),
+        figures.defects);
 }
 
 void write(PendingOutput& output, const ChipCalibration& calibration) {
     const auto bytes = encode_chip_calibration(calibration);
     write_text(output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
-/// Root mean square distance of the gains to 1.
-double gain_spread_of(const ChipCalibration& calibration) {
-    double sum = 0;
-    for (const SiteCalibration& site : calibration.sites)
-        sum += std::pow(static_cast<double>(site.gain) - 1, 2);
-    return std::sqrt(sum / static_cast<double>(calibration.sites.size()));
 }
 
 /// The gains from a stream of any scene.
@@ -120,14 +100,14 @@ void write_scene_gains(const CalibrateOptions& options, const RunOptions& run, J
     const ChipCalibration calibration = calibrate_by_scene(options.scene, run);
     write(output, calibration);
     const FrameShape shape = calibration.shape;
-    const double spread = gain_spread_of(calibration);
+    const MapFigures gain = chip_figures(calibration).gain;
     json.write({{"rows", shape.rows},
                 {"cols", shape.cols},
                 {"planes", shape.planes},
-                {"gain", {{"mean", 1}, {"pixels", spread}}}});
+                {"gain", {{"mean", gain.mean}, {"deviation", gain.deviation}}}});
     run.say(fmt::format("{}: {} x {} pixels from the scene of {}\n  gain          1 +- {}",
                         options.output, shape.cols, shape.rows, options.scene.stream,
-                        rounded(spread)));
+                        rounded(gain.deviation)));
 }
 
 void calibrate(const CalibrateOptions& options, const RunOptions& run) {
@@ -146,9 +126,9 @@ void calibrate(const CalibrateOptions& options, const RunOptions& run) {
                                            .dark_current = !options.no_dark_current});
     estimate.calibration.chip = fields.chip;
     write(output, estimate.calibration);
-    const double gain_error = gain_error_of(estimate.calibration);
-    json.write(json_of(estimate, gain_error));
-    run.say(text_of(options.output, estimate, gain_error));
+    const ChipFigures figures = chip_figures(estimate.calibration);
+    json.write(json_of(estimate, figures));
+    run.say(text_of(options.output, estimate, figures));
 }
 
 /// One source of samples, and what belongs to it.

@@ -154,11 +154,11 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
         throw_if_stopped();
         throw_early_end(emulation, address);
     }
-    if (put_in_place(recorder, emulation)) say_kept(arguments.output.c_str());
+    if (commit_recording(recorder, emulation)) report_kept(arguments.output.c_str());
     if (preview) preview->finish(say_slow_preview);
     const auto& end = emulation.end;
     if (!emulation.failure && end && (end->bad_file || !end->at_end))
-        say_kept(arguments.output.c_str());
+        report_kept(arguments.output.c_str());
     throw_early_end(emulation, address);
     tell({emulation, recorder, camera}, arguments, preview.get(), json, run);
     if (arguments.fails_on_loss) throw_if_lost(losses_text(emulation.totals), arguments.output);

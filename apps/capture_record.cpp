@@ -86,7 +86,7 @@ void check_end(const CameraRecording& recording, const std::string& file,
     if (!recording.kept) throw_if_stopped();
     const auto& lost = recording.lost;
     if (recording.kept && (recording.failure || (lost && (lost->bad_file || !lost->at_end))))
-        say_kept(file.c_str(), [&] { return counted(recording.end.frames, "frame"); });
+        report_kept(file.c_str(), [&] { return counted(recording.end.frames, "frame"); });
     throw_early_end(recording, address);
 }
 
@@ -133,7 +133,8 @@ void record_coded_stream(const RecordArguments& arguments, const RunOptions& run
             return stop_signal() == 0;
         });
     }();
-    if ((recording.failure || recording.lost) && recording.kept) say_kept(arguments.output.c_str());
+    if ((recording.failure || recording.lost) && recording.kept)
+        report_kept(arguments.output.c_str());
     if (!recording.failure && !recording.lost && !recording.kept) throw_if_stopped();
     throw_early_end(recording, address);
     json.write({{"slots", recording.slots},

@@ -10,7 +10,6 @@
 
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
-#include "apps/attached_calibration.h"
 #include "apps/emulate.h"
 #include "apps/interrupt.h"
 #include "apps/output/emulation_text.h"
@@ -29,7 +28,7 @@
 #include "io/video_reader.h"
 #include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/waveform_file.h"
+#include "readout/timing/waveform.h"
 
 namespace stipple {
 namespace {

@@ -17,7 +17,6 @@
 #include "apps/standard_streams.h"
 #include "core/error.h"
 #include "readout/emulator.h"
-#include "readout/lead_in.h"
 #include "session/stream_shards.h"
 
 namespace stipple {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,25 +15,6 @@
 namespace stipple {
 namespace {
 
-/// Mean and standard deviation over the sites without defect; NaN without such sites.
-struct MapFigures {
-    double mean = 0;
-    double deviation = 0;
-};
-
-MapFigures figures_of(const ChipCalibration& calibration, float SiteCalibration::*number) {
-    double count = 0, sum = 0, squares = 0;
-    for (const SiteCalibration& site : calibration.sites) {
-        if (site.defect) continue;
-        const auto value = static_cast<double>(site.*number);
-        ++count;
-        sum += value;
-        squares += value * value;
-    }
-    const double mean = sum / count;
-    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0))};
-}
-
 nlohmann::ordered_json json_of(const MapFigures& figures) {
     return {{"mean", figures.mean}, {"deviation", figures.deviation}};
 }
@@ -44,12 +24,8 @@ nlohmann::ordered_json json_of(const MapFigures& figures) {
 void info_calibration(const std::string& file, const RunOptions& run) {
     JsonFile json(run);
     const ChipCalibration c = read_chip_calibration(file);
-    const MapFigures gain = figures_of(c, &SiteCalibration::gain);
-    const double gain_error = std::sqrt(figures_of(c, &SiteCalibration::gain_variance).mean);
-    const MapFigures offset = figures_of(c, &SiteCalibration::offset_dn);
-    const MapFigures dark = figures_of(c, &SiteCalibration::dark_dn_per_s);
-    const double noise_dn = std::sqrt(figures_of(c, &SiteCalibration::readout_noise_dn2).mean);
-    const auto defects = std::ranges::count_if(c.sites, &SiteCalibration::defect);
+    const ChipFigures figures = chip_figures(c);
+    const double noise_dn = std::sqrt(figures.readout_noise_dn2.mean);
     const std::vector<float>& linear = c.response.linear_dn;
     nlohmann::ordered_json response;  // null: linear
     if (!linear.empty())
@@ -67,13 +43,13 @@ void info_calibration(const std::string& file, const RunOptions& run) {
                 {"bit_depth", c.bit_depth},
                 {"flats", c.flats},
                 {"darks", c.darks},
-                {"gain", json_of(gain)},
-                {"gain_error", gain_error},
-                {"offset_dn", json_of(offset)},
-                {"dark_dn_per_s", json_of(dark)},
+                {"gain", json_of(figures.gain)},
+                {"gain_error", figures.gain_error},
+                {"offset_dn", json_of(figures.offset_dn)},
+                {"dark_dn_per_s", json_of(figures.dark_dn_per_s)},
                 {"readout_noise_dn", noise_dn},
                 {"response", response},
-                {"defects", defects}});
+                {"defects", figures.defects}});
     run.say(fmt::format(
         "calibration  {} x {} pixels, {} of {} bits{}{}\n"
         "frames       {}, {}\n"
@@ -86,13 +62,14 @@ void info_calibration(const std::string& file, const RunOptions& run) {
         c.shape.cols, c.shape.rows, counted(c.shape.planes, "plane"), c.bit_depth,
         c.chip.name.empty() ? "" : fmt::format(", sensor {}", terminal_text(c.chip.name)),
         c.chip.device_id ? fmt::format(", device id {}", *c.chip.device_id) : "",
-        counted(c.flats, "flat"), counted(c.darks, "dark"), rounded(gain.deviation),
-        rounded(gain_error), rounded(offset.mean), rounded(offset.deviation), rounded(dark.mean),
-        rounded(dark.deviation), rounded(noise_dn),
+        counted(c.flats, "flat"), counted(c.darks, "dark"), rounded(figures.gain.deviation),
+        rounded(figures.gain_error), rounded(figures.offset_dn.mean),
+        rounded(figures.offset_dn.deviation), rounded(figures.dark_dn_per_s.mean),
+        rounded(figures.dark_dn_per_s.deviation), rounded(noise_dn),
         linear.empty() ? "linear"
                        : fmt::format("table; {} DN stand for {} linear DN", linear.size() - 1,
                                      rounded(static_cast<double>(linear.back()))),
-        defects));
+        figures.defects));
 }
 
 }  // namespace stipple

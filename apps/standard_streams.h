@@ -73,7 +73,7 @@ constexpr auto kAllBefore = [] { return "what was written before is"; };
 /// Tells that the data written to `output` by a failed run are kept; without the name if there is
 /// no memory for it.
 template <typename Text = decltype(kAllBefore)>
-void say_kept(const char* output, Text what = kAllBefore) noexcept {
+void report_kept(const char* output, Text what = kAllBefore) noexcept {
     try {
         const std::string line =
             fmt::format("stipple: {}: {} kept\n", terminal_text(output), what());

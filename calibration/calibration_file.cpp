@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/input_file.h"
+#include "core/text.h"
 #include "stream/crc32c.h"
 #include "stream/little_endian.h"
 #include "stream/plain_text.h"
@@ -68,15 +69,15 @@ FrameShape take_shape(ByteCursor& cursor) {
     shape.planes = cursor.take<std::uint8_t>();
     if (shape.rows == 0 || shape.cols == 0 || shape.planes == 0 || shape.planes > 4 ||
         shape.sites() > kMaxFrameSites)
-        cursor.fail(fmt::format("an array of {} x {} pixels in {} planes", shape.cols, shape.rows,
-                                shape.planes));
+        cursor.fail(fmt::format("an array of {} x {} pixels in {}", shape.cols, shape.rows,
+                                counted(shape.planes, "plane")));
     return shape;
 }
 
 ColourFilter take_cfa(ByteCursor& cursor, int planes) {
     const auto cfa = cursor.take<std::uint8_t>();
     if (cfa > static_cast<std::uint8_t>(ColourFilter::kBggr) || (cfa != 0 && planes != 1))
-        cursor.fail(fmt::format("colour filter array {} of {} planes", cfa, planes));
+        cursor.fail(fmt::format("colour filter array {} of {}", cfa, counted(planes, "plane")));
     return static_cast<ColourFilter>(cfa);
 }
 

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
+#include "core/text.h"
 #include "stream/plain_text.h"
 
 namespace stipple {
@@ -19,7 +23,30 @@ std::string difference(const ChipIdentity& ours, const ChipIdentity& theirs) {
     return {};
 }
 
+MapFigures map_figures(const ChipCalibration& calibration, float SiteCalibration::*number) {
+    const auto sum = [&](auto term) {
+        double total = 0;
+        for (const SiteCalibration& site : calibration.sites)
+            if (!site.defect) total += term(static_cast<double>(site.*number));
+        return total;
+    };
+    const double count = sum([](double) { return 1; });
+    const double mean = sum([](double value) { return value; }) / count;
+    const double squares = sum([mean](double value) { return (value - mean) * (value - mean); });
+    return {mean, std::sqrt(squares / count)};
+}
+
 }  // namespace
+
+ChipFigures chip_figures(const ChipCalibration& calibration) {
+    return {.gain = map_figures(calibration, &SiteCalibration::gain),
+            .gain_error = std::sqrt(map_figures(calibration, &SiteCalibration::gain_variance).mean),
+            .offset_dn = map_figures(calibration, &SiteCalibration::offset_dn),
+            .dark_dn_per_s = map_figures(calibration, &SiteCalibration::dark_dn_per_s),
+            .readout_noise_dn2 = map_figures(calibration, &SiteCalibration::readout_noise_dn2),
+            .defects = static_cast<std::size_t>(
+                std::ranges::count_if(calibration.sites, &SiteCalibration::defect))};
+}
 
 void require_same_chip(const ChipCalibration& calibration, const StreamHeader& header,
                        const ChipIdentity& chip, std::string_view where) {
@@ -31,9 +58,10 @@ void require_same_chip(const ChipCalibration& calibration, const StreamHeader& h
     };
     const FrameShape ours = calibration.shape;
     const FrameShape theirs = header.shape;
-    require(ours == theirs,
-            fmt::format("{} x {} pixels in {} planes", ours.cols, ours.rows, ours.planes),
-            fmt::format("{} x {} in {}", theirs.cols, theirs.rows, theirs.planes));
+    require(
+        ours == theirs,
+        fmt::format("{} x {} pixels in {}", ours.cols, ours.rows, counted(ours.planes, "plane")),
+        fmt::format("{} x {} in {}", theirs.cols, theirs.rows, theirs.planes));
     require(calibration.cfa == header.cfa, "another colour filter array", "its own");
     require(calibration.bit_depth == header.calibration.bit_depth,
             fmt::format("samples of {} bits", calibration.bit_depth),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +37,25 @@ struct ChipCalibration {
 
     bool operator==(const ChipCalibration&) const = default;
 };
+
+/// Of a number over the sites without defect. NaN without such sites.
+struct MapFigures {
+    double mean = 0;
+    double deviation = 0;  ///< standard deviation
+};
+
+/// Figures of the maps as they are stored. They scatter less than the pattern of the chip: noise of
+/// their measurement is shrunk away, and what it hides with it.
+struct ChipFigures {
+    MapFigures gain;
+    double gain_error = 0;  ///< root mean square of the standard deviations of the gains
+    MapFigures offset_dn;
+    MapFigures dark_dn_per_s;
+    MapFigures readout_noise_dn2;
+    std::size_t defects = 0;
+};
+
+[[nodiscard]] ChipFigures chip_figures(const ChipCalibration& calibration);
 
 /// \throws InputError at `where` if the calibration cannot be that of the chip of a stream: another
 /// size, colour filter array, bit depth or tile of unequal pixels, or another `chip`, where both

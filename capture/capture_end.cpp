@@ -30,7 +30,7 @@ void throw_early_end(const CodedRecording& recording, const std::string& address
     if (!recording.kept) throw DeviceError(address, "no slot of the coded stream arrived");
 }
 
-bool put_in_place(StreamRecorder& recorder, LiveEmulation& emulation) {
+bool commit_recording(StreamRecorder& recorder, LiveEmulation& emulation) {
     try {
         if (!emulation.failure) {
             recorder.finish();

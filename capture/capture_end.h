@@ -17,7 +17,7 @@ void throw_early_end(const CodedRecording& recording, const std::string& address
 
 /// Puts the stream in place, as far as it goes. An error meanwhile becomes the `failure` of the
 /// emulation. Whether the stream is kept in spite of a failure. \throws DeviceError.
-bool put_in_place(StreamRecorder& recorder, LiveEmulation& emulation);
+bool commit_recording(StreamRecorder& recorder, LiveEmulation& emulation);
 
 /// The same for an emulation. Precondition: its stream is in place, if there is a frame.
 void throw_early_end(const LiveEmulation& emulation, const std::string& address);

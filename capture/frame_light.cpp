@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "core/error.h"
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,11 @@
 #include "core/geometry.h"
 
 namespace stipple {
+
+/// "1 frame", "2 frames".
+[[nodiscard]] std::string counted(std::integral auto count, std::string_view noun) {
+    return std::to_string(count).append(1, ' ').append(noun).append(count == 1 ? "" : "s");
+}
 
 /// The strings of `items` with ", " between them. (fmt::join makes g++ 12 warn at -O3.)
 template <typename Strings>

@@ -14,7 +14,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/light.h"
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 #include "io/tiff_handle.h"
 
 namespace stipple {

@@ -196,7 +196,7 @@ const fs::path& PendingOutput::partial() const {
 }
 
 PendingOutput::~PendingOutput() {
-    if (!created_ || (!kept_ && remove_partial())) unlist();
+    if (!created_ || (!kept_ && remove_partial())) unregister();
     if (place_in_list_ < kListedOutputs) static_cast<void>(listed_.release());  // the list has it
 }
 
@@ -208,7 +208,7 @@ bool PendingOutput::remove_partial() const noexcept try {
     return false;
 }
 
-void PendingOutput::unlist() {
+void PendingOutput::unregister() {
     unlist_partial(std::exchange(place_in_list_, kListedOutputs));
 }
 
@@ -217,7 +217,7 @@ void PendingOutput::commit() {
     fs::path name = final_;
     try {
         sync_all_to_disk(partial_);
-        if (!put_in_place()) name = rename_to_fallback();
+        if (!rename_to_final()) name = rename_to_fallback();
     } catch (const fs::filesystem_error& e) {
         std::error_code error;
         const DeviceError failure(
@@ -227,13 +227,13 @@ void PendingOutput::commit() {
                             ? fmt::format("; what was written is in {}, rename it to keep it",
                                           partial_.string())
                             : ""));
-        unlist();
+        unregister();
         throw failure;
     }
     committed_ = true;
-    if (!replaced_) unlist();
+    if (!replaced_) unregister();
     settle(name);
-    unlist();
+    unregister();
     if (name != final_)
         throw DeviceError(final_.string(),
                           fmt::format("was created by another program meanwhile; what was "
@@ -253,12 +253,12 @@ void PendingOutput::settle(const fs::path& name) {
             fmt::format(
                 "is complete, but {}: {}{}", problem, e.code().message(),
                 replaced_ ? fmt::format("; the output before is in {}", partial_.string()) : ""));
-        unlist();
+        unregister();
         throw failure;
     }
 }
 
-bool PendingOutput::put_in_place() {
+bool PendingOutput::rename_to_final() {
     if (kind_ == OutputKind::kFolder && !force_) rmdir(final_.c_str());  // only if it is empty
     if (!force_) return rename_to_free_name(partial_, final_);
     if (kind_ == OutputKind::kFolder && fs::is_directory(fs::symlink_status(final_))) {

@@ -51,9 +51,9 @@ class PendingOutput {
   private:
     void check_replaceable() const;
     void create_partial() const;
-    void unlist();
+    void unregister();
     [[nodiscard]] bool remove_partial() const noexcept;
-    [[nodiscard]] bool put_in_place();
+    [[nodiscard]] bool rename_to_final();
     [[nodiscard]] std::filesystem::path rename_to_fallback() const;
     void settle(const std::filesystem::path& name);
 

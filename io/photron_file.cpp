@@ -21,7 +21,7 @@
 #include "core/light.h"
 #include "core/text.h"
 #include "io/footage_files.h"
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 namespace fs = std::filesystem;

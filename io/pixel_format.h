@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/colour_filter.h"
 
@@ -47,5 +48,17 @@ struct PixelFormat {
 [[nodiscard]] const PixelFormat* pixel_format_named(std::string_view name);
 [[nodiscard]] const PixelFormat* pixel_format_of_pfnc(std::uint32_t code);
 [[nodiscard]] const PixelFormat* pixel_format_of_v4l2(std::uint32_t fourcc);
+
+/// The samples of a row of pixels, by column and plane, as the numbers that the camera sent: 0 to
+/// 2^significant_bits - 1, and beyond only where the device sets bits that should be 0.
+/// Precondition: samples.size() is a multiple of format.planes; row.size() >=
+/// format.row_bytes(samples.size() / planes).
+void unpack_row(const PixelFormat& format, std::span<const std::uint8_t> row,
+                std::span<std::uint16_t> samples) noexcept;
+
+/// The light of each number that a sample can hold: max(0, DN - black) / (white - black).
+/// Precondition: black_dn < white_dn.
+[[nodiscard]] std::vector<float> light_table(const PixelFormat& format, double black_dn,
+                                             double white_dn);
 
 }  // namespace stipple

@@ -1,4 +1,4 @@
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "core/text.h"
-#include "io/pixel_unpack.h"
+#include "io/pixel_format.h"
 
 namespace stipple {
 namespace {

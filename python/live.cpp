@@ -91,7 +91,7 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
     result.totals.repeated = setup.camera.stop().repeated;
     if (result.latencies.count() == 0) return result;
     warnings.take(camera_rate_warning(result.rate, recorder.emulator().setup().params));
-    put_in_place(recorder, result);
+    commit_recording(recorder, result);
     if (setup.preview) setup.preview->finish(!goes_on);
     return result;
 }

@@ -13,6 +13,7 @@
 #include "core/index.h"
 #include "core/light.h"
 #include "core/memory_limit.h"
+#include "core/text.h"
 #include "io/output_file.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"
@@ -260,9 +261,9 @@ mask. A sample is the sum of weight x light over the open slots of its exposure.
         .def("_content", &content_of)
         .def("__repr__", [](const ChosenSchedule& self) {
             const ExposureSchedule& plan = self.made.schedule;
-            return fmt::format("<stipple.Schedule {}: tile {} x {}, period {} slots>",
-                               self.made.name, plan.tile_rows(), plan.tile_cols(),
-                               plan.period_slots());
+            return fmt::format("<stipple.Schedule {}: tile {} x {}, period {}>", self.made.name,
+                               plan.tile_rows(), plan.tile_cols(),
+                               counted(plan.period_slots(), "slot"));
         });
     bind_figures(schedule);
     module.def("schedule_text", &text_of, py::arg("exposures"), py::arg("tile"),

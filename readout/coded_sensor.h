@@ -6,12 +6,19 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
-#include "readout/readout_stats.h"
 #include "sensor_model/sensor_params.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
 
 namespace stipple {
+
+/// Counts of the emulated chip since its first slot.
+struct ReadoutStats {
+    std::int64_t slots = 0;  ///< the slot to expose next
+    std::uint64_t samples = 0;
+    std::uint64_t saturated_samples = 0;  ///< clipped by the full well, or at full scale
+    std::uint64_t zero_samples = 0;       ///< at DN 0, where noise is cut off
+};
 
 /// The calibration of a sensor for its stream: gain, noise and full well.
 [[nodiscard]] Calibration calibration_of(const SensorParams& params);

@@ -1,11 +1,15 @@
 #include "readout/emulator.h"
 
+#include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
+#include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
 #include "readout/light_throughput.h"
-#include "sensor_model/colour_mosaic.h"
+#include "readout/sensor_file.h"
+#include "sensor_model/slot_light.h"
 
 namespace stipple {
 namespace {
@@ -105,6 +109,29 @@ std::span<const SamplePacket> Emulator::split_at_overrun(const SlotCost& slot) {
     whole.rows = slot.end_row;
     whole.dn.resize(slot.counts.samples);
     return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);
+}
+
+std::int64_t lead_in_slots(const SensorSetup& setup) {
+    const PhysicalTerms none;
+    const PhysicalTerms& terms =
+        setup.params.mode == SensorMode::kPhysical ? setup.params.physical : none;
+    const auto refuse = [&](const char* key, double value) {
+        if (value == 0) return;
+        throw InputError(fmt::format("sensor {}", setup.params.name),
+                         fmt::format("has {} = {}, by which each slot depends on all before it; "
+                                     "emulate it in one run, or set sensor.{}=0",
+                                     key, value, key));
+    };
+    refuse("lag", terms.lag);
+    refuse("blooming", terms.blooming);
+    const ExposureSchedule& schedule = setup.schedule.schedule;
+    const std::int64_t span = std::max(schedule.longest_span_slots(), 1);
+    // Row skew mixes the frame before into each frame.
+    const std::int64_t skew = terms.row_skew_slots == 0 ? 0 : 1;
+    if (terms.parasitic_light_sensitivity == 0) return span - 1 + skew;
+    // A closed store collects light since it was last read: a period ago at most, and two where
+    // the exposures of a pixel alternate between two stores.
+    return std::int64_t{schedule.period_slots()} * schedule.charge_stores() + span + skew;
 }
 
 }  // namespace stipple

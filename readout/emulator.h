@@ -24,7 +24,7 @@ namespace stipple {
 class Emulator {
   public:
     /// `setup` must outlive the emulator. The array is reset before `first_slot`; samples of
-    /// exposures that began earlier lack light (lead_in.h).
+    /// exposures that began earlier lack light (lead_in_slots).
     explicit Emulator(const SensorSetup& setup, std::int64_t first_slot = 0);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
@@ -65,5 +65,14 @@ class Emulator {
     std::vector<float> mosaic_;           ///< of light in colour behind colour filters
     std::vector<float> masked_;           ///< light behind a grey mask
 };
+
+struct SensorSetup;
+
+/// Slots that a sensor must be exposed after a reset until its samples are those of a sensor that
+/// was exposed since slot 0, bit by bit (docs/scaling.md). `--part` of `emulate` emulates so many
+/// before its first slot, and discards their samples.
+/// \throws InputError if there is no such number: lag and blooming carry light from one exposure
+/// to the next without end.
+[[nodiscard]] std::int64_t lead_in_slots(const SensorSetup& setup);
 
 }  // namespace stipple

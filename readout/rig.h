@@ -7,7 +7,7 @@
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "core/homography.h"
-#include "readout/sensor_choice.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

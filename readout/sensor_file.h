@@ -3,17 +3,28 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "readout/config_origin.h"
 #include "readout/schedules/named_schedule.h"
-#include "readout/sensor_choice.h"
 #include "readout/timing/overrun_policy.h"
 #include "readout/timing/readout_timing.h"
 #include "sensor_model/sensor_params.h"
 
 namespace stipple {
+
+/// Names the files of a sensor and of its schedule, and the keys that differ from them. Names are
+/// those of config/sensors and config/schedules.
+struct SensorChoice {
+    std::string sensor = "paper";                     ///< name or file
+    std::string schedule = "random";                  ///< name, file, or compiled file (.mem, .hex)
+    std::vector<std::string> settings = {};           ///< "key=value", laid over the sensor's file
+    std::vector<std::string> schedule_settings = {};  ///< the same of the schedule
+    std::uint64_t seed = 1;                           ///< of noise and schedule
+    OverrunPolicy overrun = OverrunPolicy::kStretch;
+};
 
 /// Content of a sensor file.
 struct SensorDescription {

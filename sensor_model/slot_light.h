@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/colour_filter.h"
 #include "core/geometry.h"
 #include "sensor_model/physical_terms.h"
 
@@ -46,5 +47,13 @@ class SlotLight {
     std::vector<float> late_;    ///< of this slot, delayed; empty without row skew
     std::vector<float> arriving_;
 };
+
+/// RGB light behind a colour filter array: each pixel of `mosaic` gets the plane of its filter.
+/// `frame` has `shape`, order (plane, row, col); `mosaic` has shape.pixels() values.
+/// Precondition: shape.planes == 3, filter is not kNone.
+///
+/// Not modelled: spectra of filters (no crosstalk of colours, no loss of light), optical low-pass.
+void take_mosaic(ColourFilter filter, FrameShape shape, std::span<const float> frame,
+                 std::span<float> mosaic);
 
 }  // namespace stipple

@@ -6,9 +6,9 @@
 
 #include "apps/arguments/command_line.h"
 #include "apps/arguments/settings.h"
-#include "readout/sensor_choice.h"
+#include "readout/sensor_file.h"
 #include "readout/timing/overrun_policy.h"
-#include "readout/timing/waveform_file.h"
+#include "readout/timing/waveform.h"
 
 namespace stipple {
 

@@ -8,7 +8,7 @@
 #include "apps/arguments/command_line.h"
 #include "capture/serve/frame_source.h"
 #include "io/footage_reader.h"
-#include "readout/sensor_choice.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 

@@ -95,7 +95,7 @@ std::string Progress::line(std::size_t columns) const {
     const std::string counter =
         done ? fmt::format("{:.0f} %, {}/{} {}s", std::floor(100 * *done), complete, *total_, unit_)
              : counted(complete, unit_);
-    const std::string noted = counter + note_behind();
+    const std::string noted = counter + suffix();
     const std::string text = noted + pace();
     const std::size_t length = task_.size() + 1 + text.size();
     if (length > columns) return (noted.size() <= columns ? noted : counter).substr(0, columns);
@@ -104,7 +104,7 @@ std::string Progress::line(std::size_t columns) const {
     return fmt::format("{} [{}] {}", task_, bar(*done, std::min(room - 3, kMaxBarCols)), text);
 }
 
-std::string Progress::note_behind() const {
+std::string Progress::suffix() const {
     const std::lock_guard lock(note_mutex_);
     return note_.empty() ? "" : ", " + note_;
 }

@@ -49,7 +49,7 @@ class Progress {
     /// Fits into `columns`.
     [[nodiscard]] std::string line(std::size_t columns) const;
     /// The note with a comma before it.
-    [[nodiscard]] std::string note_behind() const;
+    [[nodiscard]] std::string suffix() const;
     /// The part of the work that is done, 0..1; none: all work is unknown.
     [[nodiscard]] std::optional<double> part() const;
     /// The rate, if work is counted in frames, and the time left, if all work is known.

@@ -77,8 +77,8 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
     const double period = cost.schedule().period_slots();
     return fmt::format(
         "{}window       {} x {} (width x height)\n"
-        "full         {:.5g} readouts/s: {} clocks, {} a row\n"
-        "coded        {:.5g} slots/s of {:.6g} clocks; the slowest readout takes {} clocks{}\n"
+        "full         {} readouts/s: {} clocks, {} a row\n"
+        "coded        {} slots/s of {} clocks; the slowest readout takes {} clocks{}\n"
         "speed-up     {:.3f}, limited by {}{}\n"
         "in use       rows {:.1f} %, ADCs {:.1f} %, link {:.1f} %\n"
         "energy       {:.4g} uJ a full readout, {:.4g} pJ a sample; {:.4g} uJ a slot, {:.4g} pJ a "
@@ -86,11 +86,11 @@ std::string rate_text(const ReadoutRate& rate, const ReadoutCost& cost) {
         "             (of assumed constants, without static power)\n"
         "code         {} bits of schedule memory, {:.4g} Mbit/s, {} clocks to load\n"
         "slot         {} clocks: {}",
-        hypothetical_text(rate, cost), cost.shape().cols, cost.shape().rows, rate.full_hz,
-        rate.full.total, rate.full.row, rate.coded_hz, rate.min_slot_clocks,
-        rate.slowest.counts.readout_clocks, deadline_text(rate), rate.speedup,
-        name_of(rate.slowest.limit), balanced_text(rate), 100 * use.rows, 100 * use.adc,
-        100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
+        hypothetical_text(rate, cost), cost.shape().cols, cost.shape().rows,
+        rounded(rate.full_hz, 5), rate.full.total, rate.full.row, rounded(rate.coded_hz, 5),
+        rounded(rate.min_slot_clocks, 6), rate.slowest.counts.readout_clocks, deadline_text(rate),
+        rate.speedup, name_of(rate.slowest.limit), balanced_text(rate), 100 * use.rows,
+        100 * use.adc, 100 * use.link, rate.full_energy_pj * 1e-6, full_sample_pj(rate, cost),
         rate.period.energy_pj / period * 1e-6, coded_sample_pj(rate),
         schedule_memory_bits(cost.schedule()), 1e-6 * code_bits_per_second(cost, rate.coded_hz),
         cost.timing().code_load_clocks, cost.budget().clocks,

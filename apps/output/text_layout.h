@@ -1,21 +1,17 @@
 #pragma once
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
-#include <string_view>
+
+#include "core/text.h"
 
 namespace stipple {
-
-/// "1 frame", "2 frames".
-[[nodiscard]] std::string counted(std::integral auto count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 /// Three digits, or so many, more in front of the point, never a power of ten: 0.0123, 1.23, 1234.
 [[nodiscard]] inline std::string rounded(double value, int digits = 3) {

@@ -44,7 +44,8 @@ void examine_packets(const AravisDevice& device, std::vector<DoctorFinding>& fin
     GlibError error;
     const auto before = arv_camera_gv_get_packet_size(camera, error.slot());
     error.check_answer(device.address());
-    const auto size = arv_camera_gv_auto_packet_size(camera, nullptr);
+    const auto size = arv_camera_gv_auto_packet_size(camera, error.slot());
+    error.check_answer(device.address());
     findings.push_back({Level::kGood, "packet size",
                         size == before
                             ? fmt::format("{} bytes; the probe found no better one", size)

@@ -8,7 +8,7 @@
 
 #include "capture/frame_light.h"
 #include "core/error.h"
-#include "sensor_model/colour_mosaic.h"
+#include "sensor_model/slot_light.h"
 #include "stream/bit_packing.h"
 
 namespace stipple {

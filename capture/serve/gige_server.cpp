@@ -171,7 +171,7 @@ void GigeServer::Impl::answer(const UdpSocket& socket) {
 }
 
 void GigeServer::Impl::act_on(const GigeOutcome& outcome, const GigeStreamSettings& now) {
-    if (!now.destination.is_somebody()) return;
+    if (!now.destination.is_set()) return;
     data.set_do_not_fragment(now.do_not_fragment);
     if (outcome.resend) sender.resend(*outcome.resend, now.destination);
     if (outcome.fire_test_packet) data.send(now.destination, gvsp_test_packet(now.packet_bytes));
@@ -247,7 +247,7 @@ void GigeServer::Impl::send(ServedFrame frame, const GigeStreamSettings& setting
     block->number = number;
     block->block = served_block(std::move(frame), source.image(), settings, stamp_ns);
     block->block.id = gvsp_block_id(number, faults.first_block);
-    if (settings.destination.is_somebody() &&
+    if (settings.destination.is_set() &&
         !sender.send(std::move(block), settings.destination,
                      {settings.packet_delay,
                       [&](Clock::time_point due) { return wait_until(due, settings.starts); }}))

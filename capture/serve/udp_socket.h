@@ -13,7 +13,7 @@ struct UdpEndpoint {
     std::uint32_t address = 0;
     std::uint16_t port = 0;
     /// Whether address and port are set.
-    [[nodiscard]] bool is_somebody() const { return address != 0 && port != 0; }
+    [[nodiscard]] bool is_set() const { return address != 0 && port != 0; }
     bool operator==(const UdpEndpoint&) const = default;
 };
 

@@ -264,8 +264,8 @@ class OctaveSolver {
 
 }  // namespace
 
-FluxVideo doubled_frames(const FluxVideo& frames, Octave octave, float per_light,
-                         const OctaveOptions& options) {
+FluxVideo upsampled_frames(const FluxVideo& frames, Octave octave, float per_light,
+                           const OctaveOptions& options) {
     return OctaveSolver(frames, octave, per_light, options).solve();
 }
 

@@ -62,7 +62,7 @@ EvenFrames even_frames(const FluxVideo& frames, std::span<const FrameExposure> e
 EvenFrames doubled(const EvenFrames& frames, float per_light, const OctaveOptions& options) {
     const bool gapless = frames.exposure >= frames.distance;
     const Octave octave = gapless ? Octave::kSplit : Octave::kInsert;
-    return {doubled_frames(frames.light, octave, per_light, options),
+    return {upsampled_frames(frames.light, octave, per_light, options),
             gapless ? frames.first_centre - frames.distance / 4 : frames.first_centre,
             frames.distance / 2, gapless ? frames.exposure / 2 : frames.exposure};
 }

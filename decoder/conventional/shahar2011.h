@@ -34,8 +34,8 @@ struct OctaveOptions {
 /// kSplit: 2 n frames, whose pairs have the given frames as their means; kInsert: 2 n - 1 frames,
 /// every other one a given frame. `per_light` is the variance of noise per light. The same bits for
 /// any thread count. Precondition: at least one frame.
-[[nodiscard]] FluxVideo doubled_frames(const FluxVideo& frames, Octave octave, float per_light,
-                                       const OctaveOptions& options);
+[[nodiscard]] FluxVideo upsampled_frames(const FluxVideo& frames, Octave octave, float per_light,
+                                         const OctaveOptions& options);
 
 /// Options of the method `shahar2011`; docs/decoder_conventional.md has the formulas.
 struct Shahar2011Options {

@@ -58,7 +58,7 @@ float estimate(const std::vector<SiteExposure>& list, int slot) {
         }
         near = near || distance <= kNearSlots;
         const float weight =
-            e.mean_weight * closeness(distance) / (e.light_slots * e.variance_per_slot);
+            e.mean_weight * temporal_weight(distance) / (e.light_slots * e.variance_per_slot);
         light += weight * e.light_per_slot;
         weights += weight;
     }

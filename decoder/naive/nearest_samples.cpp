@@ -35,8 +35,8 @@ float estimate(const std::vector<SiteExposure>& list, int slot, const SiteExposu
             continue;
         }
         near = near || distance <= kNearSlots;
-        light += e.mean_weight * closeness(distance) * e.light_per_slot;
-        weight += e.mean_weight * closeness(distance);
+        light += e.mean_weight * temporal_weight(distance) * e.light_per_slot;
+        weight += e.mean_weight * temporal_weight(distance);
     }
     if (weight == 0 || (bound > 0 && !near)) return bound;
     return own != nullptr && own->saturated ? std::max(light / weight, own->light_per_slot)
@@ -62,7 +62,7 @@ bool estimate_site(const Measurements& m, std::size_t site, std::vector<SiteExpo
 
 }  // namespace
 
-float closeness(int distance_slots) noexcept {
+float temporal_weight(int distance_slots) noexcept {
     return kCloseness[std::min(index(distance_slots), kCloseness.size() - 1)];
 }
 

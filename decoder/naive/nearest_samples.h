@@ -22,7 +22,7 @@ struct Measurements;
 [[nodiscard]] FluxVideo nearest_samples(const Measurements& measurements);
 
 /// exp(-d / 1.5) at a distance of d slots, constant from 16 on. Precondition: d >= 0.
-[[nodiscard]] float closeness(int distance_slots) noexcept;
+[[nodiscard]] float temporal_weight(int distance_slots) noexcept;
 
 /// Saturated exposures further away are no bound.
 inline constexpr int kNearSlots = 8;

@@ -21,7 +21,7 @@ struct TimeShares {
 };
 
 /// Rows that are converted and transferred in turns: each step takes its own time.
-TimeShares shares_in_turns(const SlotTimes& times) {
+TimeShares shares_sequential(const SlotTimes& times) {
     TimeShares shares;
     for (const RowTimes& row : times.rows) {
         shares.adc += row.convert_end - row.convert;
@@ -54,8 +54,9 @@ TimeShares shares_overlapped(const ReadoutTiming& timing, const SlotTimes& times
 
 ReadoutLimit limit_of(const ReadoutTiming& timing, const SlotTimes& times) {
     if (times.rows.empty()) return ReadoutLimit::kRowOverhead;
-    const bool in_turns = timing.row_timing == RowTiming::kSequential;
-    const auto [adc, link] = in_turns ? shares_in_turns(times) : shares_overlapped(timing, times);
+    const bool sequential = timing.row_timing == RowTiming::kSequential;
+    const auto [adc, link] =
+        sequential ? shares_sequential(times) : shares_overlapped(timing, times);
     const std::int64_t overhead = times.end - times.begin - adc - link;
     const std::int64_t longest = std::max({adc, link, overhead});
     if (longest == link) return ReadoutLimit::kLink;

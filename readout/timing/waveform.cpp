@@ -1,13 +1,16 @@
 #include "readout/timing/waveform.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <map>
+#include <span>
+
+#include "io/output_file.h"
 
 namespace stipple {
 namespace {
@@ -175,6 +178,19 @@ std::string Waveform::tail(std::int64_t end) {
     for (const Change& change : changes_) end = std::max(end, change.cycle);
     return take_until(end + 1) + fmt::format("#{}\nb{} {}\n", picoseconds(end, timing_.clock_hz),
                                              binary(end, 64), code_of(kCycle));
+}
+
+void WaveformFile::write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
+                         const std::function<bool()>& keep_going) {
+    OutputFile file(output_.partial(), output_.final_path().string());
+    const auto write = [&](const std::string& text) { file.write(std::as_bytes(std::span(text))); };
+    Waveform waveform(cost.timing(), sensor);
+    write(waveform.head());
+    cost.begin_at(range.first);
+    for (std::int64_t i = 0; i < range.slots && keep_going(); ++i) write(waveform.add_slot(cost));
+    write(waveform.tail(cost.clocks()));
+    file.close();
+    output_.commit();
 }
 
 }  // namespace stipple

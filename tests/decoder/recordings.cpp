@@ -6,7 +6,7 @@
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
 #include "readout/emulator.h"
-#include "sensor_model/colour_mosaic.h"
+#include "sensor_model/slot_light.h"
 
 namespace stipple {
 

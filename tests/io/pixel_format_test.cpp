@@ -6,7 +6,6 @@
 #include <set>
 
 #include "core/philox.h"
-#include "io/pixel_unpack.h"
 
 namespace stipple {
 namespace {

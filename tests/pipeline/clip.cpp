@@ -11,8 +11,8 @@
 #include "readout/schedules/schedule_catalogue.h"
 #include "readout/sensor_file.h"
 #include "readout/stream_recorder.h"
-#include "sensor_model/colour_mosaic.h"
 #include "sensor_model/sensor_config.h"
+#include "sensor_model/slot_light.h"
 #include "tests/support/footage_folder.h"
 #include "tests/support/temporary_folder.h"
 

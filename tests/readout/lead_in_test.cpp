@@ -1,4 +1,4 @@
-#include "readout/lead_in.h"
+#include "readout/emulator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/flux_video.h"
-#include "readout/emulator.h"
 #include "tests/readout/gapped_schedule.h"
 
 namespace stipple {

@@ -15,7 +15,7 @@
 #include "readout/provenance.h"
 #include "readout/sensor_file.h"
 #include "readout/timing/readout_cost.h"
-#include "sensor_model/colour_mosaic.h"
+#include "sensor_model/slot_light.h"
 #include "stream/stream_reader.h"
 #include "tests/support/temporary_folder.h"
 

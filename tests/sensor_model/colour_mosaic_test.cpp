@@ -1,4 +1,4 @@
-#include "sensor_model/colour_mosaic.h"
+#include "sensor_model/slot_light.h"
 
 #include <gtest/gtest.h>
 

@@ -162,7 +162,7 @@ class ForgedStream {
             GvspPacket packet = gvsp_packet(block, i);
             if (i == 0) packet.head[11] = payload_type;
             const DatagramParts parts{std::span(packet.head).first(packet.head_bytes), packet.data};
-            if (from.is_somebody())
+            if (from.is_set())
                 UdpSocket(from).send(to, std::span(&parts, 1));
             else
                 forger_.data().send(to, std::span(&parts, 1));

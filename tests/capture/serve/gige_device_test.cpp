@@ -112,7 +112,7 @@ TEST_F(GigeDeviceTest, FramesGoToTheControllersAddressAlone) {
     // The next one does not send to the one before.
     EXPECT_EQ(write(gige::kControl, 2, kElsewhere), 0);
     EXPECT_EQ(write(gige::kStreamPort, 4000, kElsewhere), 0);
-    EXPECT_FALSE(device_.stream().destination.is_somebody());
+    EXPECT_FALSE(device_.stream().destination.is_set());
 }
 
 TEST(OpenGigeDeviceTest, FramesGoElsewhereWhereThatIsAllowed) {

@@ -16,7 +16,7 @@ TEST(FrameOctaveTest, PairsHaveTheirFrameAsMean) {
     for (const FrameShape shape : {kShape, FrameShape{12, 14, 3}, FrameShape{3, 2, 1}})
         for (const int count : {1, 2, 6}) {
             const FluxVideo frames = random_video(count, shape, 1);
-            const FluxVideo x = doubled_frames(frames, Octave::kSplit, 1e-4F, {});
+            const FluxVideo x = upsampled_frames(frames, Octave::kSplit, 1e-4F, {});
             ASSERT_EQ(x.slots(), 2 * count);
             for (int k = 0; k < count; ++k)
                 for (std::size_t i = 0; i < shape.sites(); ++i)
@@ -27,7 +27,7 @@ TEST(FrameOctaveTest, PairsHaveTheirFrameAsMean) {
 
 TEST(FrameOctaveTest, FramesAreInsertedBetweenThoseGiven) {
     const FluxVideo frames = random_video(5, kShape, 1);
-    const FluxVideo x = doubled_frames(frames, Octave::kInsert, 1e-4F, {});
+    const FluxVideo x = upsampled_frames(frames, Octave::kInsert, 1e-4F, {});
     ASSERT_EQ(x.slots(), 9);
     for (int k = 0; k < 5; ++k) EXPECT_TRUE(std::ranges::equal(x.frame(2 * k), frames.frame(k)));
 }
@@ -49,7 +49,7 @@ TEST(FrameOctaveTest, ALightThatBlinksTooFastIsResolvedByOneThatBlinksSlowly) {
         for (std::size_t i = 0; i < kShape.sites(); ++i)
             frames.frame(k)[i] = (fine.frame(2 * k)[i] + fine.frame(2 * k + 1)[i]) / 2;
     const auto error = [&](const OctaveOptions& options) {
-        const FluxVideo x = doubled_frames(frames, Octave::kSplit, 1e-6F, options);
+        const FluxVideo x = upsampled_frames(frames, Octave::kSplit, 1e-6F, options);
         double sum = 0;
         for (int k = 8; k < 24; ++k)
             for (int row = 14; row < 22; ++row)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/flux_video.h"
-#include "readout/sensor_choice.h"
+#include "readout/sensor_file.h"
 
 namespace stipple {
 
