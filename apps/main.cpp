@@ -17,6 +17,7 @@
 #include "apps/interrupt.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
+#include "capture/open_camera.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
@@ -84,6 +85,7 @@ int stop(std::string_view message) {
 
 void run(const Action& action) {
     catch_signals();
+    tell_camera_messages([](std::string_view text) { say_warning("camera: {}", text); });
     const ThreadLimit limit(action.options.threads);
     std::optional<NoSync> no_sync;
     if (action.options.no_sync) no_sync.emplace();
@@ -105,7 +107,7 @@ CommandLine::Parsed run(int argc, char** argv) {
     for (const auto add :
          {add_synth, add_emulate, add_import, add_decode, add_join, add_compare, add_info,
           add_recover, add_schedule, add_timing, add_characterize, add_calibrate, add_dictionary,
-          add_capture, add_demo, add_explore, add_rivals, add_report, add_list})
+          add_capture, add_demo, add_explore, add_rivals, add_report, add_view, add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, action.options);
     add_manual(root, action, [&line] { return line.description(); });

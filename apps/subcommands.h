@@ -49,6 +49,7 @@ void add_explore(Command& app, Action& action);     ///< a table of many trials
 /// Coded exposure and its rivals on a scene
 void add_rivals(Command& app, Action& action);
 void add_report(Command& app, Action& action);  ///< a run as an HTML page
+void add_view(Command& app, Action& action);    ///< streams and videos in the browser
 void add_list(Command& app, Action& action);    ///< names that options take, a line each
 /// Manual pages and completions of the command line that `describe` describes
 void add_manual(Command& app, Action& action, std::function<CommandDescription()> describe);

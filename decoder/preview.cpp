@@ -80,21 +80,23 @@ PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewOptions& option
 
 std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
                                                    std::span<const SamplePacket> packets,
-                                                   const ProgressCallback& progress) const {
+                                                   const ProgressCallback& progress,
+                                                   std::optional<int> shown) const {
+    const int slot = shown.value_or(shown_slot());
     VideoWindow window = region_;
     window.first_slot = first_slot;
     Measurements measurements = collect_measurements(header_, packets, window);
-    PreviewFrame frame{.slot = first_slot + shown_slot(),
+    PreviewFrame frame{.slot = first_slot + slot,
                        .shape = region_.shape,
                        .light = {},
                        .saturated = saturated_pixels(measurements)};
     const auto video =
         decode_block(std::move(measurements), header_.calibration, options_of(method_), progress);
     if (!video) return std::nullopt;
-    const auto shown = video->frame(shown_slot());
-    frame.light.resize(shown.size());
-    std::transform(shown.begin(), shown.end(), frame.light.begin(),
-                   [](float light) { return std::max(light, 0.0F); });
+    const auto light = video->frame(slot);
+    frame.light.resize(light.size());
+    std::transform(light.begin(), light.end(), frame.light.begin(),
+                   [](float value) { return std::max(value, 0.0F); });
     return frame;
 }
 

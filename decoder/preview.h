@@ -42,11 +42,13 @@ class PreviewDecoder {
     [[nodiscard]] int shown_slot() const { return region_.slots / 2; }
     [[nodiscard]] FrameShape shape() const { return region_.shape; }
 
-    /// Decodes the packets of the slots() slots from `first_slot`. Returns nothing if `progress`
-    /// has stopped it. \throws InputError as collect_measurements.
+    /// Decodes the packets of the slots() slots from `first_slot`, to the frame of slot `shown` of
+    /// these (none: shown_slot()). Returns nothing if `progress` has stopped it. \throws InputError
+    /// as collect_measurements.
     [[nodiscard]] std::optional<PreviewFrame> decode(std::int64_t first_slot,
                                                      std::span<const SamplePacket> packets,
-                                                     const ProgressCallback& progress) const;
+                                                     const ProgressCallback& progress,
+                                                     std::optional<int> shown = {}) const;
 
   private:
     StreamHeader header_;

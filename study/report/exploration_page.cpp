@@ -7,7 +7,8 @@ namespace stipple {
 std::string exploration_page(const std::string& title, const std::string& data) {
     return filled_page(
         page::kExploration,
-        {{"@TITLE@", html_text(title)},
+        {{"@CONNECT@", "'none'"},
+         {"@TITLE@", html_text(title)},
          {"@STYLE@", std::string(page::kStyle) + std::string(page::kExplorationStyle)},
          {"@SUBTITLE@", "Sensors, schedules and decoders: what they cost and how good they are"},
          {"@LICENCE@", std::string(page::kChartsLicence)},

@@ -58,16 +58,31 @@ std::string filled_page(std::string_view html, const std::vector<PagePart>& part
     return text += html.substr(from);
 }
 
+namespace {
+
+std::string page_of(std::string_view html, std::string_view program, const char* connect,
+                    const std::string& title, const nlohmann::ordered_json& data,
+                    const std::string& planes) {
+    return filled_page(html, {{"@CONNECT@", connect},
+                              {"@TITLE@", html_text(title)},
+                              {"@STYLE@", std::string(page::kStyle)},
+                              {"@SUBTITLE@", ""},  // of the data
+                              {"@LICENCE@", std::string(page::kChartsLicence)},
+                              {"@CHARTS@", std::string(page::kCharts)},
+                              {"@DATA@", script_json(data)},
+                              {"@PLANES@", planes},
+                              {"@PROGRAM@", std::string(program)}});
+}
+
+}  // namespace
+
 std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
                         const std::vector<PackedPlane>& planes) {
-    return filled_page(page::kHtml, {{"@TITLE@", html_text(title)},
-                                     {"@STYLE@", std::string(page::kStyle)},
-                                     {"@SUBTITLE@", ""},  // of the data
-                                     {"@LICENCE@", std::string(page::kChartsLicence)},
-                                     {"@CHARTS@", std::string(page::kCharts)},
-                                     {"@DATA@", script_json(data)},
-                                     {"@PLANES@", planes_text(planes)},
-                                     {"@PROGRAM@", std::string(page::kProgram)}});
+    return page_of(page::kHtml, page::kProgram, "'none'", title, data, planes_text(planes));
+}
+
+std::string view_page(const std::string& title, const nlohmann::ordered_json& data) {
+    return page_of(page::kView, page::kViewProgram, "'self'", title, data, "");
 }
 
 std::string chart_warning() {

@@ -42,6 +42,9 @@ using PagePart = std::pair<std::string_view, std::string>;
 [[nodiscard]] std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
                                       const std::vector<PackedPlane>& planes);
 
+/// The page of `stipple view`: the same parts, but it asks its server for the planes (view/).
+[[nodiscard]] std::string view_page(const std::string& title, const nlohmann::ordered_json& data);
+
 /// The page of `stipple explore`: one HTML file that needs nothing else, with its style, its
 /// program and the library of charts. `data`: JSON as page/exploration/data.js reads it.
 [[nodiscard]] std::string exploration_page(const std::string& title, const std::string& data);

@@ -39,13 +39,6 @@ constexpr std::int64_t kLaneSlots = 64;  ///< the most slots of it
                          Parameter{"crop"} + " or " + Parameter{"until"});
 }
 
-/// Which plane of colour each pixel of a 2 x 2 cell measures; null without a filter array.
-ordered_json filter_json(ColourFilter cfa) {
-    if (cfa == ColourFilter::kNone) return nullptr;
-    return {colour_plane(cfa, 0, 0), colour_plane(cfa, 0, 1), colour_plane(cfa, 1, 0),
-            colour_plane(cfa, 1, 1)};
-}
-
 ordered_json empty_report(const std::string& title, const std::string& command) {
     return {{"program", fmt::format("stipple {}", version())},
             {"title", title},

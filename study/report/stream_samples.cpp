@@ -53,7 +53,7 @@ ordered_json response_json(const PixelResponse& response, int bit_depth, int lig
         {"variance_per_light", static_cast<double>(noise.per_light())}};
 }
 
-StreamSamples::StreamSamples(const StreamHeader& header, const PixelArea& area)
+SlotSamples::SlotSamples(const StreamHeader& header, const PixelArea& area)
     : header_(header),
       area_(area),
       kinds_(static_cast<std::size_t>(area.rows) * static_cast<std::size_t>(area.cols)) {
@@ -64,14 +64,18 @@ StreamSamples::StreamSamples(const StreamHeader& header, const PixelArea& area)
                                      header.calibration.tile.pixels.size(), kMaxPixels));
 }
 
-std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, int span_slots) {
+std::uint64_t SlotSamples::exposure_at(std::int64_t last_slot, int row, int col,
+                                       int span_slots) const {
     const ExposureSchedule& schedule = header_.schedule;
     const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
     const std::size_t i =
         exposure_starting_at(schedule, tile_row, tile_col, last_slot - span_slots + 1);
-    const std::uint64_t open_slots = schedule.exposures(tile_row, tile_col)[i].open_slots;
+    return schedule.exposures(tile_row, tile_col)[i].open_slots;
+}
+
+std::uint16_t SlotSamples::kind_of(std::uint64_t open_slots) {
     const auto next = static_cast<std::uint16_t>(open_slots_.size());
-    const auto [kind, is_new] = kind_of_.try_emplace(open_slots, next);
+    const auto [kind, is_new] = known_.try_emplace(open_slots, next);
     if (is_new) open_slots_.push_back(open_slots);
     if (open_slots_.size() == std::numeric_limits<std::uint16_t>::max())
         throw InputError(
@@ -80,41 +84,56 @@ std::uint16_t StreamSamples::kind_at(std::int64_t last_slot, int row, int col, i
     return kind->second;
 }
 
-void StreamSamples::add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn) {
+void SlotSamples::add_kinds() {
+    const ExposureSchedule& schedule = header_.schedule;
+    for (int row = 0; row < std::min(schedule.tile_rows(), header_.shape.rows); ++row)
+        for (int col = 0; col < std::min(schedule.tile_cols(), header_.shape.cols); ++col)
+            for (const Exposure& exposure : schedule.exposures(row, col))
+                (void)kind_of(exposure.open_slots);
+}
+
+void SlotSamples::add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn) {
     const bool shown = row >= area_.first_row && row < area_.first_row + area_.rows;
     for_each_readout(
         header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int span_slots) {
             if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
                 const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
-                kinds_[static_cast<std::size_t>(pixel)] =
-                    static_cast<std::uint16_t>(1 + kind_at(packet.slot, row, col, span_slots));
+                const auto kind = kind_of(exposure_at(packet.slot, row, col, span_slots));
+                kinds_[static_cast<std::size_t>(pixel)] = static_cast<std::uint16_t>(1 + kind);
                 dn_.insert(dn_.end(), dn, dn + header_.shape.planes);
             }
             dn += header_.shape.planes;
         });
 }
 
-void StreamSamples::add(const SamplePacket& packet) {
-    if (packet.slot != slot_) finish();
-    slot_ = packet.slot;
+void SlotSamples::add(const SamplePacket& packet) {
     if (packet.dn.empty()) return;
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
         add_row(packet, row, dn);
 }
 
-void StreamSamples::finish() {
-    if (dn_.empty()) return;
-    planes_.push_back({fmt::format("k-{}", slot_), packed_plane(kinds_)});
-    planes_.push_back({fmt::format("d-{}", slot_),
-                       packed_plane(dn_, static_cast<std::size_t>(header_.shape.planes))});
-    for (const PackedPlane& plane : std::span(planes_).last(2))
-        bytes_ += plane.text.size() + kPlaneTagBytes;
+void SlotSamples::clear() {
     std::ranges::fill(kinds_, std::uint16_t{0});
     dn_.clear();
 }
 
-ordered_json StreamSamples::json() const {
+void StreamSamples::add(const SamplePacket& packet) {
+    if (packet.slot != slot_) finish();
+    slot_ = packet.slot;
+    samples_.add(packet);
+}
+
+void StreamSamples::finish() {
+    if (samples_.dn().empty()) return;
+    planes_.push_back({fmt::format("k-{}", slot_), packed_plane(samples_.kinds())});
+    planes_.push_back({fmt::format("d-{}", slot_), packed_plane(samples_.dn(), step_)});
+    for (const PackedPlane& plane : std::span(planes_).last(2))
+        bytes_ += plane.text.size() + kPlaneTagBytes;
+    samples_.clear();
+}
+
+ordered_json SlotSamples::json() const {
     const CalibrationTile& tile = header_.calibration.tile;
     const int rows = tile.pixels.empty() ? 1 : tile.rows;
     const int cols = tile.pixels.empty() ? 1 : tile.cols;

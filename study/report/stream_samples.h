@@ -2,7 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -41,42 +42,69 @@ class StreamLoads {
 /// the timing of the sensor.
 [[nodiscard]] nlohmann::ordered_json readout_json(const StreamHeader& header, std::int64_t slots);
 
-/// The samples of a stream in the shown area, and what the page needs to turn each into light with
-/// its standard deviation: the response of each pixel (decoder/pixel_response.h).
-class StreamSamples {
+/// The samples of a slot in the shown area, and what a page needs to turn each into light with its
+/// standard deviation: the response of each pixel (decoder/pixel_response.h).
+class SlotSamples {
   public:
     /// `header` must outlive this. \throws InputError for a calibration tile of more than 4096
     /// pixels.
-    StreamSamples(const StreamHeader& header, const PixelArea& area);
+    SlotSamples(const StreamHeader& header, const PixelArea& area);
 
-    /// Packets come as a StreamReader reads them: by slot, then by row. \throws InputError if there
-    /// are more kinds of exposures than a plane can tell apart.
+    /// The packets of a slot come by row. \throws InputError if there are more kinds of exposures
+    /// than 16 bits can tell apart.
+    void add(const SamplePacket& packet);
+    /// For another slot.
+    void clear();
+    /// Makes all kinds of exposures of the schedule known. \throws InputError as `add`.
+    void add_kinds();
+
+    /// For each pixel 0, or 1 + the kind of the exposure that is read at the end of the slot.
+    [[nodiscard]] std::span<const std::uint16_t> kinds() const { return kinds_; }
+    /// The DN of the pixels that are read, pixel by pixel and plane by plane.
+    [[nodiscard]] std::span<const std::uint16_t> dn() const { return dn_; }
+    /// `exposures`: the kinds of exposures so far, each `span_slots`, `light_slots` and `open`, the
+    /// runs of open slots as [first, slots]; `response_rows`, `response_cols` and `responses`: for
+    /// each pixel of the calibration tile `response_json` by light slots.
+    [[nodiscard]] nlohmann::ordered_json json() const;
+
+  private:
+    void add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn);
+    [[nodiscard]] std::uint16_t kind_of(std::uint64_t open_slots);
+    [[nodiscard]] std::uint64_t exposure_at(std::int64_t last_slot, int row, int col,
+                                            int span_slots) const;
+
+    const StreamHeader& header_;
+    PixelArea area_;
+    std::vector<std::uint64_t> open_slots_;  ///< by kind
+    std::unordered_map<std::uint64_t, std::uint16_t> known_;
+    std::vector<std::uint16_t> kinds_;
+    std::vector<std::uint16_t> dn_;
+};
+
+/// The samples of a stream in the shown area, packed for the page.
+class StreamSamples {
+  public:
+    /// As SlotSamples.
+    StreamSamples(const StreamHeader& header, const PixelArea& area)
+        : step_(static_cast<std::size_t>(header.shape.planes)), samples_(header, area) {}
+
+    /// Packets come as a StreamReader reads them: by slot, then by row. \throws InputError as
+    /// SlotSamples.
     void add(const SamplePacket& packet);
     /// To be called after the last packet.
     void finish();
 
-    /// `exposures`: the kinds of exposures, each `span_slots`, `light_slots` and `open`, the runs
-    /// of open slots as [first, slots]; `response_rows`, `response_cols` and `responses`: for each
-    /// pixel of the calibration tile `response_json` by light slots.
-    [[nodiscard]] nlohmann::ordered_json json() const;
-    /// For each slot with samples "k-SLOT": for each pixel 0, or 1 + the kind of the exposure that
-    /// is read at the end of the slot; and "d-SLOT": the DN of these pixels, pixel by pixel and
-    /// plane by plane.
+    /// As SlotSamples.
+    [[nodiscard]] nlohmann::ordered_json json() const { return samples_.json(); }
+    /// For each slot with samples "k-SLOT", its kinds, and "d-SLOT", its DN.
     [[nodiscard]] const std::vector<PackedPlane>& planes() const { return planes_; }
     /// Of the planes in the page.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   private:
-    void add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn);
-    [[nodiscard]] std::uint16_t kind_at(std::int64_t last_slot, int row, int col, int span_slots);
-
-    const StreamHeader& header_;
-    PixelArea area_;
-    std::vector<std::uint64_t> open_slots_;  ///< by kind
-    std::unordered_map<std::uint64_t, std::uint16_t> kind_of_;
+    std::size_t step_;  ///< planes of the sensor
+    SlotSamples samples_;
     std::int64_t slot_ = 0;  ///< of the samples that are not yet packed
-    std::vector<std::uint16_t> kinds_;
-    std::vector<std::uint16_t> dn_;
     std::vector<PackedPlane> planes_;
     std::size_t bytes_ = 0;
 };

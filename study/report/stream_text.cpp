@@ -42,6 +42,12 @@ std::string special_text(const StreamHeader& header) {
 
 }  // namespace
 
+nlohmann::ordered_json filter_json(ColourFilter cfa) {
+    if (cfa == ColourFilter::kNone) return nullptr;
+    return {colour_plane(cfa, 0, 0), colour_plane(cfa, 0, 1), colour_plane(cfa, 1, 0),
+            colour_plane(cfa, 1, 1)};
+}
+
 nlohmann::ordered_json stream_json(const StreamHeader& header, const StreamReport& report) {
     auto json = nlohmann::ordered_json::object();
     json["version"] = report.version;

@@ -11,6 +11,9 @@ namespace stipple {
 [[nodiscard]] nlohmann::ordered_json stream_json(const StreamHeader& header,
                                                  const StreamReport& report);
 
+/// Which plane of colour each pixel of a 2 x 2 cell measures; null without a filter array.
+[[nodiscard]] nlohmann::ordered_json filter_json(ColourFilter cfa);
+
 /// Header and counts of a stream, a line each, for people.
 [[nodiscard]] std::string stream_text(const StreamHeader& header, const StreamReport& report);
 

@@ -37,7 +37,8 @@ function slotTitle() {
 
 /** With ticks at whole slots only: by their distance Chart.js also chooses the width of bars. */
 function slotAxis() {
-  const slots = axis(slotTitle(), {type: 'linear', min: 0, max: data.slots, offset: false});
+  const [min, max] = chartSlots();
+  const slots = axis(slotTitle(), {type: 'linear', min, max, offset: false});
   slots.ticks.precision = 0;
   return slots;
 }

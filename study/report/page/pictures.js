@@ -100,5 +100,5 @@ function allViews() {
   const errors = data.truth === null ? [] : data.videos.map((video, i) => (
     {id: `error-${i}`, name: `error, ${video.name}`, kind: 'error',
      image: (slot, stops) => errorImage(i, slot, stops)})).filter((_, i) => i !== data.truth);
-  return [...lights, ...samples, ...errors];
+  return [...lights, ...samples, ...errors, ...furtherViews()];
 }

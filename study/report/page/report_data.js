@@ -24,17 +24,6 @@ function picture(video, slot) {
   return plane(`v${video}-${pictureSlot(slot)}`);
 }
 
-/** Light of a pixel in all pictures of a video, as [slot, light]. */
-async function lightOverTime(video, pixel, colour) {
-  const at = colour * pixelCount + pixel.row * area.cols + pixel.col;
-  const points = [];
-  for (let slot = 0; slot < data.slots; slot += data.picture_step) {
-    const codes = await picture(video, slot);
-    if (codes) points.push([slot, lightOfCode[codes[at]]]);
-  }
-  return points;
-}
-
 /** The response of a pixel of the area to an exposure with so many open slots. */
 function responseOf(run, pixel, lightSlots) {
   const {response_rows: rows, response_cols: cols, responses} = run.samples;
@@ -67,31 +56,4 @@ function dnIndex(run, pixel, colour) {
   const row = (pixel.row + area.first_row) % 2;
   const col = (pixel.col + area.first_col) % 2;
   return run.filter[2 * row + col] === colour ? 0 : -1;
-}
-
-/** The sample of a pixel that is read at the end of `slot`, or null. */
-async function sampleAt(runIndex, slot, pixel, colour) {
-  const run = data.runs[runIndex];
-  const index = dnIndex(run, pixel, colour);
-  const kinds = index < 0 ? null : await plane(`r${runIndex}k-${slot}`);
-  const at = pixel.row * area.cols + pixel.col;
-  if (!kinds || kinds[at] === 0) return null;
-  const dn = await dnPlane(runIndex, slot);
-  let before = 0;
-  for (let i = 0; i < at; ++i) before += kinds[i] > 0;
-  const exposure = run.samples.exposures[kinds[at] - 1];
-  const first = slot - exposure.span_slots + 1;
-  const response = responseOf(run, pixel, exposure.light_slots);
-  return {first, slot, exposure,
-          ...lightOfSample(response, dn[before * dnPlanes(run) + index], exposure.light_slots)};
-}
-
-/** All samples of a pixel, by the slot in which they are read. */
-async function samplesOverTime(runIndex, pixel, colour) {
-  const samples = [];
-  for (let slot = 0; slot < data.slots; ++slot) {
-    const sample = await sampleAt(runIndex, slot, pixel, colour);
-    if (sample) samples.push(sample);
-  }
-  return samples;
 }

@@ -21,7 +21,8 @@ async function drawSide(side) {
   context.fillStyle = `rgb(${kNoSample.join()})`;
   if (image) context.putImageData(image, 0, 0);
   else context.fillRect(0, 0, area.cols, area.rows); // such as after the end of the truth
-  element(`name-${side}`).textContent = image ? view.name : `${view.name}: no picture of this slot`;
+  element(`name-${side}`).textContent = image ? view.name + pictureNote(view, state.slot)
+                                              : `${view.name}: no picture of this slot`;
   element(`picture-${side}`).dataset.slot = state.slot;
 }
 

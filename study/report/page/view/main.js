@@ -1,0 +1,26 @@
+'use strict';
+
+// The parts of the page of `stipple view` in their order.
+
+state.pictures = 0; // better ones that have come
+showHeader();
+showSettings();
+setUpCharts();
+setUpViewer();
+setUpPixel();
+setUpSchedule();
+whenever(['slot'], markSlots);
+whenever(['slot', 'a', 'b'], () => shownVideos().forEach(improve));
+whenever(['pictures'], () => {
+  drawSide('a');
+  drawSide('b');
+  showPixel();
+});
+let chartFirst = chartSlots()[0];
+whenever(['slot'], () => {
+  if (chartFirst !== chartSlots()[0]) showPixel();
+  [chartFirst] = chartSlots();
+});
+document.addEventListener('keydown', takeKey);
+askStatus();
+document.documentElement.dataset.ready = 'true';

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "decoder/decode_method.h"
+#include "decoder/preview.h"
+#include "session/decode_session.h"
+#include "view/viewed_stream.h"
+
+namespace stipple {
+
+/// The pictures of a decoded stream, where they are looked at: one of a few slots at once (`naive`,
+/// then `fast`, of the slots around), and behind it the whole block of `decode`, whose pictures
+/// have its bits. A thread decodes what was asked for last, and drops what nobody waits for.
+class SlotDecoder {
+  public:
+    /// How good a picture is; each is better than those before.
+    enum class Level { kNone, kNaive, kFast, kBlock };
+
+    /// `stream` must outlive this; `file` is its file. \throws InputError as DecodeSession.
+    SlotDecoder(ViewedStream& stream, const std::filesystem::path& file, const DecodeSetup& setup,
+                const CalibrationChoice& calibration);
+    ~SlotDecoder();
+    SlotDecoder(const SlotDecoder&) = delete;
+    SlotDecoder& operator=(const SlotDecoder&) = delete;
+
+    struct Picture {
+        Level level = Level::kNone;
+        std::shared_ptr<const std::vector<std::uint16_t>> codes =
+            {};  ///< light_code, (plane, row, col)
+    };
+    /// Waits up to `wait` for a picture of `slot` that is better than `than`, or until `viewer`
+    /// asks for another slot; nothing if none came. \throws InputError if the slot cannot be
+    /// decoded.
+    [[nodiscard]] std::optional<Picture> picture(const std::string& viewer, std::int64_t slot,
+                                                 Level than, std::chrono::milliseconds wait);
+    /// What is there of a slot.
+    [[nodiscard]] Picture known(std::int64_t slot) const;
+    /// "naive", "fast", or the method of blocks.
+    [[nodiscard]] std::string_view name_of(Level level) const;
+
+  private:
+    using Codes = std::shared_ptr<const std::vector<std::uint16_t>>;
+    struct Wish {
+        std::int64_t slot = 0;
+        std::chrono::steady_clock::time_point asked;
+    };
+    struct Task {
+        std::int64_t slot = 0;
+        Level level = Level::kNone;
+    };
+
+    /// Learns how far the stream has grown, and forgets the pictures that lacked what came.
+    void look_for_more();
+    [[nodiscard]] bool whole_block(std::int64_t slot) const;
+    void run();
+    void work(const Task& task);
+    void decode_slot(const Task& task);
+    void decode_block_of(std::int64_t slot);
+    [[nodiscard]] std::optional<Task> next_task();
+    [[nodiscard]] bool wanted(const Task& task);
+    void store(std::int64_t slot, Level level, std::span<const float> light);
+    [[nodiscard]] Picture best_of(std::int64_t slot) const;
+
+    ViewedStream& stream_;
+    DecodeMethod method_;
+    DecodeOptions options_;
+    PreviewDecoder naive_;
+    PreviewDecoder fast_;
+    DecodeSession session_;  ///< of the blocks
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::map<std::string, Wish> wishes_;  ///< by viewer
+    std::map<std::int64_t, std::array<Codes, 4>> pictures_;
+    std::map<std::int64_t, std::string> failures_;
+    std::size_t bytes_ = 0;   ///< of pictures_
+    std::int64_t slots_ = 0;  ///< of the stream, so far
+    bool complete_ = false;
+    std::atomic<bool> ended_ = false;
+    std::thread thread_;  ///< last: starts when all else is there
+};
+
+}  // namespace stipple

@@ -1,0 +1,247 @@
+#include "view/view_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "core/index.h"
+#include "core/text.h"
+#include "core/version.h"
+#include "decoder/measurements.h"
+#include "io/tone_map.h"
+#include "study/report/json_figures.h"
+#include "study/report/report_page.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::int64_t kMaxWaitMs = 20'000;
+/// The most slots of a question about one pixel.
+constexpr std::int64_t kMaxPixelSlots = 256;
+
+PageAnswer json_answer(const ordered_json& json) {
+    return {"application/json", json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)};
+}
+
+PageAnswer plane_answer(std::span<const std::uint16_t> values) {
+    PageAnswer answer{"application/octet-stream", std::string(2 * values.size(), '\0')};
+    std::memcpy(answer.body.data(), values.data(), answer.body.size());  // of a little-endian CPU
+    return answer;
+}
+
+/// "r0k-12": kind of plane 'r', number 0, of samples 'k', slot 12.
+struct PlaneId {
+    char kind = 0;
+    std::size_t number = 0;
+    char of = 0;  ///< 0 of videos
+    std::int64_t slot = 0;
+};
+
+std::optional<PlaneId> parsed(std::string_view id) {
+    if (id.empty()) return {};
+    PlaneId found{.kind = id[0]};
+    const char* const end = id.data() + id.size();
+    auto [at, error] = std::from_chars(id.data() + 1, end, found.number);
+    if (error != std::errc{} || at == end) return {};
+    if (*at != '-') found.of = *at++;
+    if (at == end || *at != '-') return {};
+    const auto slot = std::from_chars(at + 1, end, found.slot);
+    if (slot.ec != std::errc{} || slot.ptr != end || found.slot < 0) return {};
+    return found;
+}
+
+}  // namespace
+
+ViewPage::ViewPage(const ViewOptions& options) : command_(options.command) {
+    for (const auto& source : options.sources)
+        is_stream(source) ? add_stream(source, options) : add_footage(source, options);
+    if (!options.truth.empty()) {
+        truth_ = videos_.size();
+        add_footage(options.truth, options);
+        videos_.back().name = "truth";
+    }
+    title_ = options.sources.front().filename().string();
+}
+
+void ViewPage::require_shape(FrameShape shape, const std::filesystem::path& source) {
+    if (videos_.empty()) shape_ = shape;
+    if (shape != shape_)
+        throw InputError(source.string(), shape_difference(shape, shape_, "the first source has"));
+}
+
+void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& options) {
+    ViewedStream& stream = streams_.emplace_back(file, options.calibration);
+    require_shape(decoded_shape(stream.header()), file);
+    if (!stream.warning().empty()) {
+        options.warn(stream.warning());
+        notes_.push_back(stream.warning().text());
+    }
+    SlotDecoder& decoder =
+        decoders_.emplace_back(stream, file, options.decoding, options.calibration);
+    videos_.push_back({stream.name(), fmt::format("{}, decoded", file.string()),
+                       streams_.size() - 1, &decoder, nullptr});
+}
+
+void ViewPage::add_footage(const std::filesystem::path& source, const ViewOptions& options) {
+    ViewedVideo& video = footage_.emplace_back(source, options.footage, options.warn);
+    require_shape(video.shape(), source);
+    videos_.push_back({video.name(), source.string(), {}, nullptr, &video});
+}
+
+std::int64_t ViewPage::slots() {
+    std::int64_t slots = 1;
+    for (ViewedStream& stream : streams_) slots = std::max(slots, stream.slots());
+    for (const ViewedVideo& video : footage_) slots = std::max(slots, video.slots());
+    return slots;
+}
+
+ordered_json ViewPage::data() {
+    ordered_json json{{"program", fmt::format("stipple {}", version())},
+                      {"title", title_},
+                      {"command", command_},
+                      {"notes", notes_},
+                      {"truth", or_null(truth_)},
+                      {"featured", 0},
+                      {"slots", slots()},
+                      {"picture_step", 1},
+                      {"camera", nullptr}};
+    json["area"] = {{"rows", shape_.rows},
+                    {"cols", shape_.cols},
+                    {"planes", shape_.planes},
+                    {"first_row", 0},
+                    {"first_col", 0}};
+    json["frame"] = {{"rows", shape_.rows}, {"cols", shape_.cols}};
+    json["light_code"] = {{"darkest", kDarkestCodedLight}, {"codes_per_stop", kCodesPerStop}};
+    json["white_light"] = kWhiteLight;
+    json["videos"] = ordered_json::array();
+    for (const Video& video : videos_)
+        json["videos"].push_back({{"name", video.name},
+                                  {"text", video.text},
+                                  {"run", or_null(video.run)},
+                                  {"quality", nullptr}});
+    json["runs"] = ordered_json::array();
+    for (ViewedStream& stream : streams_) json["runs"].push_back(stream.json());
+    return json;
+}
+
+std::string ViewPage::html() {
+    return view_page(title_, data());
+}
+
+std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slot,
+                                            const PageRequest& request) {
+    if (video.footage != nullptr) return plane_answer(video.footage->codes(slot));
+    using Level = SlotDecoder::Level;
+    const auto than = std::clamp<std::int64_t>(request.number("than").value_or(0), 0, 3);
+    const auto wait = std::clamp<std::int64_t>(request.number("wait").value_or(0), 0, kMaxWaitMs);
+    const auto viewer = request.keys.find("viewer");
+    const auto found =
+        video.decoder->picture(viewer == request.keys.end() ? "" : viewer->second.substr(0, 64),
+                               slot, static_cast<Level>(than), std::chrono::milliseconds(wait));
+    if (!found) return plane_answer({});
+    PageAnswer answer = plane_answer(*found->codes);
+    answer.fields["Stipple-Level"] = std::to_string(static_cast<int>(found->level));
+    answer.fields["Stipple-Method"] = video.decoder->name_of(found->level);
+    return answer;
+}
+
+std::optional<PageAnswer> ViewPage::plane(const std::string& id, const PageRequest& request) {
+    const auto wanted = parsed(id);
+    if (!wanted || wanted->slot >= slots()) return {};
+    if (wanted->kind == 'v' && wanted->of == 0 && wanted->number < videos_.size())
+        return picture(videos_[wanted->number], wanted->slot, request);
+    if (wanted->kind != 'r' || wanted->number >= streams_.size()) return {};
+    ViewedStream& stream = streams_[wanted->number];
+    switch (wanted->of) {
+        case 'k':
+            return plane_answer(stream.samples(wanted->slot).kinds);
+        case 'd':
+            return plane_answer(stream.samples(wanted->slot).dn);
+        case 'e':
+            return plane_answer(stream.exposure_map(wanted->slot));
+        default:
+            return {};
+    }
+}
+
+namespace {
+
+/// A pixel, and the slots of it that are asked for.
+struct PixelQuestion {
+    int row;
+    int col;
+    int plane;
+    std::int64_t first;
+    std::int64_t end;
+};
+
+std::optional<PixelQuestion> pixel_question(const PageRequest& request, FrameShape shape,
+                                            std::int64_t slots) {
+    const auto number = [&](const char* key, std::int64_t end) -> std::optional<int> {
+        const auto value = request.number(key);
+        return value && *value >= 0 && *value < end ? std::optional(static_cast<int>(*value))
+                                                    : std::nullopt;
+    };
+    const auto row = number("row", shape.rows), col = number("col", shape.cols);
+    const auto plane = request.keys.contains("plane") ? number("plane", shape.planes) : 0;
+    if (!row || !col || !plane) return {};
+    const std::int64_t first =
+        std::clamp<std::int64_t>(request.number("first").value_or(0), 0, slots);
+    const std::int64_t end = std::clamp<std::int64_t>(request.number("end").value_or(slots), first,
+                                                      std::min(slots, first + kMaxPixelSlots));
+    return PixelQuestion{*row, *col, *plane, first, end};
+}
+
+}  // namespace
+
+std::optional<PageAnswer> ViewPage::samples(const PageRequest& request) {
+    const auto run = request.number("run").value_or(-1);
+    const auto pixel = pixel_question(request, shape_, slots());
+    if (!pixel || run < 0 || run >= static_cast<std::int64_t>(streams_.size())) return {};
+    return json_answer(streams_[static_cast<std::size_t>(run)].samples_of_pixel(
+        pixel->row, pixel->col, pixel->first, pixel->end));
+}
+
+std::optional<PageAnswer> ViewPage::light(const PageRequest& request) {
+    const auto number = request.number("video").value_or(-1);
+    const auto pixel = pixel_question(request, shape_, slots());
+    if (!pixel || number < 0 || number >= static_cast<std::int64_t>(videos_.size())) return {};
+    const Video& video = videos_[static_cast<std::size_t>(number)];
+    const std::size_t at =
+        index(pixel->plane) * shape_.pixels() + row_major(pixel->row, pixel->col, shape_.cols);
+    ordered_json list = ordered_json::array();
+    for (std::int64_t slot = pixel->first; slot < pixel->end; ++slot) {
+        if (video.footage != nullptr) {
+            if (const auto codes = video.footage->codes(slot); !codes.empty())
+                list.push_back({slot, codes[at]});
+        } else if (const auto known = video.decoder->known(slot); known.codes) {
+            list.push_back({slot, (*known.codes)[at]});
+        }
+    }
+    return json_answer(list);
+}
+
+std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
+    constexpr std::string_view kPlane = "plane/";
+    if (request.acts) return {};
+    if (request.path.empty()) return PageAnswer{"text/html; charset=utf-8", html()};
+    if (request.path.starts_with(kPlane)) return plane(request.path.substr(kPlane.size()), request);
+    if (request.path == "samples") return samples(request);
+    if (request.path == "light") return light(request);
+    if (request.path == "status") {
+        bool complete = true;
+        for (ViewedStream& stream : streams_) complete = stream.complete() && complete;
+        return json_answer({{"slots", slots()}, {"complete", complete}});
+    }
+    return {};
+}
+
+}  // namespace stipple

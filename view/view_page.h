@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/message.h"
+#include "io/footage_reader.h"
+#include "session/decode_setup.h"
+#include "session/stream_calibration.h"
+#include "view/page_server.h"
+#include "view/slot_decoder.h"
+#include "view/viewed_stream.h"
+#include "view/viewed_video.h"
+
+namespace stipple {
+
+/// What a page shows.
+struct ViewOptions {
+    std::vector<std::filesystem::path> sources;  ///< sample streams, and footage or decoded videos
+    std::filesystem::path truth = {};            ///< footage that the sensor saw; empty: none
+    FootageOptions footage = {};
+    DecodeSetup decoding = {};  ///< of the blocks
+    CalibrationChoice calibration = {};
+    std::string command = {};  ///< that shows the page
+    std::function<void(const Message&)> warn = [](const Message&) {};
+};
+
+/// The page of `stipple view`, and all that it asks for. The pictures are made when they are looked
+/// at, so that a long stream opens at once. For several threads.
+class ViewPage {
+  public:
+    /// \throws InputError as ViewedStream and ViewedVideo, and if the frames of the sources differ
+    /// in shape.
+    explicit ViewPage(const ViewOptions& options);
+
+    /// Answers what page/served.js asks for:
+    /// - "": the page;
+    /// - "status": JSON, the `slots` so far and whether the streams are `complete`;
+    /// - "plane/v0-12", ("viewer", "than", "wait"): light_code of slot 12 of video 0, 16 bits each,
+    ///   little-endian; of a decoded one better than level `than`, for which it waits `wait` ms, or
+    ///   no bytes;
+    /// - "plane/r0k-12", "plane/r0d-12", "plane/r0e-12": kinds, DN, and exposures under way in run
+    /// 0;
+    /// - "samples" ("run", "row", "col", "first", "end"): JSON, ViewedStream::samples_of_pixel;
+    /// - "light" ("video", "row", "col", "plane", "first", "end"): JSON, [slot, code] where known.
+    /// \throws InputError if a picture cannot be made.
+    [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);
+
+    /// Of the longest source, so far.
+    [[nodiscard]] std::int64_t slots();
+    [[nodiscard]] FrameShape shape() const { return shape_; }
+
+  private:
+    struct Video {
+        std::string name;
+        std::string text;
+        std::optional<std::size_t> run;  ///< decoded from it
+        SlotDecoder* decoder = nullptr;
+        ViewedVideo* footage = nullptr;
+    };
+    void add_stream(const std::filesystem::path& file, const ViewOptions& options);
+    void add_footage(const std::filesystem::path& source, const ViewOptions& options);
+    void require_shape(FrameShape shape, const std::filesystem::path& source);
+    [[nodiscard]] nlohmann::ordered_json data();
+    [[nodiscard]] std::string html();
+    [[nodiscard]] std::optional<PageAnswer> plane(const std::string& id,
+                                                  const PageRequest& request);
+    [[nodiscard]] std::optional<PageAnswer> picture(const Video& video, std::int64_t slot,
+                                                    const PageRequest& request);
+    [[nodiscard]] std::optional<PageAnswer> samples(const PageRequest& request);
+    [[nodiscard]] std::optional<PageAnswer> light(const PageRequest& request);
+
+    std::string title_;
+    std::string command_;
+    FrameShape shape_{};
+    std::vector<std::string> notes_;
+    std::deque<ViewedStream> streams_;
+    std::deque<ViewedVideo> footage_;
+    std::deque<SlotDecoder> decoders_;  ///< of streams_, which they use
+    std::vector<Video> videos_;
+    std::optional<std::size_t> truth_;
+};
+
+}  // namespace stipple

@@ -1,0 +1,154 @@
+#include "view/viewed_stream.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "core/index.h"
+#include "core/parallel.h"
+#include "readout/provenance.h"
+#include "study/report/json_figures.h"
+#include "study/report/run_report.h"
+#include "study/report/schedule_text.h"
+#include "study/report/stream_text.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kLanes = 12;
+constexpr std::int64_t kLaneSlots = 64;
+
+PixelArea whole(FrameShape shape) {
+    return {.first_row = 0, .first_col = 0, .rows = shape.rows, .cols = shape.cols};
+}
+
+StreamReader opened(const std::filesystem::path& file) {
+    StreamReader reader(file);
+    if (reader.header().schedule.weighted())
+        throw InputError(file.string(),
+                         "a page shows no grey masks; \"stipple decode\" takes this stream");
+    return reader;
+}
+
+}  // namespace
+
+ViewedStream::ViewedStream(const std::filesystem::path& file, const CalibrationChoice& calibration)
+    : reader_(opened(file)),
+      name_(file.stem().string()),
+      warning_(calibrate(reader_, calibration)),
+      samples_(reader_.header(), whole(reader_.header().shape)) {
+    samples_.add_kinds();
+    if (const auto known = reader_.slots()) {
+        slots_ = *known;
+        complete_ = true;
+    }
+}
+
+void ViewedStream::read_on() {
+    if (complete_) return;
+    next_slot_ = -1;
+    reader_.seek(std::max<std::int64_t>(slots_ - 1, 0));
+    for (SamplePacket packet; reader_.next(packet);) slots_ = std::max(slots_, packet.slot + 1);
+    complete_ = reader_.report().complete;
+}
+
+std::int64_t ViewedStream::slots() {
+    const std::lock_guard lock(mutex_);
+    read_on();
+    return slots_;
+}
+
+bool ViewedStream::complete() {
+    const std::lock_guard lock(mutex_);
+    read_on();
+    return complete_;
+}
+
+ordered_json ViewedStream::json() {
+    const std::int64_t known = slots();
+    const std::lock_guard lock(mutex_);
+    const StreamHeader& header = reader_.header();
+    return {{"name", name_},
+            {"stream", stream_json(header, reader_.report())},
+            {"command", or_null(command_of(header.provenance))},
+            {"filter", filter_json(header.cfa)},
+            {"samples", samples_.json()},
+            {"loads", nullptr},
+            {"lanes", lanes_json(header.schedule, header.shape, kLanes,
+                                 std::clamp(known, std::int64_t{1}, kLaneSlots))}};
+}
+
+template <typename Take>
+void ViewedStream::visit_packets(std::int64_t first, std::int64_t end, const Take& take) {
+    if (first != next_slot_) reader_.seek(first);
+    next_slot_ = -1;
+    for (SamplePacket packet; next_slot_ != end && reader_.next(packet) && packet.slot < end;) {
+        if (packet.slot >= first) take(packet);
+        const bool last = packet.first_row + packet.rows == reader_.header().shape.rows;
+        next_slot_ = last ? packet.slot + 1 : -1;
+    }
+    if (next_slot_ != end) next_slot_ = -1;
+}
+
+ViewedStream::Samples ViewedStream::read_samples(std::int64_t slot) {
+    samples_.clear();
+    visit_packets(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
+    return {{samples_.kinds().begin(), samples_.kinds().end()},
+            {samples_.dn().begin(), samples_.dn().end()}};
+}
+
+ViewedStream::Samples ViewedStream::samples(std::int64_t slot) {
+    const std::lock_guard lock(mutex_);
+    return read_samples(slot);
+}
+
+std::vector<std::uint16_t> ViewedStream::exposure_map(std::int64_t slot) const {
+    const StreamHeader& header = reader_.header();
+    const ExposureSchedule& schedule = header.schedule;
+    const int period = schedule.period_slots();
+    const auto phase = static_cast<int>(slot % period);
+    std::vector<std::uint16_t> map(header.shape.pixels());
+    parallel_for(0, header.shape.rows, [&](int row) {
+        for (int col = 0; col < header.shape.cols; ++col)
+            for (const Exposure& exposure :
+                 schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols())) {
+                const int since = (phase - static_cast<int>(exposure.first_slot) + period) % period;
+                if (since < exposure.span_slots() && (exposure.open_slots >> since & 1U) != 0)
+                    map[row_major(row, col, header.shape.cols)] =
+                        static_cast<std::uint16_t>(exposure.light_slots());
+            }
+    });
+    return map;
+}
+
+ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first,
+                                            std::int64_t end) {
+    const std::lock_guard lock(mutex_);
+    const FrameShape shape = reader_.header().shape;
+    const std::size_t pixel = row_major(row, col, shape.cols);
+    ordered_json list = ordered_json::array();
+    for (std::int64_t slot = first; slot < end; ++slot) {
+        const Samples at = read_samples(slot);
+        if (at.kinds[pixel] == 0) continue;
+        const auto before = static_cast<std::size_t>(
+            std::count_if(at.kinds.begin(), at.kinds.begin() + static_cast<std::ptrdiff_t>(pixel),
+                          [](std::uint16_t kind) { return kind != 0; }));
+        const auto planes = static_cast<std::size_t>(shape.planes);
+        ordered_json dn = ordered_json::array();
+        for (std::size_t i = 0; i < planes; ++i) dn.push_back(at.dn[before * planes + i]);
+        list.push_back({slot, at.kinds[pixel] - 1, dn});
+    }
+    return list;
+}
+
+std::vector<SamplePacket> ViewedStream::packets(std::int64_t first, std::int64_t end) {
+    const std::lock_guard lock(mutex_);
+    std::vector<SamplePacket> found;
+    visit_packets(first, end, [&](const SamplePacket& packet) { found.push_back(packet); });
+    return found;
+}
+
+}  // namespace stipple

@@ -1,0 +1,50 @@
+#include "view/viewed_video.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "study/report/report_page.h"
+
+namespace stipple {
+
+ViewedVideo::ViewedVideo(std::filesystem::path source, FootageOptions options,
+                         std::function<void(const Message&)> warn)
+    : source_(std::move(source)),
+      options_(std::move(options)),
+      name_(source_.filename().empty() ? source_.parent_path().filename().string()
+                                       : source_.filename().string()),
+      warn_(std::move(warn)) {
+    open();
+    warn_ = [](const Message&) {};  // once is enough
+    if (reader_->filter() != ColourFilter::kNone)
+        throw InputError(source_.string(),
+                         "is a mosaic of colours, which a page does not show; \"stipple emulate\" "
+                         "takes it");
+    shape_ = reader_->shape();
+    if (const auto declared = reader_->slots()) {
+        slots_ = *declared;
+    } else {
+        while (!reader_->next().empty()) ++slots_;
+        open();
+    }
+}
+
+void ViewedVideo::open() {
+    reader_ = std::make_unique<ReadAhead>(source_, options_, warn_);
+    next_ = 0;
+}
+
+std::vector<std::uint16_t> ViewedVideo::codes(std::int64_t slot) {
+    const std::lock_guard lock(mutex_);
+    if (slot < 0 || slot >= slots_) return {};
+    if (slot < next_) open();
+    if (slot > next_) reader_->skip(static_cast<int>(slot - next_));
+    const auto frame = reader_->next();
+    next_ = slot + 1;
+    std::vector<std::uint16_t> codes(frame.size());
+    std::ranges::transform(frame, codes.begin(), light_code);
+    return codes;
+}
+
+}  // namespace stipple
