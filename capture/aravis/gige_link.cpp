@@ -48,13 +48,17 @@ GigeLink::GigeLink(AravisDevice& device, std::optional<int> packet_bytes)
     GlibError error;
     const auto before = arv_camera_gv_get_packet_size(camera, error.slot());
     error.check_answer(device.address());
-    // A camera that answers no test packets keeps its size; on loopback no switch is in between.
-    if (!packet_bytes && arv_camera_gv_auto_packet_size(camera, nullptr) <= before && interface_ &&
-        interface_->is_loopback)
-        packet_bytes = kLoopbackPacketBytes;
+    if (!packet_bytes) {
+        const auto probed = arv_camera_gv_auto_packet_size(camera, error.slot());
+        error.check_answer(device.address());
+        // A camera that answers no test packets keeps its size; on loopback no switch is between.
+        if (probed <= before && interface_ && interface_->is_loopback)
+            packet_bytes = kLoopbackPacketBytes;
+    }
     if (packet_bytes) {
         arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
-        arv_camera_gv_set_packet_size(camera, *packet_bytes, nullptr);
+        arv_camera_gv_set_packet_size(camera, *packet_bytes, error.slot());
+        error.check_answer(device.address());
     }
     packet_bytes_ = arv_camera_gv_get_packet_size(camera, error.slot());
     error.check_answer(device.address());

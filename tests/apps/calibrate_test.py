@@ -1,5 +1,6 @@
 """Calibration of a chip: what `stipple calibrate` writes, `stipple decode` uses."""
 
+import re
 import struct
 import unittest
 import zlib
@@ -70,6 +71,21 @@ class CalibrateTest(ProgramTest):
         error = self.decoded_error()
         corrected = self.decoded_error("--calibration", "chip.stcal")
         self.assertGreater(np.sqrt(error ** 2 - corrected ** 2), 0.04)
+
+    def test_info_tells_the_same_figures_as_calibrate(self):
+        self.emulate()
+        noisy = ("--sensor", "t6", "--set", "sensor.dsnu_e=3", "--set", "sensor.dark_current_e_per_s=4000", "--size", SIZE)
+        for source, maps in ((noisy, ("gain", "offset_dn", "dark_dn_per_s")),
+                             (("--scene", "clip.stipple", "--method", "naive"), ("gain",))):
+            with self.subTest(source[0]):
+                command = ("calibrate", *source, "-o", "chip.stcal", "--force")
+                made, told = self.figures(*command), self.figures("info", "chip.stcal")
+                for name in maps:
+                    self.assertEqual({key: made[name][key] for key in ("mean", "deviation")}, told[name])
+                spreads = re.findall(r"[-.\de]+ \+- [-.\de]+", self.succeed(*command))
+                self.assertEqual(len(spreads), len(maps))
+                said = self.succeed("info", "chip.stcal")
+                self.assertEqual(re.findall(r"[-.\de]+ \+- [-.\de]+", said)[:len(maps)], spreads)
 
     def test_a_pattern_without_calibration_is_told(self):
         self.emulate()
@@ -204,6 +220,9 @@ class CalibrateTest(ProgramTest):
                            "clip.stcal: ", "device_id 0, and the stream of 4"], *decode)
         self.assertIn("calibrated   not: clip.stcal", self.run_program("info", "clip.stipple").stdout)
         self.succeed(*decode, "--calibration", "none")
+        self.succeed("calibrate", "--sensor", "t6", "--size", "24x24", "-o", "clip.stcal", "--force")
+        self.assertIn("24 x 24 pixels in 1 plane, and the stream has", self.run_program("info", "clip.stipple").stdout)
+        self.succeed("calibrate", "--sensor", "t6", "--size", SIZE, "-o", "clip.stcal", "--force")
         self.fails(INPUT, ["clip.stcal: ", "device_id 0, and the stream of 4"], "emulate", "light.npy", "-o",
                    "other.stipple", *SENSOR, "--calibration", "clip.stcal")
         self.assertEqual([name for name in self.names() if name.startswith("other")], [])

@@ -58,6 +58,13 @@ class UsageTest(ProgramTest):
         self.fails(USAGE, ["--output", "standard output"], "emulate", "a", "-o", "-")
         self.fails(USAGE, ["--name", "64"], "schedule", "import", "a.npy", "-o", "x", "--name", "n" * 65)
 
+    def test_ranges_are_told_as_far_as_they_go(self):
+        for line, range_ in ((("synth", "pan", "-o", "x", "--seed", "x"), "whole number of 0 or more"),
+                             (("capture", "replay", "x", "-o", "x.npy", "--black-level", "x"), "number of 0 or more"),
+                             (("synth", "pan", "-o", "x", "--threads", "x"), "whole number from 0 to 1024"),
+                             (("decode", "x", "-o", "x.npy", "--timeout", "x"), "number from 0 to 1000000")):
+            self.fails(USAGE, [f'{line[-2]}: "x" is not a {range_}\n'], *line)
+
     def test_files_that_another_command_or_a_loop_takes(self):
         self.write_stream()
         self.fails(INPUT, ["name one of its sample streams, as ./clip.stipple"], "info", ".")

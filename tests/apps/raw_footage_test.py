@@ -35,6 +35,7 @@ class RawTest(CameraFilesTest):
                           "8x6:mono12:offset=100:black=64:hz=1000")
         self.assertIn("clip.raw: has 1000 frames/s, but a slot of sensor \"paper\" takes 5000 us", self.said)
         self.assertIn("--set sensor.slot_us=1000", self.said)
+        self.assert_light(MOSAIC / 4095, name, "--raw", "8x6:mono12:offset=100:black=0")
         self.light(name, "--raw", "8x6:mono12:offset=100:hz=1000", "--set", "sensor.slot_us=1000")
         self.assertEqual(self.said, "")
 

@@ -28,9 +28,9 @@ class RecordingTest(ProgramTest):
         np.save(self.folder / "light.npy", self.dn)
 
     def record(self, *more):
-        """A recording of 6 frames, whose samples are self.dn."""
+        """A recording, whose samples are self.dn."""
         return self.figures("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST,
-                            "--frames", 6, *more)
+                            "--frames", len(self.dn), *more)
 
     def test_the_python_of_the_document_reads_every_frame(self):
         lines = lines_of_the_document()
@@ -67,7 +67,7 @@ class RecordingTest(ProgramTest):
         record = ("capture", "record", "replay:light.npy", "-o", "clip.strec", *FAST, "--frames", 1,
                   "--force")
         self.assertIsNone(self.figures(*record)["frames_hz"])
-        self.assertIn("1 frame, 0.0 MB", self.succeed(*record))
+        self.assertIn("1 frame, 0.0 MB\nlost: ", self.succeed(*record))
         live = ("capture", "live", "replay:light.npy", "-o", "a.stipple", *FAST, "--frames", 1)
         figures = self.figures(*live)
         for key in ("slots_per_second", "samples_per_second", "frames_hz"):
@@ -160,6 +160,19 @@ class RecordingTest(ProgramTest):
             self.assertIn(line.replace("4: ", f"4: {cause}\n"), said + "\n")
             told = self.figures("info", "kept.strec")
             self.assertEqual((len(told["gaps"]), told["missing_after_last"]), (gaps, after_last))
+            (self.folder / "clip.strec").unlink()
+
+    def test_so_many_gaps_are_shown_and_further_ones_counted(self):
+        self.dn = np.tile(self.dn, (4, 1, 1))
+        np.save(self.folder / "light.npy", self.dn)
+        for gaps in 10, 11:
+            self.record_incomplete(*range(1, 2 * gaps, 2))
+            self.succeed("capture", "record", "replay:clip.strec", "-o", "kept.strec", *FAST, "--force", "--incomplete",
+                         "drop")
+            said = self.succeed("info", "kept.strec")
+            self.assertIn(f"missing      {gaps} frames in {gaps} places\n", said)
+            self.assertEqual(said.count(" before frame "), 10)
+            self.assertEqual(re.findall("and .* more", said), ["and 1 more"] if gaps > 10 else [])
             (self.folder / "clip.strec").unlink()
 
     def test_live_counts_frames_from_its_first_slot_on(self):

@@ -140,14 +140,12 @@ class TextsTest(ProgramTest):
         text, figures = self.told("calibrate", "--sensor", "t6", "--set", "sensor.response_loss=0.16", "--size", "32x24",
                                   "-o", "a.stcal", "--flats", 60, "--darks", 50)
 
-        def deviation(name):
-            return math.hypot(*(figures[name][part] for part in ("pixels", "rows", "columns")))
-
         self.check(text, "a.stcal: # x # pixels from # flats and # darks of each", figures["cols"], figures["rows"],
                    figures["flats"], figures["darks"])
-        self.check(text, r"gain +1 \+- #, uncertainty #", deviation("gain"), figures["gain_error"])
+        self.check(text, r"gain +1 \+- #, uncertainty #", figures["gain"]["deviation"],
+                   figures["gain_error"])
         for name, line in (("offset_dn", r"offset +# \+- # DN"), ("dark_dn_per_s", r"dark current +# \+- # DN/s")):
-            self.check(text, line, figures[name]["mean"], deviation(name))
+            self.check(text, line, figures[name]["mean"], figures[name]["deviation"])
         self.check(text, "readout noise # DN", math.sqrt(figures["readout_noise_dn2"]["mean"]))
         bent = figures["response"]
         self.check(text, r"# DN stand for # \+- # linear DN, by # levels", bent["brightest_dn"],

@@ -58,6 +58,19 @@ class TimingTest(ProgramTest):
         self.assertIsNone(self.figures(*arguments)["hypothetical"])
         self.assertNotIn("hypothetical", self.succeed(*arguments))
 
+    def test_rates_and_clocks_are_told_without_powers_of_ten(self):
+        window = ("timing", "--sensor", "lux1310", "--roi", "50x4")
+        it = self.figures(*window)
+        self.assertGreater(it["coded_readout_hz"], 1e5)
+        said = self.succeed(*window)
+        self.assertIn(f"coded        {it['coded_readout_hz']:.0f} slots/s of ", said)
+        self.assertIn(f"full         {it['full_readout_hz']:.0f} readouts/s: ", said)
+        whole = ("timing", "--sensor", "imx296", "--schedule", "full1x", "--set", "sensor.timing.exposes_while_reading=false",
+                 "--set", "sensor.slot_us=50000")
+        clocks = self.figures(*whole)["min_slot_clocks"]
+        self.assertGreater(clocks, 1e6)
+        self.assertIn(f" slots/s of {clocks:.0f} clocks", self.succeed(*whole))
+
     def test_skipping_saves_the_link_and_not_the_conversion(self):
         it = self.figures("timing", "--sensor", "lux1310")
         pixels = 1280 * 1024

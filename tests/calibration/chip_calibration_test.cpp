@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +45,7 @@ TEST(ChipCalibrationTest, AnotherChipIsRefused) {
     expect_refused(calibration(), header(), {.name = "t7"}, "\"t6\", and the stream of \"t7\"");
     ChipCalibration other = calibration();
     other.shape.cols = 8;
-    expect_refused(other, header(), {}, "8 x 4 pixels in 1 planes, and the stream has 6 x 4 in 1");
+    expect_refused(other, header(), {}, "8 x 4 pixels in 1 plane, and the stream has 6 x 4 in 1");
     other = calibration();
     other.bit_depth = 10;
     expect_refused(other, header(), {}, "10 bits, and the stream has 12 bits");
@@ -53,6 +55,30 @@ TEST(ChipCalibrationTest, AnotherChipIsRefused) {
     StreamHeader mosaic = header();
     mosaic.calibration.tile = {1, 1, {{}}};
     expect_refused(calibration(), mosaic, {}, "tile of 0 x 0");
+}
+
+TEST(ChipCalibrationTest, FiguresAreThoseOfTheStoredMapsWithoutDefects) {
+    ChipCalibration ours = calibration();
+    const SiteCalibration low{.gain = 0.75F,
+                              .gain_variance = 0.0625F,
+                              .offset_dn = 60,
+                              .dark_dn_per_s = 10,
+                              .readout_noise_dn2 = 4};
+    const SiteCalibration high{.gain = 1.25F,
+                               .gain_variance = 0.1875F,
+                               .offset_dn = 68,
+                               .dark_dn_per_s = 30,
+                               .readout_noise_dn2 = 6};
+    ours.sites = {low, {.gain = 7, .gain_variance = 9, .offset_dn = 900, .defect = true}, high};
+    const ChipFigures figures = chip_figures(ours);
+    EXPECT_EQ(figures.gain.mean, 1);
+    EXPECT_EQ(figures.gain.deviation, 0.25);
+    EXPECT_EQ(figures.gain_error, std::sqrt(0.125));
+    EXPECT_EQ(figures.offset_dn.mean, 64);
+    EXPECT_EQ(figures.offset_dn.deviation, 4);
+    EXPECT_EQ(figures.dark_dn_per_s.deviation, 10);
+    EXPECT_EQ(figures.readout_noise_dn2.mean, 5);
+    EXPECT_EQ(figures.defects, 1U);
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ const double kScatter = 5 * std::sqrt(2 / kPixels);
 /// A chip of 16 bits whose sites differ: y = 500 + offset + dark t + gain light t, in DN.
 struct Chip {
     std::vector<double> gain, offset, dark;
-    double row_noise_dn = 0;  ///< of each row of each frame
+    double row_noise_dn = 0;      ///< of each row of each frame
+    int rows_read = kShape.rows;  ///< of each frame
 
     explicit Chip(double prnu, double dsnu, double dark_spread) {
         std::mt19937 random(3);
@@ -60,9 +61,9 @@ void expose(const Chip& chip, double slot_us, double light_dn_per_s, int frames,
     FieldCollector collector(header, field);
     const double t = slot_us * 1e-6;
     for (int frame = 0; frame < frames; ++frame) {
-        SamplePacket packet{.slot = frame, .rows = kShape.rows, .dn = {}};
+        SamplePacket packet{.slot = frame, .rows = chip.rows_read, .dn = {}};
         double row_dn = 0;
-        for (std::size_t i = 0; i < kShape.sites(); ++i) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(chip.rows_read) * 64; ++i) {
             if (i % 64 == 0 && chip.row_noise_dn > 0) row_dn = chip.row_noise_dn * normal(random);
             packet.dn.push_back(static_cast<std::uint16_t>(std::clamp(
                 std::round(500 + chip.offset[i] + chip.dark[i] * t +
@@ -230,6 +231,23 @@ TEST(ChipEstimateTest, NamesAFlatSeriesWithoutShotNoise) {
                                            .dark = series.dark,
                                            .flats = {&series.flat, 1},
                                            .well_known = false});
+                 }),
+                 {"flat series: saturates: its noise is that of the dark series"});
+}
+
+TEST(ChipEstimateTest, PixelsWithoutTheShortDarkExposureHideNoMissingShotNoise) {
+    Chip chip(0.02, 3, 0);
+    Series series;
+    expose(chip, 80000, 0, 10, 10, series.dark);
+    expose(chip, 5000, 2e6, 10, 10, series.flat);
+    chip.rows_read = 63;
+    expose(chip, 5000, 0, 10, 10, series.dark);
+    expect_parts(message_of<InputError>([&] {
+                     return estimate_chip({.header = series.header,
+                                           .dark = series.dark,
+                                           .flats = {&series.flat, 1},
+                                           .well_known = false,
+                                           .dark_current = false});
                  }),
                  {"flat series: saturates: its noise is that of the dark series"});
 }

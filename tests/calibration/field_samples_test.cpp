@@ -40,6 +40,17 @@ TEST(FieldSamplesTest, SumsAreThoseOfEachExposureTime) {
     EXPECT_EQ(field.fewest(), 2U);
 }
 
+// The left pixel has a variance of 5^2 + 5^2; the right one was not read.
+TEST(FieldSamplesTest, TwoSamplesOfAPixelTellItsNoise) {
+    const StreamHeader header = two_pixels();
+    FieldSamples field(header.shape);
+    FieldCollector collector(header, field);
+    collector.add({.slot = 0, .rows = 1, .dn = {100}});
+    collector.add({.slot = 2, .rows = 1, .dn = {110}});
+    const auto& [time, sums] = *field.exposures().begin();
+    EXPECT_DOUBLE_EQ(field_exposure(time, sums, header).noise_dn2[0], 50);
+}
+
 TEST(FieldSamplesTest, ADroppedPacketHasNoSamples) {
     const StreamHeader header = two_pixels();
     FieldSamples field(header.shape);

@@ -329,6 +329,9 @@ class SearchTest(CameraTest):
             if feature.name == "Width":
                 self.assertEqual(feature._asdict() | {"choices": []}, wanted)
         self.assertEqual([f.value for f in stipple.capture.features(address, "pixelf*")], ["Mono16"])
+        unbounded, = (feature for feature in found if feature.name == "GevTimestampTickFrequency")
+        self.assertEqual((unbounded.minimum, unbounded.maximum), ("0", None))
+        self.assertRegex(self.succeed("capture", "features", address, unbounded.name), r" 0\.\.\n$")
         with self.assertRaisesRegex(ValueError, '"nothing": matches none of the'):
             stipple.capture.features(address, "nothing")
 

@@ -62,6 +62,11 @@ class ChoiceTest(ProgramTest):
             with self.subTest(exposures), self.assertRaisesRegex(ValueError, message):
                 stipple.Schedule.from_exposures(exposures, (1, 1), 6)
 
+    def test_a_schedule_shows_itself_with_its_period(self):
+        for slots, period in ((1, "1 slot"), (2, "2 slots")):
+            schedule = stipple.Schedule.from_exposures([(0, 0, 0, 1)], (1, 1), slots, name="mine")
+            self.assertEqual(repr(schedule), f"<stipple.Schedule mine: tile 1 x 1, period {period}>")
+
     def test_rows_of_exposures_are_whole_numbers_of_their_ranges(self):
         for row in ((0, 0, 0, 1.5), (0, 0, 0, -1), (0, 0, 0, 2**64), (0, 0, 2**32, 1), (2**16, 0, 0, 1), (0, 0),
                     ("a", 0, 0, 1), 3):

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
@@ -52,9 +53,14 @@ TEST(FlatFieldTest, SeedDecidesTheImages) {
 }
 
 TEST(FlatFieldTest, UnequalPixelsAreRefused) {
-    SensorParams params{.mode = SensorMode::kPhysical};
-    params.physical.transmittance = {{1, 0.5}};
-    EXPECT_THROW(FlatField(params, 1), InputError);
+    const SensorParams equal{.mode = SensorMode::kPhysical};
+    SensorParams filtered = equal, amplified = equal;
+    filtered.physical.transmittance = {1, 0.5};
+    amplified.physical.gain_map = {1, 0.5};
+    for (const SensorParams& params : {filtered, amplified})
+        expect_parts(
+            message_of<InputError>([&] { return FlatField(params, 1); }),
+            {"pixels of unequal transmittance or gain", "transmittance=[] and gain_map=[]"});
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -31,10 +33,17 @@ TEST(CellScheduleTest, RefusesPeriodsBeyondTheFormat) {
                      return cell_schedule({1, 2, {1, 1}, {256, 257}, {0, 0}});
                  }),
                  {"65792", "65535"});
-    Cell fast{256, 256, std::vector<int>(65536, 1), std::vector<int>(65536, 1),
-              std::vector<int>(65536, 0)};
-    fast.every_slots[0] = 257;
-    expect_parts(message_of<InputError>([&] { return cell_schedule(fast); }), {"2^24"});
+    // 4095 pixels with 4096 exposures in the period, 4096 pixels with one: 2^24.
+    Cell most{8191, 1, std::vector<int>(8191, 1), std::vector<int>(8191, 1),
+              std::vector<int>(8191, 0)};
+    std::fill_n(most.every_slots.rbegin(), 4096, 4096);
+    most.exposure_slots[0] = 2;  // the next fault, found before anything is made
+    expect_parts(message_of<InputError>([&] { return cell_schedule(most); }), {"pixel (0, 0)"});
+    Cell more{8192, 1, most.exposure_slots, most.every_slots, most.first_slots};
+    more.exposure_slots.push_back(1);
+    more.every_slots.push_back(4096);
+    more.first_slots.push_back(0);
+    expect_parts(message_of<InputError>([&] { return cell_schedule(more); }), {"2^24 fit"});
 }
 
 TEST(RollingScheduleTest, StartsRowAfterRow) {

@@ -206,7 +206,9 @@ TEST(VideoQualityTest, IsTheSameForAnyThreadCount) {
 }
 
 TEST(VideoQualityTest, RefusesOptionsWithoutAMeaning) {
-    EXPECT_THROW(QualityMeter({}, {}), InputError);
+    for (const FrameShape empty :
+         {FrameShape{0, 16, 1}, FrameShape{12, 0, 1}, FrameShape{12, 16, 0}})
+        EXPECT_THROW(QualityMeter(empty, {}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.margin = -1}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 0.0}), InputError);
     EXPECT_THROW(QualityMeter(kShape, {.max_value = 1e-50}), InputError);  // 0 as a float
