@@ -12,5 +12,5 @@ setUpReadout();
 setUpSchedule();
 setUpCamera();
 whenever(['slot'], markSlots);
-if (data.videos.length) document.addEventListener('keydown', takeKey);
+if (data.videos.length) setUpKeys();
 document.documentElement.dataset.ready = 'true';

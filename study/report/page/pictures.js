@@ -5,60 +5,39 @@
 const kErrorRange = 0.25; // light, at exposure 0
 const kNoSample = [22, 25, 32];
 
-/** As io/tone_map.h: Reinhard's curve with a white point, then the power 1/2.2. */
-function toneMapped(light) {
-  const white = data.white_light;
-  const x = Math.min(light, white);
-  return 255 * ((x * (1 + x / (white * white))) / (1 + x)) ** (1 / 2.2);
-}
-
-let toneTable = {stops: null, display: new Uint8ClampedArray(65536)};
-
-/** Display value of each code at an exposure. */
-function displayOfCode(stops) {
-  if (toneTable.stops === stops) return toneTable.display;
-  const gain = 2 ** stops;
-  const display = new Uint8ClampedArray(65536).fill(255);
-  for (let code = 0; code < display.length; ++code) {
-    display[code] = toneMapped(lightOfCode[code] * gain);
-    if (lightOfCode[code] * gain > data.white_light) break;
-  }
-  toneTable = {stops, display};
-  return display;
-}
-
-async function lightImage(video, slot, stops) {
+async function lightImage(video, slot) {
   const codes = await picture(video, slot);
   if (!codes) return null;
-  const display = displayOfCode(stops);
+  const {red, green, blue, single} = displayOfCodes();
   const image = new ImageData(area.cols, area.rows);
   const second = area.planes === 3 ? pixelCount : 0;
   for (let i = 0; i < pixelCount; ++i) {
-    image.data[4 * i] = display[codes[i]];
-    image.data[4 * i + 1] = display[codes[i + second]];
-    image.data[4 * i + 2] = display[codes[i + 2 * second]];
+    const code = single ? codeOfLight(luminanceAt(codes, i)) : codes[i];
+    image.data[4 * i] = red[code];
+    image.data[4 * i + 1] = green[single ? code : codes[i + second]];
+    image.data[4 * i + 2] = blue[single ? code : codes[i + 2 * second]];
     image.data[4 * i + 3] = 255;
   }
   return image;
 }
 
 /** What the chip delivers at the end of a slot; other pixels go on exposing. */
-async function sampleImage(runIndex, slot, stops) {
+async function sampleImage(runIndex, slot) {
   const run = data.runs[runIndex];
   const image = new ImageData(area.cols, area.rows);
   const kinds = await plane(`r${runIndex}k-${slot}`);
   const dn = await dnPlane(runIndex, slot);
   const planes = dnPlanes(run);
-  const gain = 2 ** stops;
+  const {red, green, blue} = displayOfCodes();
   for (let i = 0, next = 0; i < pixelCount; ++i) {
     image.data.set([...kNoSample, 255], 4 * i);
     if (!kinds || kinds[i] === 0) continue;
     const lightSlots = run.samples.exposures[kinds[i] - 1].light_slots;
     const response = responseOf(run, {row: Math.floor(i / area.cols), col: i % area.cols}, lightSlots);
-    for (let colour = 0; colour < 3; ++colour) {
+    for (const [colour, table] of [red, green, blue].entries()) {
       const value = dn[next + Math.min(colour, planes - 1)];
       const {light} = lightOfSample(response, value, lightSlots);
-      image.data[4 * i + colour] = toneMapped(Math.max(light, 0) * gain);
+      image.data[4 * i + colour] = table[codeOfLight(Math.max(light, 0))];
     }
     next += planes;
   }
@@ -90,13 +69,13 @@ async function errorImage(video, slot, stops) {
   return image;
 }
 
-/** All that a picture can show: {id, name, image(slot, stops), kind}. */
+/** All that a picture can show: {id, name, image(slot, stops), kind}, and of light its codes(slot). */
 function allViews() {
   const lights = data.videos.map((video, i) => (
-    {id: `light-${i}`, name: video.name, kind: 'light', image: (slot, stops) => lightImage(i, slot, stops)}));
+    {id: `light-${i}`, name: video.name, kind: 'light', image: (slot) => lightImage(i, slot),
+     codes: (slot) => picture(i, slot)}));
   const samples = data.runs.map((run, i) => (
-    {id: `samples-${i}`, name: `samples, ${run.name}`, kind: 'samples',
-     image: (slot, stops) => sampleImage(i, slot, stops)}));
+    {id: `samples-${i}`, name: `samples, ${run.name}`, kind: 'samples', image: (slot) => sampleImage(i, slot)}));
   const errors = data.truth === null ? [] : data.videos.map((video, i) => (
     {id: `error-${i}`, name: `error, ${video.name}`, kind: 'error',
      image: (slot, stops) => errorImage(i, slot, stops)})).filter((_, i) => i !== data.truth);

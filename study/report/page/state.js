@@ -2,7 +2,9 @@
 
 // What the reader has chosen.
 
-const state = {slot: 0, stops: 0, divider: 50, a: null, b: null, pixel: null, colour: 0, run: 0, log: false};
+const state = {slot: 0, stops: 0, divider: 50, a: null, b: null, pixel: null, colour: 0, run: 0, log: false,
+               layout: 'divider', zoom: {scale: 1, left: 0, top: 0}, tool: 'pixel', region: null, line: null,
+               display: 'tone', low: 0, high: 1, pictures: 0};
 
 function chooseSlot(slot) {
   choose({slot: clamp(slot, 0, data.slots - 1)});

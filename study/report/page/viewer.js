@@ -42,7 +42,8 @@ function showDivider() {
   divider.style.left = `${state.divider}%`;
   divider.setAttribute('aria-valuenow', Math.round(state.divider));
   divider.setAttribute('aria-valuetext', `${Math.round(state.divider)} % left picture`);
-  element('picture-a').style.clipPath = `inset(0 ${100 - state.divider}% 0 0)`;
+  const under = state.layout === 'divider' && state.a !== state.b;
+  element('layer-a').style.clipPath = under ? `inset(0 ${100 - state.divider}% 0 0)` : 'none';
 }
 
 function showSlot() {
@@ -56,41 +57,24 @@ function showStops() {
   element('stops-text').textContent = `${state.stops > 0 ? '+' : ''}${state.stops} stops`;
 }
 
-function showCrosshair() {
-  const cross = element('crosshair');
-  cross.hidden = !state.pixel;
-  if (!state.pixel) return;
-  const size = Math.max(100 / area.cols, 1.6);
-  cross.style.width = `${size}%`;
-  cross.style.height = `${(size * area.cols) / area.rows}%`;
-  cross.style.left = `${((state.pixel.col + 0.5) / area.cols) * 100 - size / 2}%`;
-  cross.style.top = `${((state.pixel.row + 0.5) / area.rows) * 100 - (size * area.cols) / area.rows / 2}%`;
-}
-
 /** Two pictures that are the same are shown as one. */
 function showOneOrTwo() {
   const one = state.a === state.b;
+  const beside = state.layout === 'beside' && !one;
   element('name-b').hidden = one;
-  element('divider').hidden = one;
-  element('divider-keys').hidden = one;
-}
-
-/** Place of a pointer in the stage, as fractions of its sides. */
-function placeOf(event) {
-  const box = element('stage').getBoundingClientRect();
-  return {x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height};
+  element('divider').hidden = one || beside;
+  element('stage').classList.toggle('beside', beside);
+  element('stage').style.aspectRatio = `${(beside ? 2 : 1) * area.cols} / ${area.rows}`;
+  element('layout').value = state.layout;
+  element('layout').disabled = one;
+  showDivider();
 }
 
 function listenToPointer() {
   const divider = element('divider');
   divider.addEventListener('pointerdown', (event) => divider.setPointerCapture(event.pointerId));
   divider.addEventListener('pointermove', (event) => {
-    if (divider.hasPointerCapture(event.pointerId)) chooseDivider(placeOf(event).x * 100);
-  });
-  element('stage').addEventListener('click', (event) => {
-    if (divider.contains(event.target)) return;
-    const {x, y} = placeOf(event);
-    choosePixel(Math.floor(y * area.rows), Math.floor(x * area.cols));
+    if (divider.hasPointerCapture(event.pointerId)) chooseDivider(placeIn(element('stage'), event).x * 100);
   });
 }
 
@@ -98,17 +82,35 @@ function listenToControls() {
   for (const side of ['a', 'b'])
     element(`view-${side}`).addEventListener('change', (event) => choose({[side]: event.target.value}));
   element('slot').addEventListener('input', (event) => chooseSlot(Number(event.target.value)));
+  element('layout').addEventListener('change', (event) => choose({layout: event.target.value}));
+  element('speed').addEventListener('change', restartPlay);
   element('stops').addEventListener('input', (event) => chooseStops(Number(event.target.value)));
   element('play').addEventListener('click', togglePlay);
 }
 
 let playing = null;
 
+function playOn() {
+  chooseSlot((state.slot + data.picture_step) % data.slots);
+}
+
+function startPlay() {
+  const speed = Number(element('speed').value);
+  const step = Math.max(1, Math.round(speed / 50)); // a screen has no more pictures than this each second
+  playing = setInterval(() => { for (let i = 0; i < step; ++i) playOn(); }, (1000 * step) / speed);
+}
+
+function restartPlay() {
+  if (!playing) return;
+  clearInterval(playing);
+  startPlay();
+}
+
 function togglePlay() {
   const button = element('play');
   if (button.disabled) return;
-  if (playing) clearInterval(playing);
-  playing = playing ? null : setInterval(() => chooseSlot((state.slot + data.picture_step) % data.slots), 100);
+  if (playing) playing = clearInterval(playing) ?? null;
+  else startPlay();
   button.setAttribute('aria-pressed', playing !== null);
   button.setAttribute('aria-label', playing ? 'pause' : 'play');
   button.textContent = playing ? '❚❚' : '▶';
@@ -139,18 +141,20 @@ function setUpViewer() {
   element('slot').max = data.slots - 1;
   element('slot').disabled = data.slots === 1;
   element('play').disabled = data.slots <= data.picture_step; // a single picture
-  element('slot-keys').hidden = data.slots === 1;
   choose(firstChoice());
   listenToPointer();
   listenToControls();
-  whenever(['slot', 'stops', 'a'], () => drawSide('a'));
-  whenever(['slot', 'stops', 'b'], () => drawSide('b'));
+  setUpDisplay();
+  setUpSelection();
+  setUpCopies();
+  listenToZoom();
+  for (const side of ['a', 'b'])
+    whenever(['slot', 'stops', 'display', 'low', 'high', side], () => drawSide(side));
   whenever(['a', 'b'], showChoice);
-  whenever(['a', 'b'], showOneOrTwo);
+  whenever(['a', 'b', 'layout'], showOneOrTwo);
   whenever(['a', 'b', 'stops'], showScale);
   whenever(['divider'], showDivider);
   whenever(['slot'], showSlot);
   whenever(['stops'], showStops);
-  whenever(['pixel'], showCrosshair);
   firstStops();
 }

@@ -2,7 +2,6 @@
 
 // The parts of the page of `stipple view` in their order.
 
-state.pictures = 0; // better ones that have come
 showHeader();
 showSettings();
 setUpCharts();
@@ -21,6 +20,6 @@ whenever(['slot'], () => {
   if (chartFirst !== chartSlots()[0]) showPixel();
   [chartFirst] = chartSlots();
 });
-document.addEventListener('keydown', takeKey);
+setUpKeys();
 askStatus();
 document.documentElement.dataset.ready = 'true';
