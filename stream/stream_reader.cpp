@@ -14,7 +14,7 @@
 #include "stream/packet_codec.h"
 #include "stream/packet_order.h"
 #include "stream/slot_index.h"
-#include "stream/stream_start.h"
+#include "stream/stream_opening.h"
 
 namespace stipple {
 namespace {
@@ -37,7 +37,7 @@ struct StreamReader::Impl {
           window(file,
                  wait ? BufferedReader::EmptyPipe::kReturn : BufferedReader::EmptyPipe::kWait),
           input_bytes(bytes_of(window, wait)),
-          stream(read_stream_start(window, where, read_policy, wait)),
+          stream(open_stream_header(window, where, read_policy, wait)),
           slots(slots_by_index(window, stream.framing)),
           first_packet(window.offset()),
           order(stream.header.shape.rows),
@@ -78,7 +78,7 @@ struct StreamReader::Impl {
     WaitForMore wait;  ///< empty if the file is not followed, or no longer
     BufferedReader window;
     std::uint64_t input_bytes;
-    StreamStart stream;
+    StreamOpening stream;
     std::optional<std::int64_t> slots;
     std::uint64_t first_packet;  ///< its offset
     SlotIndex seen;              ///< the slots that were read, up to the last one so far

@@ -46,7 +46,7 @@ class PageServer {
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;
 
-    /// "http://127.0.0.1:8080/TOKEN/"
+    /// "http://ADDRESS:PORT/TOKEN/"
     [[nodiscard]] std::string url() const;
 
   private:

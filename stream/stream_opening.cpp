@@ -1,4 +1,4 @@
-#include "stream/stream_start.h"
+#include "stream/stream_opening.h"
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ std::uint64_t bytes_of(const BufferedReader& window, const WaitForMore& wait) {
     return wait ? kEndlessInput : window.file_bytes().value_or(kEndlessInput);
 }
 
-StreamStart read_stream_start(BufferedReader& window, const std::string& where, ReadPolicy policy,
-                              const WaitForMore& wait) {
+StreamOpening open_stream_header(BufferedReader& window, const std::string& where,
+                                 ReadPolicy policy, const WaitForMore& wait) {
     const std::size_t bytes = header_bytes(peek_or_wait(window, kHeaderStartBytes, wait), where);
     const Bytes header = peek_or_wait(window, bytes, wait);
     if (header.size() < bytes)
@@ -37,7 +37,7 @@ StreamStart read_stream_start(BufferedReader& window, const std::string& where, 
     const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
                           bytes_of(window, wait)};
     StreamHeader decoded = decode_header(header, where, use);
-    StreamStart result{std::move(decoded), framing_of(header), std::move(counts)};
+    StreamOpening result{std::move(decoded), framing_of(header), std::move(counts)};
     window.skip(bytes);
     return result;
 }

@@ -13,7 +13,7 @@
 namespace stipple {
 
 /// What a stream says before its first packet.
-struct StreamStart {
+struct StreamOpening {
     StreamHeader header;
     Framing framing;
     std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
@@ -24,7 +24,7 @@ struct StreamStart {
 
 /// Reads the header of a stream, for which it waits; leaves `window` at the first packet.
 /// \throws InputError as StreamReader.
-[[nodiscard]] StreamStart read_stream_start(BufferedReader& window, const std::string& where,
+[[nodiscard]] StreamOpening open_stream_header(BufferedReader& window, const std::string& where,
                                             ReadPolicy policy, const WaitForMore& wait);
 
 }  // namespace stipple
