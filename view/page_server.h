@@ -46,7 +46,7 @@ class PageServer {
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;
 
-    /// "http://ADDRESS:PORT/TOKEN/"
+    /// The address of the page, with its token.
     [[nodiscard]] std::string url() const;
 
   private:

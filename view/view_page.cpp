@@ -17,6 +17,7 @@
 #include "io/tone_map.h"
 #include "study/report/json_figures.h"
 #include "study/report/report_page.h"
+#include "study/report/stream_samples.h"
 
 namespace stipple {
 namespace {
@@ -84,6 +85,7 @@ void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& 
         options.warn(stream.warning());
         notes_.push_back(stream.warning().text());
     }
+    timelines_.emplace_back(file);
     SlotDecoder& decoder =
         decoders_.emplace_back(stream, file, options.decoding, options.calibration);
     videos_.push_back({stream.name(), fmt::format("{}, decoded", file.string()),
@@ -202,12 +204,18 @@ std::optional<PixelQuestion> pixel_question(const PageRequest& request, FrameSha
 
 }  // namespace
 
-std::optional<PageAnswer> ViewPage::samples(const PageRequest& request) {
+std::optional<std::size_t> ViewPage::run_of(const PageRequest& request) const {
     const auto run = request.number("run").value_or(-1);
+    if (run < 0 || run >= static_cast<std::int64_t>(streams_.size())) return {};
+    return static_cast<std::size_t>(run);
+}
+
+std::optional<PageAnswer> ViewPage::samples(const PageRequest& request) {
+    const auto run = run_of(request);
     const auto pixel = pixel_question(request, shape_, slots());
-    if (!pixel || run < 0 || run >= static_cast<std::int64_t>(streams_.size())) return {};
-    return json_answer(streams_[static_cast<std::size_t>(run)].samples_of_pixel(
-        pixel->row, pixel->col, pixel->first, pixel->end));
+    if (!pixel || !run) return {};
+    return json_answer(
+        streams_[*run].samples_of_pixel(pixel->row, pixel->col, pixel->first, pixel->end));
 }
 
 std::optional<PageAnswer> ViewPage::light(const PageRequest& request) {
@@ -236,6 +244,14 @@ std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
     if (request.path.starts_with(kPlane)) return plane(request.path.substr(kPlane.size()), request);
     if (request.path == "samples") return samples(request);
     if (request.path == "light") return light(request);
+    if (request.path == "timeline")
+        if (const auto run = run_of(request)) return json_answer(timelines_[*run].json());
+    if (request.path == "readout") {
+        const auto run = run_of(request);
+        const auto slot = request.number("slot").value_or(-1);
+        if (!run || slot < 0 || slot >= slots()) return {};
+        return json_answer(readout_lanes_json(streams_[*run].header(), slot));
+    }
     if (request.path == "status") {
         bool complete = true;
         for (ViewedStream& stream : streams_) complete = stream.complete() && complete;

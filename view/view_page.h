@@ -15,6 +15,7 @@
 #include "session/stream_calibration.h"
 #include "view/page_server.h"
 #include "view/slot_decoder.h"
+#include "view/stream_timeline.h"
 #include "view/viewed_stream.h"
 #include "view/viewed_video.h"
 
@@ -48,6 +49,8 @@ class ViewPage {
     /// - "plane/r0k-12", "plane/r0d-12", "plane/r0e-12": kinds, DN, and exposures under way in run
     /// 0;
     /// - "samples" ("run", "row", "col", "first", "end"): JSON, ViewedStream::samples_of_pixel;
+    /// - "timeline" ("run"): JSON, StreamTimeline::json;
+    /// - "readout" ("run", "slot"): JSON, readout_lanes_json;
     /// - "light" ("video", "row", "col", "plane", "first", "end"): JSON, [slot, code] where known.
     /// \throws InputError if a picture cannot be made.
     [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);
@@ -74,6 +77,7 @@ class ViewPage {
     [[nodiscard]] std::optional<PageAnswer> picture(const Video& video, std::int64_t slot,
                                                     const PageRequest& request);
     [[nodiscard]] std::optional<PageAnswer> samples(const PageRequest& request);
+    [[nodiscard]] std::optional<std::size_t> run_of(const PageRequest& request) const;
     [[nodiscard]] std::optional<PageAnswer> light(const PageRequest& request);
 
     std::string title_;
@@ -81,6 +85,7 @@ class ViewPage {
     FrameShape shape_{};
     std::vector<std::string> notes_;
     std::deque<ViewedStream> streams_;
+    std::deque<StreamTimeline> timelines_;  ///< of streams_
     std::deque<ViewedVideo> footage_;
     std::deque<SlotDecoder> decoders_;  ///< of streams_, which they use
     std::vector<Video> videos_;

@@ -35,17 +35,43 @@ ordered_json cost_of(const StreamHeader& header, const ReadoutTiming& timing, st
             {"limit", limit}};
 }
 
-}  // namespace
+ordered_json lanes_of(const StreamHeader& header, const ReadoutTiming& timing, std::int64_t slot) {
+    ReadoutCost cost(timing, header.schedule, header.shape,
+                     {slot_clocks(timing, header.slot_us), OverrunPolicy::kStretch});
+    cost.begin_at(slot);
+    const SlotCost& of_slot = cost.add_next();
+    const SlotTimes times = cost.times(slot, of_slot);
+    ordered_json rows = ordered_json::array();
+    for (const RowTimes& row : times.rows)
+        rows.push_back({row.load.row, row.select - of_slot.begin, row.convert - of_slot.begin,
+                        row.convert_end - of_slot.begin, row.transfer - of_slot.begin,
+                        row.transfer_end - of_slot.begin});
+    return {{"clock_hz", timing.clock_hz}, {"slot_clocks", of_slot.clocks}, {"rows", rows}};
+}
 
-ordered_json readout_json(const StreamHeader& header, std::int64_t slots) {
+/// What `make` makes of the timing that the provenance tells; else null.
+template <typename Make>
+ordered_json with_timing(const StreamHeader& header, const Make& make) {
     try {
         Config config(timing_settings(header.provenance));
         if (const auto timing = read_timing(config, header.calibration.bit_depth))
-            return cost_of(header, *timing, slots);
+            return make(*timing);
     } catch (const InputError&) {
         // A text for people: it need not tell a timing, nor one of this schedule.
     }
     return nullptr;
+}
+
+}  // namespace
+
+ordered_json readout_json(const StreamHeader& header, std::int64_t slots) {
+    return with_timing(header,
+                       [&](const ReadoutTiming& timing) { return cost_of(header, timing, slots); });
+}
+
+ordered_json readout_lanes_json(const StreamHeader& header, std::int64_t slot) {
+    return with_timing(header,
+                       [&](const ReadoutTiming& timing) { return lanes_of(header, timing, slot); });
 }
 
 void StreamLoads::add(const SamplePacket& packet) {

@@ -42,6 +42,12 @@ class StreamLoads {
 /// the timing of the sensor.
 [[nodiscard]] nlohmann::ordered_json readout_json(const StreamHeader& header, std::int64_t slots);
 
+/// The rows that are read after a slot: `clock_hz`, `slot_clocks` and `rows`, each [row, select,
+/// convert, end of the conversion, transfer, end of the transfer] in clocks from the beginning of
+/// the slot on. Null as readout_json.
+[[nodiscard]] nlohmann::ordered_json readout_lanes_json(const StreamHeader& header,
+                                                        std::int64_t slot);
+
 /// The samples of a slot in the shown area, and what a page needs to turn each into light with its
 /// standard deviation: the response of each pixel (decoder/pixel_response.h).
 class SlotSamples {

@@ -208,10 +208,18 @@ TEST(CodedSensorNoiseTest, DarkFramesAreARectifiedNormal) {
     expect_moments(expose_flat(params, 0), dark, "dark");
 }
 
-// Light far beyond the full well: the well's charge without shot noise, with read noise.
+// Light far beyond the full well: the well's charge without shot noise; read noise lies above it
+// as well as below.
 TEST(CodedSensorNoiseTest, AFullWellHasReadNoiseAlone) {
-    const SensorParams params{.full_well_e = 500};
-    expect_moments(expose_flat(params, 1500), moments_of_normal(params, 500), "full well");
+    for (const SensorMode mode : {SensorMode::kPaper, SensorMode::kPhysical}) {
+        const SensorParams params{.full_well_e = 500, .bit_depth = 12, .mode = mode};
+        const Moments well = moments_of_normal(params, 500);
+        // 16 and 50 standard deviations from zero and full scale: an unclipped normal.
+        const double g = electrons_to_dn(params);
+        EXPECT_NEAR(well.mean, 500 * g, 1e-6);
+        EXPECT_NEAR(well.variance, 100 * g * g + 1.0 / 12, 1e-6);
+        expect_moments(expose_flat(params, 1500), well, "full well");
+    }
 }
 
 }  // namespace

@@ -188,6 +188,18 @@ TEST(PhysicalPixelsTest, AddsTheVariancesOfResetReadAndOffsets) {
                    100 + 36 + 144);
 }
 
+// The well limits the charge that light and dark current leave; noise and offsets are of its
+// readout.
+TEST(PhysicalPixelsTest, OffsetsAndNoiseLieAboveAFullWell) {
+    SensorParams params =
+        physical({.dark_current_e_per_s = 20000, .dsnu_e = 6, .reset_noise_e = 12});
+    params.full_well_e = 500;
+    expect_moments(flat_field(params, 4, 1), 500, 100 + 36 + 144);
+    params.physical.low_gain_read_noise_e = 30;
+    params.physical.dual_gain_limit_e = 400;
+    expect_moments(flat_field(params, 4, 1), 500, 900 + 36 + 144);
+}
+
 TEST(PhysicalPixelsTest, TheResetNoiseOfEachExposureIsItsOwn) {
     // The same pixels in two slots: if they shared the draw, the difference would lack it.
     const SensorParams params = physical({.reset_noise_e = 20});

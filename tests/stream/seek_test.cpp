@@ -97,5 +97,24 @@ TEST_F(SeekTest, AnEntryThatLeadsElsewhereIsNotFollowed) {
     EXPECT_EQ(read_packets(reader).size(), packets_.size() - 1);
 }
 
+// Packets with good CRCs, which are not what the index says.
+TEST_F(SeekTest, AnEntryThatLeadsToAnotherPacketThanTheFirstOfItsSlotIsNotFollowed) {
+    const StreamBytes stream = bytes_of(header_, packets_);
+    const std::size_t begin = stream.begins[5 * 3], bytes = stream.begins[5 * 3 + 1] - begin;
+    const auto reached = [&](const auto& change) {
+        std::string changed = stream.bytes;
+        const auto packet = as_numbers(changed).subspan(begin, bytes);
+        PacketHeader header = decode_packet_header(packet);
+        change(header);
+        frame_packet(header, packet, stream.seed());
+        write(changed);
+        return StreamReader(file_).seek(5);
+    };
+    EXPECT_EQ(reached([](PacketHeader&) {}), 5);
+    EXPECT_EQ(reached([](PacketHeader& header) { header.first_row = 3; }), 0);
+    EXPECT_EQ(reached([](PacketHeader& header) { header.slot = 6; }), 0);
+    EXPECT_EQ(reached([](PacketHeader& header) { header.kind = PacketKind::kIndex; }), 0);
+}
+
 }  // namespace
 }  // namespace stipple

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "core/parallel.h"
 #include "tests/decoder/recordings.h"
@@ -101,11 +103,46 @@ TEST(MotionTest, DistrustsWhatDoesNotLeadBack) {
         for (std::size_t i = 0; i < kShape.pixels(); ++i) sum += fields[0].confidence[i];
         return sum / static_cast<double>(kShape.pixels());
     };
-    FluxVideo video = moving_texture(2, kShape, 0, 1);
-    EXPECT_GT(mean_confidence(video), 245);
+    // Without the row or column that leaves the frame, 1 in 64, and some next to it.
+    for (const auto& [down, right] : {std::pair{0, 1}, {0, -1}, {1, 0}, {-1, 0}})
+        EXPECT_GT(mean_confidence(moving_texture(2, kShape, down, right)), 245)
+            << down << " down, " << right << " right";
+    FluxVideo video = moving_texture(2, kShape, 1, 1);
     const auto noise = random_values(kShape.sites(), 0, 1, 3);  // slot 1 has nothing of slot 0
     std::ranges::copy(noise, video.frame(1).begin());
     EXPECT_LT(mean_confidence(video), 10);
+}
+
+// 255 exp(-e^2 / 2) of the distance e that is left after motion to the other slot and back. Steps
+// of the exponent by 1 / 16 are off by up to 1 / 32.
+TEST(MotionTest, ConfidenceIsThatOfTheDistanceAfterMotionForthAndBack) {
+    constexpr double kTolerance = 255.0 / 32 + 0.5;
+    FluxVideo video = moving_texture(2, kShape, 1.5, 2.25);
+    const auto noise = random_values(kShape.sites(), -0.15F, 0.15F, 3);
+    std::ranges::transform(video.frame(1), noise, video.frame(1).begin(), std::plus<float>());
+    const auto fields = estimate_motion(video, {});
+    const std::size_t pixels = kShape.pixels();
+    int checked = 0, doubtful = 0;
+    for (const std::size_t slot : {0U, 1U})
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const MotionField &forth = fields[slot], &back = fields[1 - slot];
+            const std::size_t from = slot * pixels + i;
+            const auto row_of =
+                std::lround(static_cast<double>(i / 96) + forth.row_shift[from] / 64.0);
+            const auto col_of =
+                std::lround(static_cast<double>(i % 96) + forth.col_shift[from] / 64.0);
+            const auto to = (1 - slot) * pixels + static_cast<std::size_t>(row_of * 96 + col_of);
+            // Motion out of the frame is not in the fields.
+            if (forth.confidence[from] == 0 || back.confidence[to] == 0) continue;
+            const double down = (forth.row_shift[from] + back.row_shift[to]) / 64.0;
+            const double right = (forth.col_shift[from] + back.col_shift[to]) / 64.0;
+            const double expected = 255 * std::exp(-(down * down + right * right) / 2);
+            ASSERT_NEAR(forth.confidence[from], expected, kTolerance) << slot << ' ' << i;
+            ++checked;
+            if (down * down > 0.25) ++doubtful;
+        }
+    EXPECT_GT(checked, 10000) << "of 12288";
+    EXPECT_GT(doubtful, 20) << "the test means something";
 }
 
 TEST(MotionTest, ColourMovesAsItsLuminance) {

@@ -259,6 +259,17 @@ TEST(ReadoutCostTest, ASlotLastsAtLeastAsLongAsTheLoadOfItsCode) {
     EXPECT_EQ(slot.limit, ReadoutLimit::kCodeLoad);
 }
 
+TEST(ReadoutCostTest, ASlotShorterThanTheLoadOfItsCodeIsAnOverrun) {
+    // Its readout takes 84143 clocks.
+    const auto timing = sensor_timing("lux1310", {"timing.code_load_clocks=100000"});
+    const auto every_slot = full_schedule(1, 1);
+    for (const auto& [budget, overrun] : {std::pair{99999, true}, std::pair{100000, false}}) {
+        ReadoutCost cost(timing, every_slot, {1024, 1280, 1}, {budget, OverrunPolicy::kStretch});
+        EXPECT_EQ(cost.add_next().overrun, overrun) << budget;
+        EXPECT_EQ(cost.overruns(), overrun ? 1 : 0) << budget;
+    }
+}
+
 TEST(ReadoutCostTest, WhatDroppingRowsCannotHelpIsRefused) {
     const auto timing = sensor_timing("imx273");
     const auto every_slot = full_schedule(1, 1);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/explore/results.h"
@@ -50,9 +51,31 @@ class ExplorationTest : public testing::Test {
         return exploration;
     }
 
+    static TrialOutcome empty_outcome() {
+        return {.figures = {}, .picture = {.rows = 1, .cols = 1, .channels = 1, .bytes = {7}}};
+    }
+
+    /// Points whose figures are all 1 in the first one, 2 in the second; a little more for each
+    /// seed.
+    Exploration explored_by(const FigureColumn& rank, ExploreOptions options) {
+        options.rank = rank.name;
+        Exploration exploration = begun(options);
+        const auto seeds = static_cast<std::uint64_t>(options.seeds);
+        while (exploration.next_rung())
+            for (const std::uint64_t number : exploration.due()) {
+                if (exploration.begin(number) == nullptr) continue;
+                TrialOutcome outcome = empty_outcome();
+                for (const FigureColumn& column : kFigureColumns)
+                    outcome.figures.*column.value = 1 + static_cast<double>(number / seeds) +
+                                                    static_cast<double>(number % seeds) / 8;
+                exploration.put(number, outcome);
+            }
+        exploration.rank_points();
+        return exploration;
+    }
+
     static void put(Exploration& exploration, std::uint64_t number, double psnr_db) {
-        TrialOutcome outcome{.figures = {},
-                             .picture = {.rows = 1, .cols = 1, .channels = 1, .bytes = {7}}};
+        TrialOutcome outcome = empty_outcome();
         outcome.figures.slots_per_second = 200;
         outcome.figures.psnr_db = psnr_db;
         outcome.figures.decode_seconds = 1;
@@ -140,6 +163,33 @@ TEST_F(ExplorationTest, APointHasTheMeansOfItsSeeds) {
     EXPECT_EQ(value(once, 0, "psnr_db"), TableValue(30.0));
     EXPECT_EQ(value(once, 0, "rank"), TableValue("no such column"));
     EXPECT_EQ(value(once, 0, "psnr_db_low"), TableValue("no such column"));
+}
+
+/// Rates and amounts that cost something, and time.
+bool should_be_little(std::string_view figure) {
+    return figure.find("megabits") != figure.npos || figure == "energy_uj_per_slot" ||
+           figure == "samples_per_voxel" || figure == "decode_seconds";
+}
+
+TEST_F(ExplorationTest, ARankByWhatShouldBeLittleKeepsTheLeastAndByOthersTheMost) {
+    write_space(kNoise);
+    for (const FigureColumn& rank : kFigureColumns) {
+        const Exploration exploration = explored_by(rank, options_of(1, 100));
+        const std::uint64_t best = should_be_little(rank.name) ? 0 : 1;
+        EXPECT_EQ(exploration.best_first(), (std::vector{best, 1 - best})) << rank.name;
+        EXPECT_EQ(exploration.points()[best].slots, 24) << rank.name;
+        EXPECT_EQ(exploration.points()[1 - best].slots, 12) << rank.name;
+    }
+}
+
+TEST_F(ExplorationTest, OfWhatShouldBeLittleTheLeastRanksFirst) {
+    write_space(kNoise);
+    for (const FigureColumn& rank : kFigureColumns) {
+        const Exploration exploration = explored_by(rank, options_of(3));
+        const bool little = should_be_little(rank.name);
+        EXPECT_EQ(value(exploration, 0, "rank"), TableValue(little ? "1" : "2")) << rank.name;
+        EXPECT_EQ(value(exploration, 1, "rank"), TableValue(little ? "2" : "1")) << rank.name;
+    }
 }
 
 TEST_F(ExplorationTest, APointIsARowWhenAllItsSeedsAreKnown) {

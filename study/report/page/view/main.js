@@ -8,6 +8,8 @@ setUpCharts();
 setUpViewer();
 setUpPixel();
 setUpSchedule();
+setUpTimeline();
+document.body.classList.add('view');
 whenever(['slot'], markSlots);
 whenever(['slot', 'a', 'b'], () => shownVideos().forEach(improve));
 whenever(['pictures'], () => {

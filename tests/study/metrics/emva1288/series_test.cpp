@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "core/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -36,11 +40,45 @@ TEST(SeriesTest, ReadsADescriptorOfTheReferenceSoftware) {
     EXPECT_EQ(series.groups[1].files.size(), 3U);
 }
 
-TEST(SeriesTest, ReadsWhatItWrites) {
-    const Series series = parse_series(kWhole, "a.txt");
-    const std::string text = series_text(series);
-    EXPECT_EQ(series_text(parse_series(text, "b.txt")), text);
-    EXPECT_EQ(text.substr(0, 29), "v 4.0\nn 12 320 240\nd 1000000\n");
+// As the documentation of the reference software says: "n bits width height", "b exposure photons"
+// and "d exposure", in ns, each followed by lines "i path".
+TEST(SeriesTest, WritesTheLinesOfTheReferenceSoftware) {
+    const Series series{
+        .bits = 10,
+        .cols = 656,
+        .rows = 494,
+        .groups = {{.exposure_ns = 40000, .photons = 120.5, .files = {"bright/a.tif", "b.tif"}},
+                   {.exposure_ns = 320000.25, .dark = true, .files = {"c.tif", "d.tif", "e.tif"}}}};
+    EXPECT_EQ(series_text(series),
+              "v 4.0\n"
+              "n 10 656 494\n"
+              "b 40000 120.5\n"
+              "i bright/a.tif\n"
+              "i b.tif\n"
+              "d 320000.25\n"
+              "i c.tif\n"
+              "i d.tif\n"
+              "i e.tif\n");
+}
+
+TEST(SeriesTest, ReadsEachFieldThatItWrites) {
+    for (const double number : {0.0, 0.001, 0.1, 1.0 / 3, 123456789.25, 1e12}) {
+        const Series written{
+            .bits = 16,
+            .cols = 3,
+            .rows = 5,
+            .groups = {{.exposure_ns = number, .dark = true, .files = {"a", "b c"}},
+                       {.exposure_ns = 7, .photons = number, .files = {"d", "e"}}}};
+        const Series read = parse_series(series_text(written), "a.txt");
+        EXPECT_EQ(std::tuple(read.bits, read.cols, read.rows), std::tuple(16, 3, 5));
+        ASSERT_EQ(read.groups.size(), 2U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(read.groups[i].exposure_ns, written.groups[i].exposure_ns);
+            EXPECT_EQ(read.groups[i].photons, written.groups[i].photons);
+            EXPECT_EQ(read.groups[i].dark, written.groups[i].dark);
+            EXPECT_EQ(read.groups[i].files, written.groups[i].files);
+        }
+    }
 }
 
 TEST(SeriesTest, ReadsEachVersionAndAnyOrderOfTheHeader) {
