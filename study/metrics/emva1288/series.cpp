@@ -25,6 +25,7 @@ class Parser {
         std::istringstream words(line);
         std::string key;
         if (!(words >> key) || key.front() == '#') return;
+        if (key == "l") return;  // a label of the series, for people
         if (key == "v")
             read_version(words);
         else if (key == "n")

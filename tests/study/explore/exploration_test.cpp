@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -174,6 +175,7 @@ bool should_be_little(std::string_view figure) {
 TEST_F(ExplorationTest, ARankByWhatShouldBeLittleKeepsTheLeastAndByOthersTheMost) {
     write_space(kNoise);
     for (const FigureColumn& rank : kFigureColumns) {
+        std::filesystem::remove_all(folder_ / "results");
         const Exploration exploration = explored_by(rank, options_of(1, 100));
         const std::uint64_t best = should_be_little(rank.name) ? 0 : 1;
         EXPECT_EQ(exploration.best_first(), (std::vector{best, 1 - best})) << rank.name;

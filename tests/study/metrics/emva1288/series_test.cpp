@@ -90,6 +90,7 @@ TEST(SeriesTest, ReadsEachVersionAndAnyOrderOfTheHeader) {
     };
     for (const char* version : {"v 3.0\n", "v 3.1\r\n", "v 4.0\n", "v 4.1\n", ""})
         same(version + body);
+    same("l camera Model X, no. 7\n" + whole);
     const std::string format = "n 12 320 240\n";
     const std::string groups = body.substr(body.find('d'));
     same(groups + "\n" + format);
