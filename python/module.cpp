@@ -44,5 +44,6 @@ PYBIND11_MODULE(_stipple, module) {
     bind_record(module);
     bind_live_preview(module);
     bind_live(module);
+    bind_view(module);
     guard_classes(module);
 }

@@ -23,6 +23,7 @@ from ._stipple import (
     VideoQuality,
     __version__,
 )
+from ._view import View, view
 
 __all__ = [
     "ComparedVideos",
@@ -34,6 +35,7 @@ __all__ = [
     "Sensor",
     "Stream",
     "VideoQuality",
+    "View",
     "__version__",
     "capture",
     "characterize",
@@ -45,4 +47,5 @@ __all__ = [
     "explore",
     "load",
     "timing",
+    "view",
 ]
