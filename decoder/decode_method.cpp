@@ -83,7 +83,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      }},
     {"live", DecodeMethod::kLive, false, false,
      "means along time, and residuals blurred in space: for a picture while filming", kMaxCoreSites,
-     28, 0.1, [](Config&, DecodeOptions&) {},
+     30, 0.12, [](Config&, DecodeOptions&) {},
      [](const BlockTask& block) { return decode_live(block.measurements, block.progress); }},
     {"fast", DecodeMethod::kFast, true, false, "motion-compensated total variation", kMaxCoreSites,
      58, 2.1, [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },

@@ -54,7 +54,8 @@ void average_in_time(const WindowRun& run, std::span<float> light,
 
 /// Residuals (y - A x) / n of the light per slot, in `slots` of the window. A saturated exposure
 /// whose bound is exceeded has no precision. The variance is that of the sample, and the square of
-/// 0.11 (n - 1) of the mean light: what motion may make of a slot of a long exposure.
+/// 0.11 (n - 1) of the mean light, of 0.03 at least: what motion may make of a slot of a long
+/// exposure.
 void spread_residuals(const WindowRun& run, const SlotRange& slots, std::span<const float> light,
                       const SpreadResiduals& residuals) noexcept;
 

@@ -20,9 +20,9 @@ struct Measurements;
 /// Each step leaves residuals that may be noise, so that still pixels keep their mean along time.
 /// The structure, back projection of smoothed residuals, is that of Irani and Peleg (1991). Sites
 /// without any sample are interpolated from their surroundings (fill_unsampled); voxels without a
-/// sample in the window become those of nearest_samples. Of a colour filter array each colour has
-/// its own residuals. The result may be slightly negative. Returns nothing if `progress`, which
-/// receives a fraction, has stopped it. Precondition: one sensor.
+/// sample in the window become those of nearest_samples, which looks further. Of a colour filter
+/// array each colour has its own residuals. The result may be slightly negative. Returns nothing if
+/// `progress`, which receives a fraction, has stopped it. Precondition: one sensor.
 [[nodiscard]] std::optional<FluxVideo> decode_live(
     const Measurements& measurements,
     const ProgressCallback& progress = [](double) { return true; });
