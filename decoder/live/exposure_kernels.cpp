@@ -17,6 +17,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
+namespace {
 
 constexpr float kLongMemory = 0.939413063F;   // exp(-1 / 16)
 constexpr float kShortMemory = 0.513417119F;  // exp(-1 / 1.5)
@@ -148,22 +149,6 @@ void average_samples(const RunSamples& samples, int slot_count, std::size_t stri
     }
 }
 
-void average_run(const WindowRun& run, float* light, std::uint8_t* known) {
-    const LiveWindow& window = run.window;
-    const SiteRun& range = run.sites;
-    RunSamples samples = {};
-    for_each_chain(run.measurements, [&](auto chain, auto weighted) {
-        Progress progress;
-        for (int slot = window.begin; slot < window.end; ++slot)
-            gather<chain(), weighted()>(slice<weighted()>(run, slot), progress,
-                                        static_cast<std::size_t>(slot - window.begin), samples);
-    });
-    average_samples(samples, window.slots(), run.measurements.shape.sites(),
-                    {light + range.begin, light + range.end});
-    for (std::size_t i = range.begin; i < range.end; ++i)
-        known[i] = samples.exposed[i - range.begin] > 0 ? 1 : 0;
-}
-
 /// Adds a slot to the sums over each exposure. `precision` and `weighted` are those of the exposure
 /// where one ends, else anything.
 template <Chain kChain, bool kWeighted>
@@ -209,7 +194,7 @@ void spread(const Slice& s, const Spread& from, float* HWY_RESTRICT to) {
 }
 
 template <Chain kChain, bool kWeighted>
-void spread_chain(const WindowRun& run, const SlotRange& slots, const float* light,
+void spread_chain(const WindowRun& run, const WindowSlots& slots, const float* light,
                   const SpreadResiduals& residuals) {
     constexpr bool kAdd = kChain == Chain::kSecond;
     __attribute__((uninitialized)) RunFloats end_precision, end_weighted;
@@ -230,13 +215,6 @@ void spread_chain(const WindowRun& run, const SlotRange& slots, const float* lig
         spread<kChain, kAdd>(s, {end_weighted[t], weighted},
                              wanted ? &residuals.weighted[voxel] : unused);
     }
-}
-
-void spread_run(const WindowRun& run, const SlotRange& slots, const float* light,
-                const SpreadResiduals& residuals) {
-    for_each_chain(run.measurements, [&](auto chain, auto weighted) {
-        spread_chain<chain(), weighted()>(run, slots, light, residuals);
-    });
 }
 
 float step_of(float light) {
@@ -291,6 +269,31 @@ void restore_chain(const WindowRun& run, const float* light, float* result) {
     }
 }
 
+}  // namespace
+
+void average_run(const WindowRun& run, float* light, std::uint8_t* known) {
+    const LiveWindow& window = run.window;
+    const SiteRun& range = run.sites;
+    RunSamples samples = {};
+    for_each_chain(run.measurements, [&](auto chain, auto weighted) {
+        Progress progress;
+        for (int slot = window.begin; slot < window.end; ++slot)
+            gather<chain(), weighted()>(slice<weighted()>(run, slot), progress,
+                                        static_cast<std::size_t>(slot - window.begin), samples);
+    });
+    average_samples(samples, window.slots(), run.measurements.shape.sites(),
+                    {light + range.begin, light + range.end});
+    for (std::size_t i = range.begin; i < range.end; ++i)
+        known[i] = samples.exposed[i - range.begin] > 0 ? 1 : 0;
+}
+
+void spread_run(const WindowRun& run, const WindowSlots& slots, const float* light,
+                const SpreadResiduals& residuals) {
+    for_each_chain(run.measurements, [&](auto chain, auto weighted) {
+        spread_chain<chain(), weighted()>(run, slots, light, residuals);
+    });
+}
+
 void restore_run(const WindowRun& run, const float* light, float* result) {
     for_each_chain(run.measurements, [&](auto chain, auto weighted) {
         restore_chain<chain(), weighted()>(run, light, result);
@@ -313,7 +316,7 @@ void average_in_time(const WindowRun& run, std::span<float> light,
     HWY_DYNAMIC_DISPATCH(average_run)(run, light.data(), known.data());
 }
 
-void spread_residuals(const WindowRun& run, const SlotRange& slots, std::span<const float> light,
+void spread_residuals(const WindowRun& run, const WindowSlots& slots, std::span<const float> light,
                       const SpreadResiduals& residuals) noexcept {
     assert(run.window.begin <= slots.begin && slots.end <= run.window.end);
     HWY_DYNAMIC_DISPATCH(spread_run)(run, slots, light.data(), residuals);

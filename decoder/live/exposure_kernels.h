@@ -30,7 +30,7 @@ struct WindowRun {
 };
 
 /// Slots [begin, end) of a block.
-struct SlotRange {
+struct WindowSlots {
     int begin = 0;
     int end = 0;
 };
@@ -56,7 +56,7 @@ void average_in_time(const WindowRun& run, std::span<float> light,
 /// whose bound is exceeded has no precision. The variance is that of the sample, and the square of
 /// 0.11 (n - 1) of the mean light, of 0.03 at least: what motion may make of a slot of a long
 /// exposure.
-void spread_residuals(const WindowRun& run, const SlotRange& slots, std::span<const float> light,
+void spread_residuals(const WindowRun& run, const WindowSlots& slots, std::span<const float> light,
                       const SpreadResiduals& residuals) noexcept;
 
 /// The core of a window: the light after a step of data consistency (data_prox.h), with step sizes

@@ -48,8 +48,8 @@ class WindowDecoder {
 
     /// `known` as of average_in_time.
     void decode(const LiveWindow& window, std::span<std::uint8_t> known) {
-        const SlotRange core{.begin = window.core_begin, .end = window.core_end};
-        const SlotRange all{.begin = window.begin, .end = window.end};
+        const WindowSlots core{.begin = window.core_begin, .end = window.core_end};
+        const WindowSlots all{.begin = window.begin, .end = window.end};
         for_each_run(window, [&](const WindowRun& run) {
             average_in_time(run, light_, known);
             spread_residuals(run, all, light_, {precision_, weighted_});
@@ -73,7 +73,7 @@ class WindowDecoder {
 
     /// Calls add(shape, residuals, light) for all planes of these slots.
     template <typename Add>
-    void add_residuals(const LiveWindow& window, const SlotRange& slots, const Add& add) {
+    void add_residuals(const LiveWindow& window, const WindowSlots& slots, const Add& add) {
         const FrameShape plane{.rows = m_.shape.rows, .cols = m_.shape.cols, .planes = 1};
         const auto planes = m_.shape.planes;
         parallel_for(
