@@ -142,7 +142,7 @@ void average_samples(const RunSamples& samples, int slot_count, std::size_t stri
         for (std::size_t i = 0; i < sites; ++i) {
             const float all = weight[i] + earlier_weight[t][i];
             const float mean = (sum[i] + earlier_sum[t][i]) / std::max(all, kTiny);
-            x[i] = all > 0 ? mean : samples.bound[i];
+            x[i] = std::max(all > 0 ? mean : samples.bound[i], 0.0F);
             sum[i] = memory[i] * (sum[i] + samples.light[t][i]);
             weight[i] = memory[i] * (weight[i] + samples.length[t][i]);
         }
